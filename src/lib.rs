@@ -1,0 +1,6 @@
+//! mbint: what a mechanism can do when its parameters are only known up to tolerances.
+//!
+//! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → bounds → report.
+
+pub mod mechanics;
+pub mod model;

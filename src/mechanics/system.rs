@@ -1,0 +1,88 @@
+//! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form).
+
+use symdiff::{Expr, Graph};
+
+/// A mechanism's equations of motion over the symbols of `graph`.
+///
+/// n coordinates, m constraints. `w` stands for the true acceleration v̇.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Holds every expression below.
+    pub graph: Graph,
+    /// The uncertain parameters, each a symbol; all other parameters have been folded in.
+    pub parameters: Vec<UncertainParameter>,
+    /// t, s.
+    pub time: Expr,
+    /// Positions, n symbols.
+    pub q: Vec<Expr>,
+    /// Velocities, n symbols.
+    pub v: Vec<Expr>,
+    /// Accelerations, n symbols.
+    pub w: Vec<Expr>,
+    /// Lagrange multipliers, m symbols.
+    pub lambda: Vec<Expr>,
+    /// Names and scales of the coordinates, n.
+    pub coordinates: Vec<CoordinateInfo>,
+    /// Names of the constraints, m.
+    pub constraints: Vec<ConstraintInfo>,
+    /// M(q)'s nonzero entries (row, column, value), both triangles.
+    pub mass: Vec<(usize, usize, Expr)>,
+    /// Q(t, q, v, λ), n, velocity-dependent inertial forces included.
+    pub force: Vec<Expr>,
+    /// Φ(q, t), m.
+    pub constraint: Vec<Expr>,
+    /// What is observed, over t, q, v, w, λ and the parameters.
+    pub outputs: Vec<OutputInfo>,
+    /// What is known at the start.
+    pub start: Start,
+}
+
+/// A parameter that is an interval.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct UncertainParameter {
+    pub name: String,
+    pub unit: String,
+    pub symbol: Expr,
+    pub nominal: f64,
+    pub lower: f64,
+    pub upper: f64,
+}
+
+/// A coordinate's name and size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoordinateInfo {
+    /// E.g. `crank.angle`.
+    pub name: String,
+    /// Typical size: 1 for an angle, the model's length for a position. Newton's tolerance is relative to it.
+    pub scale: f64,
+}
+
+/// A constraint's name and owner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstraintInfo {
+    /// E.g. `pin.x`.
+    pub name: String,
+    /// Name of the joint.
+    pub joint: String,
+}
+
+/// Something observed.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct OutputInfo {
+    pub name: String,
+    pub unit: String,
+    pub expr: Expr,
+}
+
+/// What is known at the start; expressions over the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Positions that are kept, n; `None` where assembly finds them.
+    pub position: Vec<Option<Expr>>,
+    /// Velocities that are kept, n.
+    pub velocity: Vec<Option<Expr>>,
+    /// Where assembly begins to look, n.
+    pub guess: Vec<Expr>,
+}

@@ -1,0 +1,5 @@
+//! What a file may say: reading, checking, and the typed [`Description`].
+
+mod description;
+
+pub use description::*;
