@@ -1,6 +1,8 @@
 //! mbint: what a mechanism can do when its parameters are only known up to tolerances.
 //!
-//! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → bounds → report.
+//! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
 
+pub mod bounds;
 pub mod mechanics;
 pub mod model;
+pub mod report;

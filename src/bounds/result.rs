@@ -1,0 +1,55 @@
+//! What a run yields: bounds of every output over time.
+
+/// Bounds of every output of a model at the output times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Output times, s, ascending.
+    pub times: Vec<f64>,
+    /// In the model's order.
+    pub outputs: Vec<OutputBounds>,
+}
+
+/// One output's nominal course and its bands; each vector runs over the times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputBounds {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit, empty where dimensionless or unknown.
+    pub unit: String,
+    /// With every parameter at its nominal value.
+    pub nominal: Vec<f64>,
+    /// In the order of [`Method`].
+    pub bands: Vec<Band>,
+}
+
+/// A method's bounds of one output over time.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Band {
+    pub method: Method,
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+}
+
+/// A bounding method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Method {
+    Chebyshev,
+    Taylor,
+    Scan,
+}
+
+impl Method {
+    /// All of them, in the order in which they are reported.
+    pub const ALL: [Self; 3] = [Self::Chebyshev, Self::Taylor, Self::Scan];
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Chebyshev => "chebyshev",
+            Self::Taylor => "taylor",
+            Self::Scan => "scan",
+        }
+    }
+}
