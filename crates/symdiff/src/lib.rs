@@ -1,14 +1,20 @@
 //! Hash-consed expressions, symbolic derivatives, and staged tapes evaluated over tiles of samples.
 //!
-//! The way through: [`formula`] text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → tapes → numbers.
-//! The crate knows no mechanics.
+//! The way through: [`formula`] text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s →
+//! numbers in a [`Tile`]. The crate knows no mechanics.
 
 mod derivative;
 mod expr;
 pub mod formula;
+mod lanes;
 mod scalar;
+mod schedule;
 pub mod sincos;
+mod tape;
 
 pub use derivative::SparseMatrix;
 pub use expr::{Binary, Expr, Graph, Node, Unary};
 pub use formula::{Formula, SyntaxError};
+pub use lanes::{Tile, WIDTHS};
+pub use schedule::{Input, Lowered, Outputs, lower, stages_of};
+pub use tape::{Op, Operands, Tape};

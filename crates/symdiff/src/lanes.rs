@@ -1,0 +1,281 @@
+//! The evaluator: a tape over a tile of samples, structure of arrays.
+//!
+//! One dispatch serves all instructions of a run and all lanes of the tile. The same source is compiled for the
+//! baseline and for AVX2 and AVX-512 and chosen at run time. Every lane sees the same IEEE operations in the same order
+//! whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our own.
+
+use crate::expr::{Binary, Unary};
+use crate::scalar;
+use crate::sincos;
+use crate::tape::{Op, Operands, Tape};
+
+/// Widths that a tile can have.
+pub const WIDTHS: [usize; 6] = [1, 4, 8, 16, 32, 64];
+
+/// Cache-line aligned storage, so that no vector load crosses a line.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Line([f64; 8]);
+
+/// Memory of a program for `width` samples: `slots` rows of `width` lanes.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    width: usize,
+    slots: usize,
+    lines: Vec<Line>,
+}
+
+/// The best instruction set that this machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum InstructionSet {
+    Baseline,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl InstructionSet {
+    /// `is_x86_feature_detected` caches its answer.
+    fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+}
+
+impl Tile {
+    /// Zeros, with `constants` set.
+    ///
+    /// # Panics
+    /// If `width` is not one of [`WIDTHS`].
+    pub fn new(width: usize, slots: usize, constants: &[(u32, f64)]) -> Self {
+        assert!(WIDTHS.contains(&width), "a tile is one of {WIDTHS:?} wide");
+        let mut tile = Self { width, slots, lines: vec![Line([0.0; 8]); (slots * width).div_ceil(8)] };
+        for &(slot, value) in constants {
+            tile.lane_mut(slot as usize).fill(value);
+        }
+        tile
+    }
+
+    /// Number of samples.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Number of slots.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+
+    /// The memory, slot by slot.
+    pub fn values(&self) -> &[f64] {
+        // SAFETY: `Line` is `repr(C)` around `[f64; 8]`, so the lines are `8 · len` consecutive f64.
+        let all = unsafe { std::slice::from_raw_parts(self.lines.as_ptr().cast::<f64>(), self.lines.len() * 8) };
+        &all[..self.slots * self.width]
+    }
+
+    /// The memory, slot by slot.
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        // SAFETY: as in `values`; the borrow is exclusive.
+        let all =
+            unsafe { std::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<f64>(), self.lines.len() * 8) };
+        &mut all[..self.slots * self.width]
+    }
+
+    /// A slot's value in every sample.
+    pub fn lane(&self, slot: usize) -> &[f64] {
+        &self.values()[slot * self.width..][..self.width]
+    }
+
+    /// A slot's value in every sample.
+    pub fn lane_mut(&mut self, slot: usize) -> &mut [f64] {
+        let width = self.width;
+        &mut self.values_mut()[slot * width..][..width]
+    }
+
+    /// Runs a tape over all samples.
+    ///
+    /// # Panics
+    /// If the tape names a slot that the tile does not have.
+    pub fn run(&mut self, tape: &Tape) {
+        self.run_with(tape, InstructionSet::detect());
+    }
+
+    fn run_with(&mut self, tape: &Tape, set: InstructionSet) {
+        assert!(tape.slots() <= self.slots, "the tape belongs to a larger memory");
+        let memory = self.lines.as_mut_ptr().cast::<f64>();
+        // SAFETY: the tape's slots are below `self.slots` (just asserted; `Tape::slots` is computed from the instructions),
+        // and `memory` has `slots · width` values. The instruction set was detected.
+        unsafe {
+            match self.width {
+                1 => dispatch::<1, 1>(tape, memory, set),
+                4 => dispatch::<4, 4>(tape, memory, set),
+                8 => dispatch::<8, 8>(tape, memory, set),
+                16 => dispatch::<16, 8>(tape, memory, set),
+                32 => dispatch::<32, 8>(tape, memory, set),
+                _ => dispatch::<64, 8>(tape, memory, set),
+            }
+        }
+    }
+}
+
+unsafe fn dispatch<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64, set: InstructionSet) {
+    // SAFETY: passed on.
+    unsafe {
+        match set {
+            InstructionSet::Baseline => interpret::<W, C>(tape, memory),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx2 => interpret_avx2::<W, C>(tape, memory),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => interpret_avx512::<W, C>(tape, memory),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn interpret_avx2<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
+    // SAFETY: passed on.
+    unsafe { interpret::<W, C>(tape, memory) }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+unsafe fn interpret_avx512<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
+    // SAFETY: passed on.
+    unsafe { interpret::<W, C>(tape, memory) }
+}
+
+/// `W` lanes in chunks of `C`. A chunk's operands are loaded before its result is stored, so that a result may replace
+/// an operand.
+#[inline(always)]
+unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
+    for (op, operands) in tape.runs() {
+        // SAFETY: the caller's.
+        unsafe {
+            match op {
+                Op::Copy => each::<W, C>(operands, memory, |a, _, _| a),
+                Op::MulAdd => each::<W, C>(operands, memory, |a, b, c| a * b + c),
+                Op::MulSub => each::<W, C>(operands, memory, |a, b, c| a * b - c),
+                Op::NegMulAdd => each::<W, C>(operands, memory, |a, b, c| c - a * b),
+                Op::Binary(Binary::Add) => each::<W, C>(operands, memory, |a, b, _| a + b),
+                Op::Binary(Binary::Sub) => each::<W, C>(operands, memory, |a, b, _| a - b),
+                Op::Binary(Binary::Mul) => each::<W, C>(operands, memory, |a, b, _| a * b),
+                Op::Binary(Binary::Div) => each::<W, C>(operands, memory, |a, b, _| a / b),
+                Op::Unary(Unary::Neg) => each::<W, C>(operands, memory, |a, _, _| -a),
+                Op::Unary(Unary::Abs) => each::<W, C>(operands, memory, |a, _, _| a.abs()),
+                Op::Unary(Unary::Sqrt) => each::<W, C>(operands, memory, |a, _, _| a.sqrt()),
+                Op::Unary(function) => each::<W, 1>(operands, memory, |a, _, _| scalar::unary(function, a)),
+                Op::Binary(function) => each::<W, 1>(operands, memory, |a, b, _| scalar::binary(function, a, b)),
+                Op::SinCos => sin_cos::<W, C>(operands, memory),
+            }
+        }
+    }
+}
+
+/// `d = function(a, b, c)` for each instruction and lane.
+#[inline(always)]
+unsafe fn each<const W: usize, const C: usize>(
+    operands: &[Operands],
+    memory: *mut f64,
+    function: impl Fn(f64, f64, f64) -> f64,
+) {
+    for operand in operands {
+        let mut lane = 0;
+        while lane < W {
+            // SAFETY: slots are in range (the caller's promise) and `lane + C ≤ W`.
+            unsafe {
+                let a = memory.add(operand.a as usize * W + lane).cast::<[f64; C]>().read();
+                let b = memory.add(operand.b as usize * W + lane).cast::<[f64; C]>().read();
+                let c = memory.add(operand.c as usize * W + lane).cast::<[f64; C]>().read();
+                let mut d = [0.0; C];
+                for i in 0..C {
+                    d[i] = function(a[i], b[i], c[i]);
+                }
+                memory.add(operand.d as usize * W + lane).cast::<[f64; C]>().write(d);
+            }
+            lane += C;
+        }
+    }
+}
+
+/// `d = sin a`, `b = cos a` for each instruction and lane.
+#[inline(always)]
+unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[Operands], memory: *mut f64) {
+    for operand in operands {
+        let mut lane = 0;
+        while lane < W {
+            // SAFETY: as in `each`.
+            unsafe {
+                let a = memory.add(operand.a as usize * W + lane).cast::<[f64; C]>().read();
+                let (mut sine, mut cosine) = ([0.0; C], [0.0; C]);
+                for i in 0..C {
+                    (sine[i], cosine[i]) = sincos::sin_cos(a[i]);
+                }
+                memory.add(operand.d as usize * W + lane).cast::<[f64; C]>().write(sine);
+                memory.add(operand.b as usize * W + lane).cast::<[f64; C]>().write(cosine);
+            }
+            lane += C;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Expr, Graph, Input, lower};
+
+    fn sample() -> (Graph, Vec<Input>, Vec<(Expr, Option<u32>)>) {
+        let mut g = Graph::new();
+        let (x, y) = (g.symbol("x"), g.symbol("y"));
+        let (s, c) = (g.sin(x), g.cos(x));
+        let product = g.mul(s, y);
+        let sum = g.add(product, c);
+        let quotient = g.div(sum, y);
+        let tangent = g.unary(Unary::Tan, quotient);
+        let square = g.mul(sum, sum);
+        let root = g.sqrt(square);
+        let smaller = g.binary(Binary::Min, root, tangent);
+        let last = g.sub(smaller, product);
+        let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol, stage: 0, slot }).to_vec();
+        (g, inputs, vec![(sum, None), (tangent, None), (last, None), (s, None)])
+    }
+
+    #[test]
+    fn every_width_and_instruction_set_gives_the_bits_of_direct_evaluation() {
+        let (g, inputs, outputs) = sample();
+        let lowered = lower(&g, &inputs, 0, 2, &[outputs.clone()]);
+        let roots: Vec<Expr> = outputs.iter().map(|&(expr, _)| expr).collect();
+        let mut sets = vec![InstructionSet::Baseline, InstructionSet::detect()];
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            sets.push(InstructionSet::Avx2);
+        }
+        for width in WIDTHS {
+            for &set in &sets {
+                let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+                let (x, y) = (|lane: usize| 0.37 * lane as f64 - 3.0, |lane: usize| 1.5 + 0.1 * lane as f64);
+                for lane in 0..width {
+                    tile.lane_mut(0)[lane] = x(lane);
+                    tile.lane_mut(1)[lane] = y(lane);
+                }
+                tile.run_with(&lowered.kernels[0], set);
+                for lane in 0..width {
+                    let direct =
+                        g.evaluate(&roots, |symbol| if symbol == inputs[0].symbol { x(lane) } else { y(lane) });
+                    for (slot, value) in lowered.outputs[0].iter().zip(direct) {
+                        assert_eq!(tile.lane(*slot as usize)[lane].to_bits(), value.to_bits(), "{width} {set:?}");
+                    }
+                }
+            }
+        }
+    }
+}
