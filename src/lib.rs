@@ -3,6 +3,8 @@
 //! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
 
 pub mod bounds;
+pub mod integrate;
 pub mod mechanics;
 pub mod model;
+pub mod program;
 pub mod report;

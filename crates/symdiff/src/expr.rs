@@ -105,6 +105,11 @@ impl Graph {
         self.nodes.is_empty()
     }
 
+    /// Every node, children before parents.
+    pub fn exprs(&self) -> impl Iterator<Item = Expr> + use<> {
+        (0..self.nodes.len() as u32).map(Expr)
+    }
+
     /// The node behind a handle.
     pub fn node(&self, expr: Expr) -> Node {
         self.nodes[expr.index()]

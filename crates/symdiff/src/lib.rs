@@ -16,5 +16,5 @@ pub use derivative::SparseMatrix;
 pub use expr::{Binary, Expr, Graph, Node, Unary};
 pub use formula::{Formula, SyntaxError};
 pub use lanes::{Tile, WIDTHS};
-pub use schedule::{Input, Lowered, Outputs, lower, stages_of};
+pub use schedule::{Input, Lowered, Outputs, Stages, lower};
 pub use tape::{Op, Operands, Tape};

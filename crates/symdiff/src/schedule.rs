@@ -42,32 +42,50 @@ pub struct Lowered {
     pub slots: usize,
 }
 
-/// The stage of every node that `roots` need: the highest of the inputs below it, `None` for what is constant.
-///
-/// # Panics
-/// If a symbol is not among `inputs`: a defect of the caller.
-pub fn stages_of(graph: &Graph, inputs: &[Input], roots: &[Expr]) -> FxHashMap<Expr, Option<usize>> {
-    let given: FxHashMap<Expr, usize> = inputs.iter().map(|input| (input.symbol, input.stage)).collect();
-    let mut stages: FxHashMap<Expr, Option<usize>> = FxHashMap::default();
-    for expr in graph.reachable(roots) {
-        let stage =
-            match graph.node(expr) {
-                Node::Symbol(_) => Some(*given.get(&expr).unwrap_or_else(|| {
-                    panic!("symbol `{}` is not an input", graph.symbol_name(expr).unwrap_or_default())
-                })),
-                node => node.children().map(|child| stages[&child]).max().flatten(),
-            };
-        stages.insert(expr, stage);
+/// At which stage each node of a graph changes; grows with the graph.
+#[derive(Clone, Debug)]
+pub struct Stages {
+    given: FxHashMap<Expr, usize>,
+    /// By node index; [`UNKNOWN`] below a symbol that is no input.
+    of: Vec<Option<usize>>,
+}
+
+/// Stage of what depends on a symbol that is no input: beyond every stage.
+const UNKNOWN: usize = usize::MAX;
+
+impl Stages {
+    /// For a graph whose symbols are `inputs`; others are allowed where nobody asks for them.
+    pub fn new(inputs: &[Input]) -> Self {
+        Self { given: inputs.iter().map(|input| (input.symbol, input.stage)).collect(), of: Vec::new() }
     }
-    stages
+
+    /// Takes in the nodes that are new since the last call.
+    pub fn update(&mut self, graph: &Graph) {
+        for expr in graph.exprs().skip(self.of.len()) {
+            let stage = match graph.node(expr) {
+                Node::Symbol(_) => Some(self.given.get(&expr).copied().unwrap_or(UNKNOWN)),
+                node => node.children().filter_map(|child| self.of[child.index()]).max(),
+            };
+            self.of.push(stage);
+        }
+    }
+
+    /// The highest stage among the inputs below a node that has been taken in; `None` for what is constant.
+    pub fn of(&self, expr: Expr) -> Option<usize> {
+        self.of[expr.index()]
+    }
 }
 
 /// Lowers `kernels` with `shared` lower stages; slots below `reserved` belong to the caller.
+///
+/// # Panics
+/// If a kernel depends on a symbol that is not among `inputs`: a defect of the caller.
 pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kernels: &[Outputs]) -> Lowered {
-    let roots: Vec<Expr> = kernels.iter().flatten().map(|&(expr, _)| expr).collect();
+    let mut stages = Stages::new(inputs);
+    stages.update(graph);
     let mut lowering = Lowering {
         graph,
-        stages: stages_of(graph, inputs, &roots),
+        stages,
         slot_of: inputs.iter().map(|input| (input.symbol, input.slot)).collect(),
         constants: Vec::new(),
         next: reserved,
@@ -111,7 +129,7 @@ pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kern
 
 struct Lowering<'g> {
     graph: &'g Graph,
-    stages: FxHashMap<Expr, Option<usize>>,
+    stages: Stages,
     /// Symbols, constants and values that outlive their tape.
     slot_of: FxHashMap<Expr, u32>,
     constants: Vec<(u32, f64)>,
@@ -150,8 +168,15 @@ impl Lowering<'_> {
             if !done.insert(expr) {
                 continue;
             }
-            match (self.stages[&expr], self.graph.node(expr)) {
-                (_, Node::Symbol(_)) => {}
+            match (self.stages.of(expr), self.graph.node(expr)) {
+                (stage, Node::Symbol(_)) => {
+                    assert_ne!(
+                        stage,
+                        Some(UNKNOWN),
+                        "symbol `{}` is no input",
+                        self.graph.symbol_name(expr).unwrap_or_default()
+                    );
+                }
                 (_, Node::Constant(bits)) => {
                     if !self.slot_of.contains_key(&expr) {
                         let slot = self.pin(expr);

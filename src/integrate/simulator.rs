@@ -1,0 +1,232 @@
+//! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
+
+use symdiff::Tile;
+
+use super::assemble::{Assembly, Gap};
+use super::rank::dependent_rows;
+use crate::mechanics::System;
+use crate::program::{Coefficients, Layout, PROBES, Probe, Program, Singular, StartProgram, compile, compile_start};
+
+/// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
+const DEPENDENT: f64 = 1e-8;
+
+/// How far the probes for pivots are moved from the nominal start, in coordinate scales.
+const PROBE_SPREAD: f64 = 0.7;
+
+/// A mechanism that can be simulated.
+#[derive(Clone, Debug)]
+pub struct Simulator {
+    /// The equations.
+    pub system: System,
+    /// Tapes for the start.
+    pub start: StartProgram,
+    /// Tapes for the steps.
+    pub program: Program,
+    /// The nominal start: values of the layout's slots.
+    pub nominal: Vec<f64>,
+    /// What is known of the constraints.
+    pub mobility: Mobility,
+}
+
+/// Degrees of freedom and redundancy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mobility {
+    /// Coordinates less independent constraints.
+    pub degrees_of_freedom: usize,
+    /// Constraints that earlier ones imply.
+    pub redundant: Vec<usize>,
+    /// Constraints that depend on earlier ones at the start only: it is a singular configuration.
+    pub singular_at_start: Vec<usize>,
+}
+
+/// Why a mechanism cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// No consistent start.
+    #[error("{}", assembly_message(joint, constraint, *amount, *of_velocities, parameters))]
+    #[allow(missing_docs)]
+    Assembly { joint: String, constraint: String, amount: f64, of_velocities: bool, parameters: Vec<(String, f64)> },
+    /// The equations of motion cannot be solved at the start.
+    #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
+    #[allow(missing_docs)]
+    Singular { equations: Vec<String> },
+    /// A step did not converge.
+    #[error(
+        "sample {sample} ({}) did not converge at t = {time} s; the largest residual is that of `{equation}`",
+        parameter_list(parameters)
+    )]
+    #[allow(missing_docs)]
+    Stuck { sample: usize, time: f64, equation: String, parameters: Vec<(String, f64)> },
+    /// Step-size control asks for steps that make no headway.
+    #[error("the step size fell below {step:.3e} s at t = {time} s without meeting the tolerance")]
+    #[allow(missing_docs)]
+    StepTooSmall { step: f64, time: f64 },
+}
+
+fn parameter_list(parameters: &[(String, f64)]) -> String {
+    if parameters.is_empty() {
+        return "no uncertain parameters".to_owned();
+    }
+    parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
+fn assembly_message(
+    joint: &str,
+    constraint: &str,
+    amount: f64,
+    of_velocities: bool,
+    parameters: &[(String, f64)],
+) -> String {
+    let place = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
+    if of_velocities {
+        format!(
+            "the initial velocities do not fit joint `{joint}`{place}: `{constraint}` opens at {:.3e} per second",
+            amount.abs()
+        )
+    } else {
+        format!(
+            "the mechanism cannot be assembled{place}: joint `{joint}` gapes by {:.3e} in `{constraint}`",
+            amount.abs()
+        )
+    }
+}
+
+impl Simulator {
+    /// Assembles and compiles. `h` is the step size that the first probes use.
+    ///
+    /// # Errors
+    /// Where no consistent start exists, or the equations are singular there.
+    pub fn new(system: System, alpha: f64, h: f64) -> Result<Self, SimulationError> {
+        let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
+        let singular =
+            |singular: Singular| SimulationError::Singular { equations: equation_names(&system, &singular.rows) };
+        let start = compile_start(&system, &guess_probe(&system, &layout, &parameters)).map_err(singular)?;
+        let mut assembly = Assembly::new(&start, &system, 1, |parameter, _| parameters[parameter]);
+        assembly.assemble_nominal().map_err(|gap| assembly_error(&system, &gap, &parameters))?;
+        assembly.shift_accelerations(alpha * h);
+        let nominal = assembly.tile().values()[..layout.slots()].to_vec();
+        let mobility = mobility(&system, &start, &nominal);
+        let probes = probes(&system, &layout, &nominal, h);
+        let program = compile(&system, alpha, &mobility.redundant, &probes).map_err(singular)?;
+        Ok(Self { system, start, program, nominal, mobility })
+    }
+
+    /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
+    ///
+    /// # Errors
+    /// The first sample that cannot be assembled, with its parameters.
+    pub fn assemble(&self, width: usize, h: f64, sample: impl Fn(usize) -> Vec<f64>) -> Result<Tile, SimulationError> {
+        let samples: Vec<Vec<f64>> = (0..width).map(sample).collect();
+        let mut assembly = Assembly::new(&self.start, &self.system, width, |parameter, lane| samples[lane][parameter]);
+        assembly.assemble_from(&self.nominal).map_err(|gap| assembly_error(&self.system, &gap, &samples[gap.lane]))?;
+        assembly.shift_accelerations(self.program.coefficients.alpha * h);
+        Ok(assembly.tile().clone())
+    }
+
+    /// Coefficients of the scheme.
+    pub fn coefficients(&self) -> Coefficients {
+        self.program.coefficients
+    }
+
+    /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
+    pub fn equation_name(&self, equation: usize) -> String {
+        equation_names(&self.system, &[equation]).remove(0)
+    }
+}
+
+fn equation_names(system: &System, equations: &[usize]) -> Vec<String> {
+    let n = system.q.len();
+    let name = |&equation: &usize| match equation.checked_sub(n) {
+        None => format!("motion of {}", system.coordinates[equation].name),
+        Some(constraint) => system.constraints[constraint].name.clone(),
+    };
+    equations.iter().map(name).collect()
+}
+
+fn assembly_error(system: &System, gap: &Gap, parameters: &[f64]) -> SimulationError {
+    let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+    SimulationError::Assembly {
+        joint: system.constraints[gap.constraint].joint.clone(),
+        constraint: system.constraints[gap.constraint].name.clone(),
+        amount: gap.amount,
+        of_velocities: gap.of_velocities,
+        parameters: names.zip(parameters.iter().copied()).collect(),
+    }
+}
+
+/// Additive recurrences in [−1, 1): evenly spread numbers, the same on every machine.
+fn spread(series: usize, place: usize) -> f64 {
+    2.0 * ((place + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
+}
+
+/// A state in general position near the model's guess.
+fn guess_probe(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; layout.slots()];
+    values[layout.parameters.clone()].copy_from_slice(parameters);
+    let value_of = |symbol| system.parameters.iter().position(|parameter| parameter.symbol == symbol);
+    let guess =
+        system.graph.evaluate(&system.start.guess, |symbol| value_of(symbol).map_or(f64::NAN, |k| parameters[k]));
+    for (place, slot) in layout.q.clone().enumerate() {
+        values[slot] = guess[place] + 0.1 * system.coordinates[place].scale * spread(0, place);
+    }
+    for (place, slot) in (layout.v.start..layout.correction.end).enumerate() {
+        values[slot] = spread(1, place);
+    }
+    values
+}
+
+/// The nominal start, and states in general position around it.
+fn probes(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [Probe; PROBES] {
+    std::array::from_fn(|series| {
+        let mut values = nominal.to_vec();
+        values[layout.step] = h;
+        for (place, (w, x)) in layout.w.clone().zip(layout.iterate.clone()).enumerate() {
+            values[x] = values[w];
+            if series > 0 {
+                let scale = system.coordinates[place].scale;
+                values[layout.q.start + place] += PROBE_SPREAD * scale * spread(series, place);
+                values[layout.v.start + place] += PROBE_SPREAD * scale * spread(series + PROBES, place);
+            }
+        }
+        Probe { values }
+    })
+}
+
+/// Rank of Φ_q at the nominal start and at a configuration in general position near it.
+fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility {
+    let dependent_at = |q_shift: f64| -> Option<Vec<usize>> {
+        let layout = &start.layout;
+        let mut tile = Tile::new(1, start.slots(), start.constants());
+        tile.values_mut()[..layout.slots()].copy_from_slice(nominal);
+        tile.run(start.sample());
+        let q = layout.q.clone();
+        for (place, slot) in q.clone().enumerate() {
+            tile.lane_mut(slot)[0] += q_shift * system.coordinates[place].scale * spread(7, place);
+        }
+        if q_shift != 0.0 {
+            for _ in 0..30 {
+                tile.run(start.position());
+                for (slot, correction) in q.clone().zip(layout.correction.clone()) {
+                    tile.lane_mut(slot)[0] += tile.lane(correction)[0];
+                }
+            }
+            tile.run(start.position());
+            if start.constraint.iter().any(|&slot| !(tile.lane(slot)[0].abs() < 1e-9)) {
+                return None;
+            }
+        }
+        tile.run(start.slopes());
+        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); system.lambda.len()];
+        for &(row, column, slot) in &start.slope_entries {
+            rows[row].push((column, tile.lane(slot)[0] * system.coordinates[column].scale));
+        }
+        Some(dependent_rows(&rows, DEPENDENT))
+    };
+    let at_start = dependent_at(0.0).unwrap_or_default();
+    let redundant =
+        dependent_at(0.02).filter(|generic| generic.len() <= at_start.len()).unwrap_or_else(|| at_start.clone());
+    let degrees_of_freedom = (system.q.len() + redundant.len()).saturating_sub(system.lambda.len());
+    let singular_at_start = if at_start.len() > redundant.len() { at_start } else { Vec::new() };
+    Mobility { degrees_of_freedom, redundant, singular_at_start }
+}

@@ -1,0 +1,123 @@
+//! The step schedule that all samples share, and its control by a tolerance.
+
+/// When to step and when to look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    /// s between rows of output.
+    pub output_step: f64,
+    /// Rows of output, the one at t = 0 included.
+    pub rows: usize,
+    steps: Steps,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Steps {
+    /// This many steps of equal length between rows.
+    Fixed { step: f64, per_row: usize },
+    /// For each row but the first, the times at which the steps before it end; the last is the row's own.
+    Listed(Vec<Vec<f64>>),
+}
+
+/// Rows that fit into a duration (with the slack of rounded decimals).
+fn rows(duration: f64, output_step: f64) -> usize {
+    (duration / output_step * (1.0 + 1e-12) + 1e-9).floor() as usize + 1
+}
+
+impl Schedule {
+    /// Steps of one length; `output_step` is a whole multiple of `step`.
+    pub fn fixed(duration: f64, step: f64, output_step: f64) -> Self {
+        let per_row = ((output_step / step).round() as usize).max(1);
+        Self { output_step, rows: rows(duration, output_step), steps: Steps::Fixed { step, per_row } }
+    }
+
+    /// Steps that end at the listed times: one list for each row but the first.
+    pub fn listed(duration: f64, output_step: f64, ends: Vec<Vec<f64>>) -> Self {
+        Self { output_step, rows: rows(duration, output_step), steps: Steps::Listed(ends) }
+    }
+
+    /// Number of rows for a schedule still to be made.
+    pub fn rows_of(duration: f64, output_step: f64) -> usize {
+        rows(duration, output_step)
+    }
+
+    /// Time of a row, s.
+    pub fn time(&self, row: usize) -> f64 {
+        row as f64 * self.output_step
+    }
+
+    /// The first step's length, s.
+    pub fn first_step(&self) -> f64 {
+        match &self.steps {
+            Steps::Fixed { step, .. } => *step,
+            Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
+        }
+    }
+
+    /// The steps that lead to a row: (length, time at the end).
+    pub fn steps_to(&self, row: usize) -> impl Iterator<Item = (f64, f64)> {
+        let count = match &self.steps {
+            _ if row == 0 => 0,
+            Steps::Fixed { per_row, .. } => *per_row,
+            Steps::Listed(ends) => ends[row - 1].len(),
+        };
+        (0..count).map(move |index| match &self.steps {
+            Steps::Fixed { step, per_row } => (*step, ((row - 1) * per_row + index + 1) as f64 * step),
+            Steps::Listed(ends) => {
+                let before = if index == 0 { self.time(row - 1) } else { ends[row - 1][index - 1] };
+                (ends[row - 1][index] - before, ends[row - 1][index])
+            }
+        })
+    }
+
+    /// Number of steps up to a row.
+    pub fn steps_before(&self, row: usize) -> usize {
+        match &self.steps {
+            Steps::Fixed { per_row, .. } => row * per_row,
+            Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
+        }
+    }
+}
+
+/// Step-size control for HHT (Negrut et al. 2007, §5): the local position error is of third order, and the controller
+/// aims at Θ = (‖δ‖/tol)² ≤ 1 with h ← 0.9 h Θ^(−1/6).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controller {
+    /// Wanted local position error.
+    pub tolerance: f64,
+}
+
+impl Controller {
+    /// A step below this share of the duration is given up.
+    pub const SMALLEST: f64 = 1e-12;
+
+    /// Factor for the next step after an error of `error` (the worst sample's).
+    pub fn factor(self, error: f64) -> f64 {
+        if !error.is_finite() {
+            return 0.25;
+        }
+        let theta = (error / self.tolerance).powi(2);
+        (0.9 * theta.powf(-1.0 / 6.0)).clamp(0.2, 2.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fixed_steps_meet_the_rows() {
+        let schedule = Schedule::fixed(2.0, 1e-3, 0.01);
+        assert_eq!(schedule.rows, 201);
+        let steps: Vec<(f64, f64)> = schedule.steps_to(200).collect();
+        assert_eq!(steps.len(), 10);
+        assert!((steps[9].1 - 2.0).abs() < 1e-12);
+        assert_eq!(schedule.steps_before(200), 2000);
+    }
+
+    #[test]
+    fn listed_steps_have_their_lengths() {
+        let schedule = Schedule::listed(0.2, 0.1, vec![vec![0.05, 0.1], vec![0.2]]);
+        let steps: Vec<(f64, f64)> = schedule.steps_to(1).chain(schedule.steps_to(2)).collect();
+        assert_eq!(steps, [(0.05, 0.05), (0.05, 0.1), (0.1, 0.2)]);
+    }
+}

@@ -1,0 +1,253 @@
+//! System → [`Program`]: the step's tapes.
+
+use symdiff::{Expr, Graph, Input, Lowered, Stages, Tape, lower};
+
+use super::layout::Layout;
+use super::newton_matrix::{Coefficients, ITERATION, NewtonSystem, STEP_SIZE, newton_system};
+use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
+use crate::mechanics::System;
+
+/// A state that guides the choice of pivots: values of the layout's first slots (parameters to λ), at a step size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// Values of the slots below `layout.slots()`.
+    pub values: Vec<f64>,
+}
+
+/// A pivot that can change, its slot, and how small it may become before the factorisation is not trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedPivot {
+    /// Slot of 1/pivot.
+    pub slot: usize,
+    /// Largest |1/pivot| that is trusted.
+    pub largest_inverse: f64,
+}
+
+/// A pivot may fall this far below its size at the probes.
+const PIVOT_LOSS: f64 = 1e-6;
+
+/// Regularisation of a redundant constraint's multiplier, relative to the size of its row: large enough that round-off
+/// over it stays small, small enough that Newton's iteration (whose residual is exact) hardly notices.
+const REDUNDANT_WEIGHT: f64 = 1e-4;
+
+/// Compiled form of a system for HHT-I3 at one α. A tile of samples has [`Program::slots`] slots.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Where states stand.
+    pub layout: Layout,
+    /// HHT's coefficients.
+    pub coefficients: Coefficients,
+    /// Typical size of each coordinate, n.
+    pub scale: Vec<f64>,
+    /// Slots of the outputs after [`Program::observe`].
+    pub outputs: Vec<usize>,
+    /// Slots of the Newton matrix's entries (row, column, slot) after [`Program::matrix`].
+    pub matrix_entries: Vec<(usize, usize, usize)>,
+    /// Slots of the residual after [`Program::matrix`], n + m.
+    pub residual: Vec<usize>,
+    /// Pivots that can become small.
+    pub watched: Vec<WatchedPivot>,
+    /// Symmetric scaling that equilibrates the Newton matrix, n + m.
+    pub equilibration: Vec<f64>,
+    /// Nonzeros of the Newton matrix and of its factors.
+    pub nonzeros: (usize, usize),
+    lowered: Lowered,
+}
+
+const FACTOR: usize = 0;
+const CORRECT: usize = 1;
+const ADVANCE: usize = 2;
+const OBSERVE: usize = 3;
+const MATRIX: usize = 4;
+
+impl Program {
+    /// Number of slots of a tile.
+    pub fn slots(&self) -> usize {
+        self.lowered.slots
+    }
+
+    /// Numbers that a new tile holds.
+    pub fn constants(&self) -> &[(u32, f64)] {
+        &self.lowered.constants
+    }
+
+    /// Once a sample: what depends on parameters only.
+    pub fn sample(&self) -> &Tape {
+        &self.lowered.stages[0]
+    }
+
+    /// When h has changed.
+    pub fn step_size(&self) -> &Tape {
+        &self.lowered.stages[1]
+    }
+
+    /// Once a step, after `time` was set to t₊: what is known when it begins.
+    pub fn step(&self) -> &Tape {
+        &self.lowered.stages[2]
+    }
+
+    /// Newton matrix at the iterate, factorised.
+    pub fn factor(&self) -> &Tape {
+        &self.lowered.kernels[FACTOR]
+    }
+
+    /// Residual at the iterate and, with the factors at hand, the correction.
+    pub fn correct(&self) -> &Tape {
+        &self.lowered.kernels[CORRECT]
+    }
+
+    /// The state becomes the one at the step's end.
+    pub fn advance(&self) -> &Tape {
+        &self.lowered.kernels[ADVANCE]
+    }
+
+    /// Outputs of the state.
+    pub fn observe(&self) -> &Tape {
+        &self.lowered.kernels[OBSERVE]
+    }
+
+    /// Newton matrix and residual at the iterate, for the dense solve.
+    pub fn matrix(&self) -> &Tape {
+        &self.lowered.kernels[MATRIX]
+    }
+
+    /// Slots that the factors occupy.
+    pub fn factor_slots(&self) -> &[u32] {
+        &self.lowered.outputs[FACTOR]
+    }
+}
+
+/// Compiles a system. `redundant` are constraints that others imply; `probes` are states near which pivots shall be good.
+///
+/// # Errors
+/// [`Singular`] where the Newton matrix has no acceptable pivots at the probes.
+pub fn compile(
+    system: &System,
+    alpha: f64,
+    redundant: &[usize],
+    probes: &[Probe; PROBES],
+) -> Result<Program, Singular> {
+    let (n, m) = (system.q.len(), system.lambda.len());
+    let layout = Layout::new(system.parameters.len(), n, m);
+    let mut graph = system.graph.clone();
+    let (newton, mut inputs) = newton_system(system, &mut graph, &layout, alpha);
+    let mut numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
+    let equilibration = equilibrate(&newton, &numbers, n);
+
+    // A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.
+    let mut regular = newton.matrix.clone();
+    for &constraint in redundant {
+        let row = n + constraint;
+        let weight = REDUNDANT_WEIGHT / (equilibration[row] * equilibration[row]);
+        let place = newton.matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
+        let offset = regular.nonzeros() - newton.matrix.nonzeros();
+        let value = graph.constant(-weight);
+        debug_assert!(
+            regular.rows[row].iter().all(|&(column, _)| column < row),
+            "a constraint's row ends before its own multiplier"
+        );
+        regular.rows[row].push((row, value));
+        numbers.insert(place + offset, [-weight; PROBES]);
+    }
+
+    let stages = Stages::new(&inputs);
+    let factors = factorise(&mut graph, &regular, &numbers, &equilibration, stages, ITERATION, Pivoting::Any)?;
+    let mut stages = Stages::new(&inputs);
+    stages.update(&graph);
+
+    // What the iteration changes is frozen between factorisations: the correction sees it through symbols of its own.
+    let mut frozen: Vec<(Expr, Option<u32>)> = Vec::new();
+    let mut next = layout.slots() as u32;
+    let mut symbol_of = rustc_hash::FxHashMap::default();
+    let mut watched = Vec::new();
+    let substituted = factors.map(|value| {
+        if stages.of(value) != Some(ITERATION) {
+            return value;
+        }
+        *symbol_of.entry(value).or_insert_with(|| {
+            let symbol = graph.symbol(&format!("factor:{}", frozen.len()));
+            inputs.push(Input { symbol, stage: ITERATION, slot: next });
+            frozen.push((value, Some(next)));
+            next += 1;
+            symbol
+        })
+    });
+    for pivot in &factors.pivots {
+        if let Some(place) = frozen.iter().position(|&(value, _)| value == pivot.inverse) {
+            let smallest = pivot.magnitude.into_iter().fold(f64::INFINITY, f64::min)
+                / (equilibration[pivot.row] * equilibration[pivot.column]);
+            watched.push(WatchedPivot { slot: layout.slots() + place, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
+        }
+    }
+    let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
+    let correction = substituted.solve(&mut graph, &opposite);
+
+    let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
+        values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
+    };
+    let correct = at(&correction, layout.correction.start);
+    let mut advance = at(&newton.position, layout.q.start);
+    advance.extend(at(&newton.velocity, layout.v.start));
+    advance.extend(at(&newton.algorithmic, layout.a.start));
+    advance.extend(at(&newton.acceleration, layout.w.start));
+    let observe = system.outputs.iter().map(|output| (output.expr, None)).collect();
+    let mut matrix: Vec<(Expr, Option<u32>)> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
+    matrix.extend(newton.residual.iter().map(|&value| (value, None)));
+
+    let lowered = lower(&graph, &inputs, ITERATION, next, &[frozen, correct, advance, observe, matrix]);
+    debug_assert_eq!(lowered.stages.len(), STEP_SIZE + 2);
+    let nonzeros = newton.matrix.nonzeros();
+    let places = &lowered.outputs[MATRIX];
+    let matrix_entries =
+        newton.matrix.entries().zip(places).map(|((row, column, _), &slot)| (row, column, slot as usize)).collect();
+    Ok(Program {
+        coefficients: Coefficients::new(alpha),
+        scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
+        outputs: lowered.outputs[OBSERVE].iter().map(|&slot| slot as usize).collect(),
+        matrix_entries,
+        residual: places[nonzeros..].iter().map(|&slot| slot as usize).collect(),
+        watched,
+        equilibration,
+        nonzeros: (nonzeros, factors.nonzeros()),
+        layout,
+        lowered,
+    })
+}
+
+/// Values of the matrix's entries at each probe.
+fn probe_numbers(
+    graph: &Graph,
+    matrix: &symdiff::SparseMatrix,
+    inputs: &[Input],
+    probes: &[Probe; PROBES],
+) -> Vec<Numbers> {
+    let slot_of: rustc_hash::FxHashMap<Expr, usize> =
+        inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
+    let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+    let values: Vec<Vec<f64>> =
+        probes.iter().map(|probe| graph.evaluate(&entries, |symbol| probe.values[slot_of[&symbol]])).collect();
+    (0..entries.len()).map(|entry| std::array::from_fn(|probe| values[probe][entry])).collect()
+}
+
+/// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints.
+fn equilibrate(newton: &NewtonSystem, numbers: &[Numbers], n: usize) -> Vec<f64> {
+    let mut scale = vec![1.0; newton.matrix.rows.len()];
+    let nominal = |place: usize| numbers[place][0].abs();
+    for (place, (row, column, _)) in newton.matrix.entries().enumerate() {
+        if row == column && row < n && nominal(place) > 0.0 {
+            scale[row] = 1.0 / nominal(place).sqrt();
+        }
+    }
+    let mut largest = vec![0.0_f64; scale.len()];
+    for (place, (row, column, _)) in newton.matrix.entries().enumerate() {
+        if row >= n && column < n {
+            largest[row] = largest[row].max(nominal(place) * scale[column]);
+        }
+    }
+    for (row, &size) in largest.iter().enumerate().skip(n) {
+        if size > 0.0 {
+            scale[row] = 1.0 / size;
+        }
+    }
+    scale
+}

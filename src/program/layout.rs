@@ -1,0 +1,62 @@
+//! Where a program's memory holds what.
+
+use std::ops::Range;
+
+/// The slots that integration reads and writes; a program's own values stand above them. Two programs of one system
+/// share this part, so that a state can be handed from one to the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Uncertain parameters, k.
+    pub parameters: Range<usize>,
+    /// Step size h, s.
+    pub step: usize,
+    /// Time that the state belongs to; t₊ while a step is solved, s.
+    pub time: usize,
+    /// Positions, n.
+    pub q: Range<usize>,
+    /// Velocities, n.
+    pub v: Range<usize>,
+    /// Algorithmic accelerations a, n.
+    pub a: Range<usize>,
+    /// True accelerations w = v̇, n.
+    pub w: Range<usize>,
+    /// Lagrange multipliers, m; Newton's iterate while a step is solved.
+    pub lambda: Range<usize>,
+    /// Newton's iterate of w₊, n.
+    pub iterate: Range<usize>,
+    /// Newton's correction of (w₊, λ₊), n + m.
+    pub correction: Range<usize>,
+}
+
+impl Layout {
+    /// For k parameters, n coordinates, m constraints.
+    pub fn new(k: usize, n: usize, m: usize) -> Self {
+        let mut next = 0;
+        let mut block = |length: usize| {
+            next += length;
+            next - length..next
+        };
+        Self {
+            parameters: block(k),
+            step: block(1).start,
+            time: block(1).start,
+            q: block(n),
+            v: block(n),
+            a: block(n),
+            w: block(n),
+            lambda: block(m),
+            iterate: block(n),
+            correction: block(n + m),
+        }
+    }
+
+    /// Number of slots of this part.
+    pub fn slots(&self) -> usize {
+        self.correction.end
+    }
+
+    /// The slots that make up a state: q, v, a, w, λ.
+    pub fn state(&self) -> Range<usize> {
+        self.q.start..self.lambda.end
+    }
+}

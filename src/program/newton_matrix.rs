@@ -1,0 +1,212 @@
+//! The HHT-I3 step as expressions: residual, Newton matrix, and the state at its end.
+//!
+//! Negrut, Rampalli, Ottarsson & Sajdak, J. Comput. Nonlinear Dynam. 2 (2007) 73, in the form of Arnold & Brüls,
+//! Multibody Syst. Dyn. 18 (2007) 185, which keeps the algorithmic acceleration a apart from the true one, w = v̇:
+//!
+//! ```text
+//! M(q₊) w₊ + Φ_q(q₊,t₊)ᵀ λ₊ − Q(t₊,q₊,v₊,λ₊) = 0            Φ(q₊,t₊) / (βh²(1+α)) = 0
+//! a₊ = (1+α) w₊ − α w
+//! q₊ = q + h v + h²/2 [(1−2β) a + 2β a₊]                      v₊ = v + h [(1−γ) a + γ a₊]
+//! β = (1−α)²/4,   γ = 1/2 − α
+//! ```
+//!
+//! With x = w₊: q₊ = q̂ + b x and v₊ = v̂ + c x, b = βh²(1+α), c = γh(1+α), where q̂, v̂ are known when the step begins.
+//! The constraint is divided by b so that the matrix does not degenerate as h → 0.
+
+use rustc_hash::FxHashMap;
+use symdiff::{Expr, Graph, Input, SparseMatrix};
+
+use super::layout::Layout;
+use crate::mechanics::System;
+
+/// Stage of what changes with the sample only.
+pub const SAMPLE: usize = 0;
+/// Stage of what changes with the step size.
+pub const STEP_SIZE: usize = 1;
+/// Stage of what changes from step to step.
+pub const STEP: usize = 2;
+/// Stage of what changes in Newton's iteration.
+pub const ITERATION: usize = 3;
+
+/// HHT's coefficients for a given α (Negrut et al. 2007, eq. 9).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Coefficients {
+    pub alpha: f64,
+    pub beta: f64,
+    pub gamma: f64,
+}
+
+impl Coefficients {
+    /// α ∈ [−1/3, 0).
+    pub fn new(alpha: f64) -> Self {
+        Self { alpha, beta: (1.0 - alpha) * (1.0 - alpha) / 4.0, gamma: 0.5 - alpha }
+    }
+
+    /// b = βh²(1+α): what a change of w₊ does to q₊.
+    pub fn position_gain(self, h: f64) -> f64 {
+        self.beta * h * h * (1.0 + self.alpha)
+    }
+
+    /// Local position error per a₊ − a: (β + α/2 − 1/6) h².
+    pub fn error_gain(self, h: f64) -> f64 {
+        (self.beta + self.alpha / 2.0 - 1.0 / 6.0) * h * h
+    }
+}
+
+/// A step's equations over the symbols of [`step_inputs`].
+#[derive(Clone, Debug)]
+pub struct NewtonSystem {
+    /// n + m residuals: equations of motion, then constraints over b.
+    pub residual: Vec<Expr>,
+    /// ∂residual/∂(w₊, λ₊), (n + m)².
+    pub matrix: SparseMatrix,
+    /// q₊, n.
+    pub position: Vec<Expr>,
+    /// v₊, n.
+    pub velocity: Vec<Expr>,
+    /// a₊, n.
+    pub algorithmic: Vec<Expr>,
+    /// w₊, n: the iterate itself.
+    pub acceleration: Vec<Expr>,
+}
+
+/// The symbols of a step that the system does not have: the state at its beginning, h and the iterate.
+struct StepSymbols {
+    q: Vec<Expr>,
+    v: Vec<Expr>,
+    a: Vec<Expr>,
+    w: Vec<Expr>,
+    x: Vec<Expr>,
+    h: Expr,
+    t: Expr,
+}
+
+impl StepSymbols {
+    fn new(graph: &mut Graph, n: usize) -> Self {
+        let mut block = |name: &str| (0..n).map(|i| graph.symbol(&format!("step:{name}{i}"))).collect::<Vec<_>>();
+        let (q, v, a, w, x) = (block("q"), block("v"), block("a"), block("w"), block("x"));
+        Self { q, v, a, w, x, h: graph.symbol("step:h"), t: graph.symbol("step:t") }
+    }
+
+    fn inputs(&self, layout: &Layout, system: &System) -> Vec<Input> {
+        let mut inputs = Vec::new();
+        let mut add = |symbols: &[Expr], start: usize, stage: usize| {
+            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input {
+                symbol,
+                stage,
+                slot: slot as u32,
+            }));
+        };
+        let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+        add(&parameters, layout.parameters.start, SAMPLE);
+        add(&[self.h], layout.step, STEP_SIZE);
+        add(&[self.t], layout.time, STEP);
+        add(&self.q, layout.q.start, STEP);
+        add(&self.v, layout.v.start, STEP);
+        add(&self.a, layout.a.start, STEP);
+        add(&self.w, layout.w.start, STEP);
+        add(&self.x, layout.iterate.start, ITERATION);
+        // The system's own symbols stand for the state wherever a kernel looks at it between steps.
+        add(&system.lambda, layout.lambda.start, ITERATION);
+        add(&[system.time], layout.time, ITERATION);
+        add(&system.q, layout.q.start, ITERATION);
+        add(&system.v, layout.v.start, ITERATION);
+        add(&system.w, layout.w.start, ITERATION);
+        inputs
+    }
+}
+
+/// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
+pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
+    let n = system.q.len();
+    let mut rows: Vec<Expr> = system.force.iter().map(|&force| graph.neg(force)).collect();
+    debug_assert_eq!(rows.len(), n);
+    let slopes = graph.jacobian(&system.constraint, &system.q);
+    for (constraint, coordinate, slope) in slopes.entries() {
+        let pull = graph.mul(slope, system.lambda[constraint]);
+        rows[coordinate] = graph.add(rows[coordinate], pull);
+    }
+    for &(row, column, mass) in &system.mass {
+        let inertia = graph.mul(mass, system.w[column]);
+        rows[row] = graph.add(rows[row], inertia);
+    }
+    (rows, slopes)
+}
+
+/// The equations of a step and their inputs.
+pub fn newton_system(system: &System, graph: &mut Graph, layout: &Layout, alpha: f64) -> (NewtonSystem, Vec<Input>) {
+    let (n, m) = (system.q.len(), system.lambda.len());
+    let Coefficients { beta, gamma, .. } = Coefficients::new(alpha);
+    let symbols = StepSymbols::new(graph, n);
+    let h = symbols.h;
+    let h2 = graph.mul(h, h);
+    let b = graph.scale(beta * (1.0 + alpha), h2);
+    let c = graph.scale(gamma * (1.0 + alpha), h);
+
+    // q₊ and v₊, step by step in the paper's order.
+    let (mut position, mut velocity, mut algorithmic) = (Vec::new(), Vec::new(), Vec::new());
+    let (q_a, q_w) = (graph.scale(0.5 - beta, h2), graph.scale(beta * alpha, h2));
+    let (v_a, v_w) = (graph.scale(1.0 - gamma, h), graph.scale(gamma * alpha, h));
+    for i in 0..n {
+        let (q, v, a, w, x) = (symbols.q[i], symbols.v[i], symbols.a[i], symbols.w[i], symbols.x[i]);
+        let drift = graph.mul(h, v);
+        let predicted = graph.add(q, drift);
+        let (from_a, from_w, from_x) = (graph.mul(q_a, a), graph.mul(q_w, w), graph.mul(b, x));
+        let known = graph.add(predicted, from_a);
+        let known = graph.sub(known, from_w);
+        position.push(graph.add(known, from_x));
+        let (from_a, from_w, from_x) = (graph.mul(v_a, a), graph.mul(v_w, w), graph.mul(c, x));
+        let known = graph.add(v, from_a);
+        let known = graph.sub(known, from_w);
+        velocity.push(graph.add(known, from_x));
+        let (new, old) = (graph.scale(1.0 + alpha, x), graph.scale(alpha, w));
+        algorithmic.push(graph.sub(new, old));
+    }
+
+    let (motion, slopes) = equations_of_motion(system, graph);
+    let by_position = graph.jacobian(&motion, &system.q);
+    let by_velocity = graph.jacobian(&motion, &system.v);
+    let by_acceleration = graph.jacobian(&motion, &system.w);
+    let by_multiplier = graph.jacobian(&motion, &system.lambda);
+    let mut matrix = SparseMatrix::zero(n + m, n + m);
+    for (row, column, value) in by_acceleration.entries() {
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_position.entries() {
+        let value = graph.mul(b, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_velocity.entries() {
+        let value = graph.mul(c, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_multiplier.entries() {
+        matrix.add(graph, row, n + column, value);
+    }
+    for (row, column, value) in slopes.entries() {
+        matrix.add(graph, n + row, column, value);
+    }
+    let mut residual = motion;
+    for &constraint in &system.constraint {
+        residual.push(graph.div(constraint, b));
+    }
+
+    // Everything at t₊: the system's symbols become the step's expressions.
+    let mut at_end: FxHashMap<Expr, Expr> = FxHashMap::default();
+    at_end.insert(system.time, symbols.t);
+    for i in 0..n {
+        at_end.insert(system.q[i], position[i]);
+        at_end.insert(system.v[i], velocity[i]);
+        at_end.insert(system.w[i], symbols.x[i]);
+    }
+    let residual = graph.substitute(&residual, &at_end);
+    let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+    let mut values = graph.substitute(&values, &at_end).into_iter();
+    for entry in matrix.rows.iter_mut().flatten() {
+        entry.1 = values.next().expect("one value an entry");
+    }
+    let inputs = symbols.inputs(layout, system);
+    let acceleration = symbols.x;
+    (NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration }, inputs)
+}

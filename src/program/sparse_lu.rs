@@ -1,0 +1,347 @@
+//! Sparse LU as expressions: the elimination order is chosen once, on numbers; the elimination itself becomes nodes of
+//! the graph, and so instructions of the tapes, each evaluated at the stage at which it can change.
+//!
+//! Order and pivots: Markowitz, *The elimination form of the inverse*, Management Science 3 (1957), with threshold
+//! pivoting (Duff, Erisman & Reid, *Direct Methods for Sparse Matrices*, 2nd ed., ch. 7).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use symdiff::{Expr, Graph, SparseMatrix, Stages};
+
+/// Number of states whose numbers guide the choice of pivots.
+pub const PROBES: usize = 4;
+
+/// An entry's value at each probe.
+pub type Numbers = [f64; PROBES];
+
+/// A pivot is at least this large against the largest entry of its column, at every probe.
+const THRESHOLD: f64 = 0.1;
+
+/// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
+const SINGULAR: f64 = 1e-11;
+
+/// How many of the sparsest columns and rows are searched for a pivot.
+const SEARCHED: usize = 4;
+
+/// Which entries may be pivots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pivoting {
+    /// Any entry, by cost and size.
+    Any,
+    /// The diagonal only: for quasi-definite matrices, where every order is stable whatever the numbers.
+    Diagonal,
+}
+
+/// One step of the elimination.
+#[derive(Clone, Debug)]
+pub struct Pivot {
+    /// Equation and unknown that are eliminated.
+    pub row: usize,
+    #[allow(missing_docs)]
+    pub column: usize,
+    /// 1/pivot.
+    pub inverse: Expr,
+    /// (row, multiplier): that many times the pivot row is taken off the row.
+    pub lower: Vec<(usize, Expr)>,
+    /// (column, entry) of the pivot row right of the pivot.
+    pub upper: Vec<(usize, Expr)>,
+    /// The pivot's magnitude at each probe.
+    pub magnitude: Numbers,
+}
+
+/// A factorised matrix.
+#[derive(Clone, Debug)]
+pub struct Factors {
+    /// In elimination order.
+    pub pivots: Vec<Pivot>,
+}
+
+/// The matrix has no acceptable pivot left for these rows.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the matrix is singular: {} of its rows have no pivot", rows.len())]
+pub struct Singular {
+    /// Rows that are left.
+    pub rows: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    value: Expr,
+    numbers: Numbers,
+}
+
+/// What is left to be eliminated.
+struct Active<'g> {
+    graph: &'g mut Graph,
+    stages: Stages,
+    /// The stage whose operations count.
+    dear: usize,
+    rows: Vec<BTreeMap<usize, Entry>>,
+    columns: Vec<BTreeSet<usize>>,
+    /// (count, index) of the rows and columns left.
+    sparsest_rows: BTreeSet<(usize, usize)>,
+    sparsest_columns: BTreeSet<(usize, usize)>,
+}
+
+/// Factorises a square matrix. `numbers` runs over its entries row by row; `scale` (one a row, symmetric) makes entries
+/// comparable for the threshold and changes nothing else; operations at stage `dear` are what is saved.
+///
+/// # Errors
+/// [`Singular`] where no entry of the rows left is large enough at every probe.
+pub fn factorise(
+    graph: &mut Graph,
+    matrix: &SparseMatrix,
+    numbers: &[Numbers],
+    scale: &[f64],
+    stages: Stages,
+    dear: usize,
+    pivoting: Pivoting,
+) -> Result<Factors, Singular> {
+    let size = matrix.rows.len();
+    let mut rows = vec![BTreeMap::new(); size];
+    let mut columns = vec![BTreeSet::new(); size];
+    for ((row, column, value), numbers) in matrix.entries().zip(numbers) {
+        let numbers = numbers.map(|number| number * scale[row] * scale[column]);
+        rows[row].insert(column, Entry { value, numbers });
+        columns[column].insert(row);
+    }
+    let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| (entries.len(), row)).collect();
+    let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| (rows.len(), column)).collect();
+    let mut active = Active { graph, stages, dear, rows, columns, sparsest_rows, sparsest_columns };
+    let mut pivots = Vec::with_capacity(size);
+    while pivots.len() < size {
+        match active.choose(pivoting) {
+            Some((row, column)) => pivots.push(active.eliminate(row, column)),
+            None => return Err(Singular { rows: active.sparsest_rows.iter().map(|&(_, row)| row).collect() }),
+        }
+    }
+    Ok(Factors { pivots })
+}
+
+impl Active<'_> {
+    /// The cheapest pivot that is large enough; the threshold is lowered where none is.
+    fn choose(&mut self, pivoting: Pivoting) -> Option<(usize, usize)> {
+        self.stages.update(self.graph);
+        let mut threshold = THRESHOLD;
+        while threshold > SINGULAR {
+            let searched = if threshold == THRESHOLD { SEARCHED } else { usize::MAX };
+            let best = self
+                .candidates(pivoting, searched)
+                .filter(|&(row, column)| self.size_against_column(row, column) >= threshold)
+                .min_by_key(|&(row, column)| (self.cost(row, column), row != column, row, column));
+            if best.is_some() {
+                return best;
+            }
+            // First all candidates at the same threshold, then lower ones.
+            threshold = if searched == SEARCHED { THRESHOLD * 0.999 } else { threshold * 0.1 };
+        }
+        None
+    }
+
+    /// Entries in the sparsest columns and rows.
+    fn candidates(&self, pivoting: Pivoting, searched: usize) -> impl Iterator<Item = (usize, usize)> {
+        let in_columns = self
+            .sparsest_columns
+            .iter()
+            .take(searched)
+            .flat_map(|&(_, column)| self.columns[column].iter().map(move |&row| (row, column)));
+        let in_rows = self
+            .sparsest_rows
+            .iter()
+            .take(if searched == usize::MAX { 0 } else { searched })
+            .flat_map(|&(_, row)| self.rows[row].keys().map(move |&column| (row, column)));
+        in_columns.chain(in_rows).filter(move |(row, column)| pivoting == Pivoting::Any || row == column)
+    }
+
+    /// |entry| over the largest of its column, at the worst probe.
+    fn size_against_column(&self, row: usize, column: usize) -> f64 {
+        let numbers = self.rows[row][&column].numbers;
+        (0..PROBES)
+            .map(|probe| {
+                let largest = self.columns[column]
+                    .iter()
+                    .map(|&other| self.rows[other][&column].numbers[probe].abs())
+                    .fold(0.0, f64::max);
+                if largest > SINGULAR && numbers[probe].is_finite() { numbers[probe].abs() / largest } else { 0.0 }
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Operations at the dear stage that eliminating with this pivot takes: updates, multipliers, the inverse.
+    fn cost(&self, row: usize, column: usize) -> usize {
+        let dear = |value: Expr| self.stages.of(value) == Some(self.dear);
+        let pivot = dear(self.rows[row][&column].value);
+        let others = self.columns[column].iter().filter(|&&other| other != row);
+        let right: Vec<bool> =
+            self.rows[row].iter().filter(|&(&other, _)| other != column).map(|(_, entry)| dear(entry.value)).collect();
+        let dear_right = right.iter().filter(|&&is_dear| is_dear).count();
+        let mut cost = 4 * usize::from(pivot);
+        for &other in others {
+            let multiplier = pivot || dear(self.rows[other][&column].value);
+            cost += usize::from(multiplier) + if multiplier { right.len() } else { dear_right };
+        }
+        cost
+    }
+
+    fn eliminate(&mut self, row: usize, column: usize) -> Pivot {
+        self.sparsest_rows.remove(&(self.rows[row].len(), row));
+        self.sparsest_columns.remove(&(self.columns[column].len(), column));
+        let mut upper = std::mem::take(&mut self.rows[row]);
+        let pivot = upper.remove(&column).expect("the pivot was chosen among the row's entries");
+        let one = self.graph.constant(1.0);
+        let inverse = self.graph.div(one, pivot.value);
+        for &other in upper.keys() {
+            self.recount_column(other, |rows| {
+                rows.remove(&row);
+            });
+        }
+        let below: Vec<usize> =
+            std::mem::take(&mut self.columns[column]).into_iter().filter(|&other| other != row).collect();
+        let mut lower = Vec::with_capacity(below.len());
+        for other in below {
+            self.sparsest_rows.remove(&(self.rows[other].len(), other));
+            let entry = self.rows[other].remove(&column).expect("columns list the rows that have an entry there");
+            let multiplier = self.graph.mul(entry.value, inverse);
+            let ratio: Numbers = std::array::from_fn(|probe| entry.numbers[probe] / pivot.numbers[probe]);
+            for (&right, above) in &upper {
+                self.update(other, right, multiplier, &ratio, above);
+            }
+            self.sparsest_rows.insert((self.rows[other].len(), other));
+            lower.push((other, multiplier));
+        }
+        Pivot {
+            row,
+            column,
+            inverse,
+            lower,
+            upper: upper.into_iter().map(|(right, entry)| (right, entry.value)).collect(),
+            magnitude: pivot.numbers.map(f64::abs),
+        }
+    }
+
+    /// entry(row, column) −= multiplier · above
+    fn update(&mut self, row: usize, column: usize, multiplier: Expr, ratio: &Numbers, above: &Entry) {
+        let product = self.graph.mul(multiplier, above.value);
+        let old = self.rows[row].get(&column).copied();
+        let value = match old {
+            Some(entry) => self.graph.sub(entry.value, product),
+            None => self.graph.neg(product),
+        };
+        let before = old.map_or([0.0; PROBES], |entry| entry.numbers);
+        let numbers = std::array::from_fn(|probe| before[probe] - ratio[probe] * above.numbers[probe]);
+        if self.graph.is_zero(value) {
+            self.rows[row].remove(&column);
+            self.recount_column(column, |rows| {
+                rows.remove(&row);
+            });
+        } else {
+            self.rows[row].insert(column, Entry { value, numbers });
+            if old.is_none() {
+                self.recount_column(column, |rows| {
+                    rows.insert(row);
+                });
+            }
+        }
+    }
+
+    fn recount_column(&mut self, column: usize, change: impl FnOnce(&mut BTreeSet<usize>)) {
+        self.sparsest_columns.remove(&(self.columns[column].len(), column));
+        change(&mut self.columns[column]);
+        self.sparsest_columns.insert((self.columns[column].len(), column));
+    }
+}
+
+impl Factors {
+    /// The solution of `matrix · x = right` as expressions.
+    pub fn solve(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
+        let mut y = right.to_vec();
+        for pivot in &self.pivots {
+            for &(row, multiplier) in &pivot.lower {
+                let product = graph.mul(multiplier, y[pivot.row]);
+                y[row] = graph.sub(y[row], product);
+            }
+        }
+        let mut x = vec![graph.constant(0.0); right.len()];
+        for pivot in self.pivots.iter().rev() {
+            let mut rest = y[pivot.row];
+            for &(column, entry) in &pivot.upper {
+                let product = graph.mul(entry, x[column]);
+                rest = graph.sub(rest, product);
+            }
+            x[pivot.column] = graph.mul(rest, pivot.inverse);
+        }
+        x
+    }
+
+    /// Entries of L and U, inverses of pivots included.
+    pub fn nonzeros(&self) -> usize {
+        self.pivots.iter().map(|pivot| 1 + pivot.lower.len() + pivot.upper.len()).sum()
+    }
+
+    /// The same factors with every value replaced by `replace`.
+    pub fn map(&self, mut replace: impl FnMut(Expr) -> Expr) -> Self {
+        let mut pivots = self.pivots.clone();
+        for pivot in &mut pivots {
+            pivot.inverse = replace(pivot.inverse);
+            for (_, value) in pivot.lower.iter_mut().chain(&mut pivot.upper) {
+                *value = replace(*value);
+            }
+        }
+        Self { pivots }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn solve_numbers(dense: &[Vec<f64>], right: &[f64]) -> Result<Vec<f64>, Singular> {
+        let mut graph = Graph::new();
+        let mut matrix = SparseMatrix::zero(dense.len(), dense.len());
+        let mut numbers = Vec::new();
+        for (row, values) in dense.iter().enumerate() {
+            for (column, &value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                let expr = graph.constant(value);
+                matrix.rows[row].push((column, expr));
+                numbers.push([value; PROBES]);
+            }
+        }
+        let scale = vec![1.0; dense.len()];
+        let factors = factorise(&mut graph, &matrix, &numbers, &scale, Stages::new(&[]), 0, Pivoting::Any)?;
+        let right: Vec<Expr> = right.iter().map(|&value| graph.constant(value)).collect();
+        let x = factors.solve(&mut graph, &right);
+        Ok(x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect())
+    }
+
+    #[test]
+    fn a_zero_diagonal_is_no_hindrance() {
+        let x =
+            solve_numbers(&[vec![0.0, 2.0, 0.0], vec![1.0, 0.0, 1.0], vec![0.0, 3.0, 1.0]], &[4.0, 3.0, 7.0]).unwrap();
+        assert_eq!(x, [2.0, 2.0, 1.0]);
+    }
+
+    #[test]
+    fn a_singular_matrix_names_the_rows_left() {
+        let singular = solve_numbers(&[vec![1.0, 2.0], vec![2.0, 4.0]], &[1.0, 2.0]).unwrap_err();
+        assert_eq!(singular.rows.len(), 1);
+    }
+
+    proptest! {
+        #[test]
+        fn solutions_fulfil_their_equations(
+            entries in prop::collection::vec(prop::option::weighted(0.4, -1.0..1.0_f64), 64),
+            right in prop::collection::vec(-1.0..1.0_f64, 8),
+        ) {
+            let dense: Vec<Vec<f64>> = (0..8)
+                .map(|row| (0..8).map(|column| entries[8 * row + column].unwrap_or(0.0) + if row == column { 3.0 } else { 0.0 }).collect())
+                .collect();
+            if let Ok(x) = solve_numbers(&dense, &right) {
+                for (row, b) in dense.iter().zip(&right) {
+                    let product: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+                    prop_assert!((product - b).abs() < 1e-9);
+                }
+            }
+        }
+    }
+}

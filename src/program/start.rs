@@ -1,0 +1,254 @@
+//! The start as tapes: Gauss–Newton corrections that bring positions, velocities, accelerations and multipliers onto the
+//! constraints.
+//!
+//! ```text
+//! positions       [ D  Φ_qᵀ ] [δq]   [ 0 ]        velocities      the same matrix,  right side −(Φ_q v + Φ_t)
+//!                 [ Φ_q  −ε ] [μ ] = [−Φ ]
+//! accelerations   [ M  Φ_qᵀ ] [δw]     [ M w + Φ_qᵀ λ − Q ]
+//!                 [ Φ_q  −ε ] [δλ] = − [ Φ̈(q, v, w, t)    ]
+//! ```
+//!
+//! D = diag(1/scale²) makes the change of the coordinates that are not kept smallest; kept ones have no column. ε > 0 makes
+//! the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order exists, also
+//! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
+//! exact.
+
+use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
+
+use super::layout::Layout;
+use super::newton_matrix::equations_of_motion;
+use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
+use crate::mechanics::System;
+
+/// ε relative to a constraint's own size in the matrix's metric.
+const REGULARISATION: f64 = 1e-9;
+
+/// Tapes for the start of a tile of samples; states stand where [`Layout`] says, corrections too.
+#[derive(Clone, Debug)]
+pub struct StartProgram {
+    /// Shared with the step's program.
+    pub layout: Layout,
+    /// Slots of Φ, m, after [`StartProgram::position`].
+    pub constraint: Vec<usize>,
+    /// Slots of Φ̇, m, after [`StartProgram::velocity`].
+    pub constraint_rate: Vec<usize>,
+    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::slopes`].
+    pub slope_entries: Vec<(usize, usize, usize)>,
+    lowered: Lowered,
+}
+
+const GIVEN: usize = 0;
+const GUESS: usize = 1;
+const POSITION: usize = 2;
+const VELOCITY: usize = 3;
+const ACCELERATION: usize = 4;
+const SLOPES: usize = 5;
+
+impl StartProgram {
+    /// Number of slots of a tile.
+    pub fn slots(&self) -> usize {
+        self.lowered.slots
+    }
+
+    /// Numbers that a new tile holds.
+    pub fn constants(&self) -> &[(u32, f64)] {
+        &self.lowered.constants
+    }
+
+    /// Once a sample.
+    pub fn sample(&self) -> &Tape {
+        &self.lowered.stages[0]
+    }
+
+    /// Sets the positions and velocities that are kept.
+    pub fn given(&self) -> &Tape {
+        &self.lowered.kernels[GIVEN]
+    }
+
+    /// Sets all positions to the guess.
+    pub fn guess(&self) -> &Tape {
+        &self.lowered.kernels[GUESS]
+    }
+
+    /// Correction of the positions (first n of `correction`), and Φ.
+    pub fn position(&self) -> &Tape {
+        &self.lowered.kernels[POSITION]
+    }
+
+    /// Correction of the velocities (first n of `correction`), and Φ̇.
+    pub fn velocity(&self) -> &Tape {
+        &self.lowered.kernels[VELOCITY]
+    }
+
+    /// Correction of accelerations and multipliers.
+    pub fn acceleration(&self) -> &Tape {
+        &self.lowered.kernels[ACCELERATION]
+    }
+
+    /// Φ_q.
+    pub fn slopes(&self) -> &Tape {
+        &self.lowered.kernels[SLOPES]
+    }
+}
+
+/// Compiles the start of a system; `probe` is a state near the one that is looked for (values of the layout's slots).
+///
+/// # Errors
+/// [`Singular`] where the equations have no finite values at the probe.
+pub fn compile_start(system: &System, probe: &[f64]) -> Result<StartProgram, Singular> {
+    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let inputs = inputs(system, &layout);
+    let mut graph = system.graph.clone();
+    let (motion, slopes) = equations_of_motion(system, &mut graph);
+    let rate = time_derivative(system, &mut graph, &system.constraint);
+    let rate_of_rate = time_derivative(system, &mut graph, &rate);
+
+    let mut builder = Builder { system, graph, inputs: &inputs, slopes: &slopes, probe };
+    let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
+    let diagonal: Vec<(usize, usize, Expr)> =
+        metric.iter().enumerate().map(|(i, &weight)| (i, i, builder.graph.constant(weight))).collect();
+    let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
+    let zero = vec![builder.graph.constant(0.0); system.q.len()];
+    let position = builder.correction(&diagonal, &kept(&system.start.position), &zero, &system.constraint)?;
+    let velocity = builder.correction(&diagonal, &kept(&system.start.velocity), &zero, &rate)?;
+    let acceleration = builder.correction(&system.mass, &vec![false; system.q.len()], &motion, &rate_of_rate)?;
+    let graph = builder.graph;
+
+    let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
+        values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
+    };
+    let mut given = Vec::new();
+    for (values, block) in [(&system.start.position, &layout.q), (&system.start.velocity, &layout.v)] {
+        given
+            .extend(values.iter().zip(block.clone()).filter_map(|(value, slot)| value.map(|v| (v, Some(slot as u32)))));
+    }
+    let guess = at(&system.start.guess, layout.q.start);
+    let with = |correction: &[Expr], further: &[Expr]| {
+        let mut outputs = at(correction, layout.correction.start);
+        outputs.extend(further.iter().map(|&value| (value, None)));
+        outputs
+    };
+    let n = system.q.len();
+    let kernels = [
+        given,
+        guess,
+        with(&position[..n], &system.constraint),
+        with(&velocity[..n], &rate),
+        with(&acceleration, &[]),
+        slopes.entries().map(|(_, _, value)| (value, None)).collect(),
+    ];
+    let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
+    let tail = |kernel: usize, skip: usize| {
+        lowered.outputs[kernel].iter().skip(skip).map(|&slot| slot as usize).collect::<Vec<_>>()
+    };
+    let slope_entries =
+        slopes.entries().zip(tail(SLOPES, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
+    Ok(StartProgram {
+        constraint: tail(POSITION, n),
+        constraint_rate: tail(VELOCITY, n),
+        slope_entries,
+        layout,
+        lowered,
+    })
+}
+
+/// Parameters at stage 0, everything else at stage 1.
+fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
+    let mut inputs = Vec::new();
+    let mut add = |symbols: &[Expr], start: usize, stage: usize| {
+        inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input { symbol, stage, slot: slot as u32 }));
+    };
+    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+    add(&parameters, layout.parameters.start, 0);
+    add(&[system.time], layout.time, 1);
+    add(&system.q, layout.q.start, 1);
+    add(&system.v, layout.v.start, 1);
+    add(&system.w, layout.w.start, 1);
+    add(&system.lambda, layout.lambda.start, 1);
+    inputs
+}
+
+/// d/dt of expressions of t, q and v, along v and w.
+fn time_derivative(system: &System, graph: &mut Graph, of: &[Expr]) -> Vec<Expr> {
+    let along = [(&system.q, &system.v), (&system.v, &system.w)];
+    let mut rates: Vec<Expr> = of.iter().map(|&value| graph.derivative(value, system.time)).collect();
+    for (coordinates, speeds) in along {
+        for (row, column, slope) in graph.jacobian(of, coordinates).entries() {
+            let change = graph.mul(slope, speeds[column]);
+            rates[row] = graph.add(rates[row], change);
+        }
+    }
+    rates
+}
+
+struct Builder<'s> {
+    system: &'s System,
+    graph: Graph,
+    inputs: &'s [Input],
+    slopes: &'s SparseMatrix,
+    probe: &'s [f64],
+}
+
+impl Builder<'_> {
+    /// Solution of [metric Φ_qᵀ; Φ_q −ε] (δ, μ) = −(first, second), n + m; kept coordinates have δ = 0.
+    fn correction(
+        &mut self,
+        metric: &[(usize, usize, Expr)],
+        kept: &[bool],
+        first: &[Expr],
+        second: &[Expr],
+    ) -> Result<Vec<Expr>, Singular> {
+        let (n, m) = (self.system.q.len(), self.system.lambda.len());
+        let (one, mut matrix) = (self.graph.constant(1.0), SparseMatrix::zero(n + m, n + m));
+        for &(row, column, value) in metric.iter().filter(|(row, column, _)| !kept[*row] && !kept[*column]) {
+            matrix.add(&mut self.graph, row, column, value);
+        }
+        for (row, column, value) in self.slopes.entries().filter(|(_, column, _)| !kept[*column]) {
+            matrix.add(&mut self.graph, n + row, column, value);
+            matrix.add(&mut self.graph, column, n + row, value);
+        }
+        for coordinate in (0..n).filter(|&coordinate| kept[coordinate]) {
+            matrix.add(&mut self.graph, coordinate, coordinate, one);
+        }
+        let numbers = self.numbers(&matrix);
+        let sizes = self.constraint_sizes(&matrix, &numbers, n);
+        let mut scale = vec![1.0; n + m];
+        for (constraint, size) in sizes.into_iter().enumerate() {
+            let value = self.graph.constant(-REGULARISATION * size);
+            matrix.add(&mut self.graph, n + constraint, n + constraint, value);
+            scale[n + constraint] = size.sqrt().recip();
+        }
+        let numbers = self.numbers(&matrix);
+        for (place, (row, column, _)) in matrix.entries().enumerate() {
+            if row == column && row < n {
+                scale[row] = numbers[place][0].abs().sqrt().recip();
+            }
+        }
+        let stages = Stages::new(self.inputs);
+        let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, Pivoting::Diagonal)?;
+        let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
+        let zero = self.graph.constant(0.0);
+        kept.iter().zip(&mut right).filter(|(kept, _)| **kept).for_each(|(_, value)| *value = zero);
+        Ok(factors.solve(&mut self.graph, &right))
+    }
+
+    fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
+        let slot_of: rustc_hash::FxHashMap<Expr, usize> =
+            self.inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
+        let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+        let values = self.graph.evaluate(&entries, |symbol| self.probe[slot_of[&symbol]]);
+        values.into_iter().map(|value| [value; PROBES]).collect()
+    }
+
+    /// Σ Φ_ki² / metric_ii: a constraint's own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.
+    fn constraint_sizes(&self, matrix: &SparseMatrix, numbers: &[Numbers], n: usize) -> Vec<f64> {
+        let mut diagonal = vec![1.0; n];
+        let mut sizes = vec![0.0; matrix.rows.len() - n];
+        let entries = || matrix.entries().zip(numbers).map(|((row, column, _), number)| (row, column, number[0]));
+        entries().filter(|&(row, column, _)| row == column).for_each(|(row, _, value)| diagonal[row] = value);
+        entries().filter(|&(row, column, _)| row >= n && column < n).for_each(|(row, column, value)| {
+            sizes[row - n] += value * value / diagonal[column];
+        });
+        sizes.into_iter().map(|size| if size > 0.0 { size } else { 1.0 }).collect()
+    }
+}
