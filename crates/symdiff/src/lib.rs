@@ -6,6 +6,7 @@
 mod derivative;
 mod expr;
 pub mod formula;
+pub mod jet;
 mod scalar;
 pub mod sincos;
 
