@@ -216,10 +216,7 @@ unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[Operands], memory:
             // SAFETY: as in `each`.
             unsafe {
                 let a = memory.add(operand.a as usize * W + lane).cast::<[f64; C]>().read();
-                let (mut sine, mut cosine) = ([0.0; C], [0.0; C]);
-                for i in 0..C {
-                    (sine[i], cosine[i]) = sincos::sin_cos(a[i]);
-                }
+                let (sine, cosine) = sincos::sin_cos_lanes(&a);
                 memory.add(operand.d as usize * W + lane).cast::<[f64; C]>().write(sine);
                 memory.add(operand.b as usize * W + lane).cast::<[f64; C]>().write(cosine);
             }
