@@ -6,9 +6,9 @@
 mod derivative;
 mod expr;
 pub mod formula;
-mod lanes;
 pub mod jet;
 mod jet_memory;
+mod lanes;
 mod scalar;
 mod schedule;
 pub mod sincos;

@@ -9,9 +9,6 @@
 
 use std::array;
 
-/// Number of arguments that [`sin_cos_lanes`] takes.
-pub const LANES: usize = 8;
-
 /// From here on the multiple of π/2 needs more bits than the reduction's exact products leave for it.
 const LARGE: f64 = 1e5;
 
@@ -35,10 +32,10 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 
 /// ([sin xᵢ], [cos xᵢ]), to the bit what [`sin_cos`] gives for each.
 #[inline(always)]
-pub fn sin_cos_lanes(x: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
-    let mut sines = [0.0; LANES];
-    let mut cosines = [0.0; LANES];
-    for lane in 0..LANES {
+pub fn sin_cos_lanes<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+    let mut sines = [0.0; N];
+    let mut cosines = [0.0; N];
+    for lane in 0..N {
         (sines[lane], cosines[lane]) = reduced(x[lane]);
     }
     let small = x.iter().fold(true, |small, x| small & (x.abs() < LARGE));
@@ -51,8 +48,8 @@ pub fn sin_cos_lanes(x: &[f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
 /// Replaces what [`reduced`] has no answer to.
 #[cold]
 #[inline(never)]
-fn repair(x: &[f64; LANES], sines: &mut [f64; LANES], cosines: &mut [f64; LANES]) {
-    let answers: [(f64, f64); LANES] = array::from_fn(|lane| sin_cos(x[lane]));
+fn repair<const N: usize>(x: &[f64; N], sines: &mut [f64; N], cosines: &mut [f64; N]) {
+    let answers: [(f64, f64); N] = array::from_fn(|lane| sin_cos(x[lane]));
     *sines = answers.map(|pair| pair.0);
     *cosines = answers.map(|pair| pair.1);
 }
@@ -182,7 +179,7 @@ mod tests {
             -10.0..10.0_f64, -1e6..1e6_f64, Just(0.0), Just(-0.0), Just(f64::NAN), Just(f64::INFINITY), any::<f64>(),
         ])) {
             let (sines, cosines) = sin_cos_lanes(&x);
-            for lane in 0..LANES {
+            for lane in 0..8 {
                 let (sine, cosine) = sin_cos(x[lane]);
                 prop_assert_eq!(sines[lane].to_bits(), sine.to_bits());
                 prop_assert_eq!(cosines[lane].to_bits(), cosine.to_bits());
