@@ -1,5 +1,29 @@
 //! Description → [`System`]: the equations of motion as expressions.
+//!
+//! [`build`] reads like the derivation on paper: symbols and bodies ([`mechanism`], [`body`]), constraints
+//! ([`joints`]), applied forces ([`effects`]), inertia, outputs, and where the motion starts ([`start`], [`placement`]).
+//!
+//! | symbol  | meaning                                   | unit                       |
+//! |---------|-------------------------------------------|----------------------------|
+//! | q, v, w | coordinates, velocities, accelerations    | m and rad, per s, per s²   |
+//! | λ       | multipliers: M w = Q − Φ_qᵀ λ             | N, N m                     |
+//! | r₀, θ   | origin and angle of a body's frame        | m, rad                     |
+//! | s, R s  | point in the body's, in the ground's axes | m                          |
+//! | a⊥      | (−a_y, aₓ), a turned counter-clockwise    |                            |
 
+mod body;
+mod build;
+mod effects;
+mod error;
+mod joints;
+mod mechanism;
+mod outputs;
+mod placement;
+mod plane;
+mod start;
 mod system;
 
+pub use build::build;
+pub use error::BuildError;
+pub use mechanism::Context;
 pub use system::{ConstraintInfo, CoordinateInfo, OutputInfo, Start, System, UncertainParameter};

@@ -1,0 +1,125 @@
+//! The equations of motion of a description.
+
+use symdiff::{Expr, Graph};
+
+use crate::model::{Coordinate, Description};
+
+use super::effects::{self, Loads};
+use super::error::BuildError;
+use super::joints::{self, Row};
+use super::mechanism::Mechanism;
+use super::system::{ConstraintInfo, CoordinateInfo, System};
+
+/// How far from zero, relative to the model's size, a constraint that nothing can change may be: rounding only.
+const CLOSED: f64 = 1e-9;
+
+/// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description.
+///
+/// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both sides held) are left out. The work is
+/// linear in the number of bodies, joints and effects.
+///
+/// # Errors
+/// A constraint that nothing can fulfil, and (for descriptions that were not checked) a name out of place.
+pub fn build(description: &Description) -> Result<System, BuildError> {
+    let mut graph = Graph::new();
+    let g = &mut graph;
+    let mut mechanism = Mechanism::new(g, description)?;
+    let length = mechanism.characteristic_length(g)?;
+
+    let mut constraints = Constraints::default();
+    for joint in &description.joints {
+        let rows = joints::rows(g, &mechanism, &joint.kind)?;
+        let mut kept = Vec::with_capacity(rows.len());
+        for row in rows {
+            let name = if row.name.is_empty() { joint.name.clone() } else { format!("{}.{}", joint.name, row.name) };
+            let info = ConstraintInfo { name, joint: joint.name.clone() };
+            if is_effective(g, &mechanism, length, &info, row)? {
+                kept.push((row, constraints.add(g, info, row.value)));
+            }
+        }
+        let reaction = joints::reaction(g, &joint.kind, &kept);
+        mechanism.reactions.push(reaction);
+    }
+
+    let mut loads = Loads::new(g, mechanism.bodies.len());
+    for effect in &description.effects {
+        effects::apply(g, &mechanism, &mut loads, &effect.kind)?;
+    }
+    mechanism.potentials = loads.potentials;
+
+    let mut mass = Vec::new();
+    let mut force = vec![g.constant(0.0); mechanism.q.len()];
+    for (body, applied) in mechanism.bodies.iter().zip(&loads.bodies) {
+        for (index, &part) in body.index.iter().zip(applied) {
+            if let Some(row) = *index {
+                force[row] = part;
+            }
+        }
+        body.add_inertia(g, &mut mass, &mut force);
+    }
+    mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
+
+    let outputs = mechanism.outputs(g)?;
+    let start = mechanism.start(g)?;
+    let coordinates = mechanism.coordinates.iter().map(|&(body, coordinate)| CoordinateInfo {
+        name: mechanism.coordinate_name(body, coordinate),
+        scale: if coordinate == Coordinate::Angle { 1.0 } else { length },
+    });
+    Ok(System {
+        coordinates: coordinates.collect(),
+        parameters: mechanism.uncertain,
+        time: mechanism.time,
+        q: mechanism.q,
+        v: mechanism.v,
+        w: mechanism.w,
+        lambda: constraints.lambda,
+        constraints: constraints.infos,
+        mass,
+        force,
+        constraint: constraints.values,
+        outputs,
+        start,
+        graph,
+    })
+}
+
+/// The rows that are kept, with their multipliers.
+#[derive(Default)]
+struct Constraints {
+    infos: Vec<ConstraintInfo>,
+    values: Vec<Expr>,
+    lambda: Vec<Expr>,
+}
+
+impl Constraints {
+    fn add(&mut self, g: &mut Graph, info: ConstraintInfo, value: Expr) -> Expr {
+        let lambda = g.symbol(&format!("lambda:{}", info.name));
+        self.infos.push(info);
+        self.values.push(value);
+        self.lambda.push(lambda);
+        lambda
+    }
+}
+
+/// Whether a row constrains anything. One without a coordinate holds always, and is not needed, or never.
+fn is_effective(g: &Graph, m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> Result<bool, BuildError> {
+    let fixed = |symbol: &Expr| *symbol == m.time || m.uncertain.iter().any(|known| known.symbol == *symbol);
+    if !g.symbols_of(&[row.value]).iter().all(fixed) {
+        return Ok(true);
+    }
+    let samples = [
+        (None, m.sample(g, &[row.value], 0.0, |parameter| parameter.nominal)),
+        (Some("at the parameters' lower bounds"), m.sample(g, &[row.value], 0.0, |parameter| parameter.lower)),
+        (Some("at the parameters' upper bounds"), m.sample(g, &[row.value], 0.0, |parameter| parameter.upper)),
+        (Some("at t = 1 s"), m.sample(g, &[row.value], 1.0, |parameter| parameter.nominal)),
+    ];
+    for (at, values) in samples {
+        let residual = values[0];
+        // Not `>`: what is not a number is not zero either.
+        if !(residual.abs() <= CLOSED * length.max(1.0)) {
+            let (joint, constraint) = (info.joint.clone(), info.name.clone());
+            return Err(BuildError::Contradiction { joint, constraint, residual, at });
+        }
+    }
+    Ok(false)
+}

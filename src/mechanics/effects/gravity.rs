@@ -1,0 +1,28 @@
+//! Gravity: the same acceleration on every body.
+//!
+//! ```text
+//! F = m g at the centre of mass,   V = −m g · r_c          N, J
+//! ```
+//!
+//! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
+
+use symdiff::{Formula, Graph};
+
+use crate::mechanics::error::BuildError;
+use crate::mechanics::mechanism::{Context, Mechanism};
+use crate::mechanics::plane;
+
+use super::Loads;
+
+pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 2]) -> Result<(), BuildError> {
+    let acceleration = m.vector(g, acceleration, Context::Motion)?;
+    for (index, body) in m.bodies.iter().enumerate() {
+        let weight = plane::scale(g, body.mass, acceleration);
+        let center = m.point_at(g, index, body.center);
+        loads.add_force(g, &center, weight);
+        let height = plane::dot(g, weight, center.position);
+        let potential = g.neg(height);
+        loads.add_potential(g, m, &weight, potential);
+    }
+    Ok(())
+}

@@ -1,0 +1,99 @@
+//! Spring and damper between two points A and B; d = r_B − r_A.
+//!
+//! ```text
+//! along the connecting line:    f = k (ℓ − ℓ₀) + c ℓ̇,     ℓ = |d|,     V = ½ k (ℓ − ℓ₀)²          N, J
+//!                               F_B = −f d/ℓ = −[k (1 − ℓ₀/ℓ) + c (d · ḋ)/ℓ²] d,                 F_A = −F_B
+//! along an axis e, |e| = 1:     f = k (s − ℓ₀) + c ṡ,     s = e · d,   V = ½ k (s − ℓ₀)²
+//!                               F_B = −f e,                                                      F_A = −F_B
+//! ```
+//!
+//! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and where d is not parallel to e the
+//! pair of forces is also a couple d × F, as in a guide. The line has no direction at ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and
+//! c = 0. A zero stiffness or damping leaves nothing behind. Where k or ℓ₀ depend on the motion there is no potential and none is counted.
+
+use symdiff::{Expr, Formula, Graph};
+
+use crate::mechanics::body::MaterialPoint;
+use crate::mechanics::error::BuildError;
+use crate::mechanics::mechanism::{Context, Mechanism};
+use crate::mechanics::plane::{self, Vector};
+use crate::model::PointRef;
+
+use super::Loads;
+
+/// Its numbers.
+#[derive(Clone, Copy)]
+pub struct Spring<T> {
+    /// k, N/m
+    pub stiffness: T,
+    /// c, N s/m
+    pub damping: T,
+    /// ℓ₀, m
+    pub free_length: T,
+}
+
+pub fn apply(
+    g: &mut Graph,
+    m: &Mechanism,
+    loads: &mut Loads,
+    between: [PointRef; 2],
+    along: Option<&[Formula; 2]>,
+    spring: Spring<&Formula>,
+) -> Result<(), BuildError> {
+    let spring = Spring {
+        stiffness: m.formula(g, spring.stiffness, Context::Motion)?,
+        damping: m.formula(g, spring.damping, Context::Motion)?,
+        free_length: m.formula(g, spring.free_length, Context::Motion)?,
+    };
+    let [a, b] = between.map(|point| m.point(g, point));
+    let (pull, stretch) = match along {
+        Some(axis) => {
+            let axis = m.vector(g, axis, Context::Motion)?;
+            along_axis(g, &a, &b, axis, spring)
+        }
+        None => along_line(g, &a, &b, spring),
+    };
+    // The tension pulls A towards B.
+    loads.add_force_pair(g, &b, &a, pull);
+    let square = g.mul(stretch, stretch);
+    let doubled = g.mul(spring.stiffness, square);
+    let potential = g.scale(0.5, doubled);
+    loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
+    Ok(())
+}
+
+/// F_A and ℓ − ℓ₀.
+fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> (Vector, Expr) {
+    let line = plane::sub(g, b.position, a.position);
+    let rate = plane::sub(g, b.velocity, a.velocity);
+    let square = plane::dot(g, line, line);
+    let length = g.sqrt(square);
+    let one = g.constant(1.0);
+    let share = g.div(spring.free_length, length);
+    let strain = g.sub(one, share);
+    let elastic = g.mul(spring.stiffness, strain);
+    let growth = plane::dot(g, line, rate);
+    let relative = g.div(growth, square);
+    let viscous = g.mul(spring.damping, relative);
+    let tension = g.add(elastic, viscous);
+    (plane::scale(g, tension, line), g.sub(length, spring.free_length))
+}
+
+/// F_A and s − ℓ₀.
+fn along_axis(
+    g: &mut Graph,
+    a: &MaterialPoint,
+    b: &MaterialPoint,
+    axis: Vector,
+    spring: Spring<Expr>,
+) -> (Vector, Expr) {
+    let axis = plane::unit(g, axis);
+    let line = plane::sub(g, b.position, a.position);
+    let rate = plane::sub(g, b.velocity, a.velocity);
+    let (extent, growth) = (plane::dot(g, axis, line), plane::dot(g, axis, rate));
+    let stretch = g.sub(extent, spring.free_length);
+    let elastic = g.mul(spring.stiffness, stretch);
+    let viscous = g.mul(spring.damping, growth);
+    let tension = g.add(elastic, viscous);
+    (plane::scale(g, tension, axis), stretch)
+}

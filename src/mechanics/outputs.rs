@@ -1,0 +1,70 @@
+//! What is observed: a referent as an expression over t, q, v, w, λ and the parameters.
+
+use symdiff::{Expr, Graph};
+
+use crate::model::{Coordinate, EnergyKind, ReactionComponent, Referent, TimeOrder};
+
+use super::error::BuildError;
+use super::mechanism::{Context, Mechanism, freedom};
+use super::system::OutputInfo;
+
+impl Mechanism<'_> {
+    /// The expression that a name stands for. Joints whose reactions are asked for must have been built.
+    pub fn observe(&self, g: &mut Graph, referent: Referent) -> Expr {
+        match referent {
+            Referent::Parameter(index) => self.parameters[index],
+            Referent::Time => self.time,
+            Referent::Coordinate { body, coordinate, order } => {
+                let body = &self.bodies[body];
+                let list = match order {
+                    TimeOrder::Position => &body.position,
+                    TimeOrder::Velocity => &body.velocity,
+                    TimeOrder::Acceleration => &body.acceleration,
+                };
+                list[freedom(coordinate)]
+            }
+            Referent::Point { body, point, coordinate, order } => {
+                let body = &self.bodies[body];
+                let arm = body.rotate(g, body.points[point]);
+                let vector = match order {
+                    TimeOrder::Position => body.position_of(g, arm),
+                    TimeOrder::Velocity => body.velocity_of(g, arm),
+                    TimeOrder::Acceleration => body.acceleration_of(g, arm),
+                };
+                vector[if coordinate == Coordinate::X { 0 } else { 1 }]
+            }
+            Referent::Reaction { joint, component } => {
+                let reaction = &self.reactions[joint];
+                match component {
+                    ReactionComponent::Force => reaction.magnitude,
+                    ReactionComponent::ForceX => reaction.force[0],
+                    ReactionComponent::ForceY => reaction.force[1],
+                    ReactionComponent::Torque => reaction.torque,
+                }
+            }
+            Referent::Energy(EnergyKind::Kinetic) => self.kinetic_energy(g),
+            Referent::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
+            Referent::Energy(EnergyKind::Total) => {
+                let kinetic = self.kinetic_energy(g);
+                let potential = g.sum(self.potentials.iter().copied());
+                g.add(kinetic, potential)
+            }
+        }
+    }
+
+    fn kinetic_energy(&self, g: &mut Graph) -> Expr {
+        let parts: Vec<Expr> = self.bodies.iter().map(|body| body.kinetic_energy(g)).collect();
+        g.sum(parts)
+    }
+
+    /// All outputs of the description.
+    pub fn outputs(&self, g: &mut Graph) -> Result<Vec<OutputInfo>, BuildError> {
+        let outputs = self.description.outputs.iter();
+        outputs
+            .map(|output| {
+                let expr = self.formula(g, &output.formula, Context::Everything)?;
+                Ok(OutputInfo { name: output.name.clone(), unit: output.unit.clone(), expr })
+            })
+            .collect()
+    }
+}

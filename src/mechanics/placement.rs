@@ -1,0 +1,213 @@
+//! A first guess of where the bodies are, in numbers, at the nominal parameters.
+//!
+//! Assembly is a Newton iteration and wants to begin near a solution, and never at a singular one: a four-bar linkage with all its links at
+//! angle 0 is stretched, and no small rotation closes its gap. So the bodies are placed one after the other, each onto a joint with a body that is
+//! already placed:
+//!
+//! - pins and welds before slides, since a slide does not say where along its line a body is;
+//! - bodies whose angle is given (kept, guessed or held) before others;
+//! - the angle, where it is not given: that of a weld or slide to a placed body; or towards the other pin, where the body's second pin is on a placed body;
+//!   or, where a second unplaced body leads on to a placed pin, that of the triangle with both bodies' lengths as sides, its corner on top; or 0.
+//!
+//! Bodies that nothing joins to the ground stay at 0.
+
+use std::collections::VecDeque;
+
+use symdiff::{Expr, Graph};
+
+use crate::model::{JointKind, PointRef};
+
+use super::body::{ANGLE, FREEDOMS};
+use super::error::BuildError;
+use super::mechanism::{Context, Mechanism};
+
+/// A joint as seen from one of its bodies.
+#[derive(Clone, Copy)]
+struct Link {
+    /// Where it is on this body, and where on the other, in each body's frame.
+    here: [f64; 2],
+    there: [f64; 2],
+    other: usize,
+    kind: LinkKind,
+}
+
+#[derive(Clone, Copy)]
+enum LinkKind {
+    /// Points coincide.
+    Pin,
+    /// Points coincide, and the other's angle is this one's plus that.
+    Weld(f64),
+    /// The other's angle is this one's plus that.
+    Slide(f64),
+    /// Points on a line, or at a distance (zero for a slot).
+    Loose(f64),
+}
+
+impl Link {
+    /// Seen from the other body.
+    fn reversed(self, body: usize) -> Self {
+        let kind = match self.kind {
+            LinkKind::Weld(turn) => LinkKind::Weld(-turn),
+            LinkKind::Slide(turn) => LinkKind::Slide(-turn),
+            kind => kind,
+        };
+        Self { here: self.there, there: self.here, other: body, kind }
+    }
+}
+
+/// Poses of all bodies.
+pub struct Placement {
+    links: Vec<Vec<Link>>,
+    given: Vec<[Option<f64>; FREEDOMS]>,
+    poses: Vec<Option<[f64; FREEDOMS]>>,
+}
+
+impl Placement {
+    /// Places all bodies; `known` are the coordinates with a value at the start.
+    pub fn of(g: &mut Graph, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+        let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
+        for (body, given) in m.bodies.iter().zip(&mut given) {
+            for (freedom, given) in given.iter_mut().enumerate() {
+                let value = match body.index[freedom] {
+                    Some(index) => known[index],
+                    None => Some(body.position[freedom]),
+                };
+                *given = value.map(|value| m.nominal(g, &[value])[0]);
+            }
+        }
+        let poses = given.iter().map(|given| Some([given[0]?, given[1]?, given[ANGLE]?])).collect();
+        let mut placement = Self { links: links(g, m)?, given, poses };
+        placement.walk();
+        Ok(placement)
+    }
+
+    /// x, y, θ of a body.
+    pub fn pose(&self, body: usize) -> [f64; FREEDOMS] {
+        self.poses[body].unwrap_or_else(|| self.given[body].map(|value| value.unwrap_or(0.0)))
+    }
+
+    fn walk(&mut self) {
+        let mut queues = [VecDeque::new(), VecDeque::new(), VecDeque::new()];
+        for body in 0..self.poses.len() {
+            if self.poses[body].is_some() {
+                self.enqueue(&mut queues, body);
+            }
+        }
+        while let Some((body, link)) = queues.iter_mut().find_map(VecDeque::pop_front) {
+            if self.poses[link.other].is_none() {
+                self.place(body, link);
+                self.enqueue(&mut queues, link.other);
+            }
+        }
+    }
+
+    fn enqueue(&self, queues: &mut [VecDeque<(usize, Link)>; 3], body: usize) {
+        for &link in &self.links[body] {
+            let urgency = match link.kind {
+                LinkKind::Weld(_) => 0,
+                LinkKind::Pin if self.given[link.other][ANGLE].is_some() => 0,
+                LinkKind::Pin => 1,
+                LinkKind::Slide(_) | LinkKind::Loose(_) => 2,
+            };
+            queues[urgency].push_back((body, link));
+        }
+    }
+
+    /// Places `link.other` onto its joint with `body`, which is placed.
+    fn place(&mut self, body: usize, link: Link) {
+        let mut anchor = at(self.pose(body), link.here);
+        if let LinkKind::Loose(distance) = link.kind {
+            anchor[0] += distance;
+        }
+        let given = self.given[link.other];
+        let angle = given[ANGLE].or_else(|| self.angle(body, link, anchor)).unwrap_or(0.0);
+        let arm = at([0.0, 0.0, angle], link.there);
+        let origin = |axis: usize| given[axis].unwrap_or(anchor[axis] - arm[axis]);
+        self.poses[link.other] = Some([origin(0), origin(1), angle]);
+    }
+
+    /// The angle of `link.other`, one of whose points is to be at `anchor`.
+    fn angle(&self, body: usize, link: Link, anchor: [f64; 2]) -> Option<f64> {
+        if let LinkKind::Weld(turn) | LinkKind::Slide(turn) = link.kind {
+            return Some(self.pose(body)[ANGLE] + turn);
+        }
+        let onward = &self.links[link.other];
+        let slid = onward.iter().find_map(|next| match (next.kind, self.poses[next.other]) {
+            (LinkKind::Weld(turn) | LinkKind::Slide(turn), Some(pose)) => Some(pose[ANGLE] - turn),
+            _ => None,
+        });
+        if slid.is_some() || !matches!(link.kind, LinkKind::Pin) {
+            return slid;
+        }
+        let pins = || onward.iter().filter(|next| matches!(next.kind, LinkKind::Pin) && next.here != link.there);
+        let aimed = pins().find_map(|next| {
+            let goal = at(self.poses[next.other]?, next.there);
+            Some(direction(anchor, goal)? - direction(link.there, next.here)?)
+        });
+        aimed.or_else(|| pins().find_map(|next| self.corner(link, anchor, next)))
+    }
+
+    /// The angle that makes a triangle of `anchor`, the pin `next` on the other side of `link.other`, and a placed pin on the far side of the body
+    /// behind it.
+    fn corner(&self, link: Link, anchor: [f64; 2], next: &Link) -> Option<f64> {
+        if self.given[next.other][ANGLE].is_some() {
+            return None;
+        }
+        let far = self.links[next.other].iter().find(|far| {
+            matches!(far.kind, LinkKind::Pin) && far.here != next.there && self.poses[far.other].is_some()
+        })?;
+        let goal = at(self.poses[far.other]?, far.there);
+        let (near_side, far_side) = (distance(link.there, next.here), distance(next.there, far.here));
+        let base = distance(anchor, goal);
+        let cosine = (near_side * near_side + base * base - far_side * far_side) / (2.0 * near_side * base);
+        let opening = cosine.clamp(-1.0, 1.0).acos();
+        let towards = direction(anchor, goal)?;
+        let higher = if (towards + opening).sin() >= (towards - opening).sin() { opening } else { -opening };
+        Some(towards + higher - direction(link.there, next.here)?)
+    }
+}
+
+/// A point of a body in the ground's frame.
+fn at([x, y, angle]: [f64; FREEDOMS], [a, b]: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [x + cos * a - sin * b, y + sin * a + cos * b]
+}
+
+fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
+/// Angle of the line between two points; `None` where they coincide.
+fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
+    (distance(from, to) > 0.0).then(|| (to[1] - from[1]).atan2(to[0] - from[0]))
+}
+
+/// The joints of each body.
+fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
+    let mut links = vec![Vec::new(); m.bodies.len()];
+    for joint in &m.description.joints {
+        let mut value = |formula| {
+            let expr = m.formula(g, formula, Context::Time)?;
+            Ok(m.nominal(g, &[expr])[0])
+        };
+        let (between, kind) = match &joint.kind {
+            JointKind::Revolute { between } => (between, LinkKind::Pin),
+            JointKind::Fixed { between, angle } => (between, LinkKind::Weld(value(angle)?)),
+            JointKind::Prismatic { between, angle, .. } => (between, LinkKind::Slide(value(angle)?)),
+            JointKind::PinInSlot { between, .. } => (between, LinkKind::Loose(0.0)),
+            JointKind::Distance { between, length } => (between, LinkKind::Loose(value(length)?)),
+            JointKind::Gear { .. } | JointKind::Equation { .. } => continue,
+        };
+        let [here, there] = between.map(|point| local(g, m, point));
+        let link = Link { here, there, other: between[1].body, kind };
+        links[between[0].body].push(link);
+        links[between[1].body].push(link.reversed(between[0].body));
+    }
+    Ok(links)
+}
+
+fn local(g: &mut Graph, m: &Mechanism, point: PointRef) -> [f64; 2] {
+    let expr = m.local(g, point);
+    let values = m.nominal(g, &expr);
+    [values[0], values[1]]
+}
