@@ -25,8 +25,10 @@ pub struct Stepper<'p> {
     program: &'p Program,
     tile: Tile,
     newton: Newton,
-    /// Step size that the tile's step-size stage was run for.
+    /// Step size that a belongs to; not a number before the first step.
     step_size: f64,
+    /// Step size that the tile's step-size stage was run for.
+    prepared_size: f64,
     /// Whether a lane still runs.
     alive: Vec<bool>,
 }
@@ -39,7 +41,14 @@ impl<'p> Stepper<'p> {
         let shared = program.layout.slots() * width;
         tile.values_mut()[..shared].copy_from_slice(&start.values()[..shared]);
         tile.run(program.sample());
-        Self { program, tile, newton: Newton::new(width), step_size: f64::NAN, alive: vec![true; width] }
+        Self {
+            program,
+            tile,
+            newton: Newton::new(width),
+            step_size: f64::NAN,
+            prepared_size: f64::NAN,
+            alive: vec![true; width],
+        }
     }
 
     /// The memory: states between steps.
@@ -55,6 +64,22 @@ impl<'p> Stepper<'p> {
     /// Which lanes still run.
     pub fn alive(&self) -> &[bool] {
         &self.alive
+    }
+
+    /// Lanes that carry no sample of their own stop running.
+    pub fn retire(&mut self, lanes: std::ops::Range<usize>) {
+        self.alive[lanes].fill(false);
+    }
+
+    /// The step size last used, s; not a number before the first step.
+    pub fn step_size(&self) -> f64 {
+        self.step_size
+    }
+
+    /// All lanes back to a state that was saved, with the step size that its a belongs to.
+    pub fn rewind(&mut self, saved: &[f64], step_size: f64) {
+        self.restore_lanes(saved, |_| true);
+        self.step_size = step_size;
     }
 
     /// What Newton's iteration took so far.
@@ -81,20 +106,30 @@ impl<'p> Stepper<'p> {
 
     /// One step without rescue: which of the running lanes converged and advanced. The others keep their state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
-        self.set_step_size(h);
-        let program = self.program;
-        self.tile.lane_mut(program.layout.time).fill(end);
-        self.tile.run(program.step());
-        let mut converged = self.alive.clone();
-        self.newton.solve(program, &mut self.tile, h, &mut converged);
+        let converged = self.solve(h, end);
         if converged.contains(&false) {
             let state = self.save();
-            self.tile.run(program.advance());
+            self.finish();
             self.restore_lanes(&state, |lane| !converged[lane]);
         } else {
-            self.tile.run(program.advance());
+            self.finish();
         }
         converged
+    }
+
+    /// First half of a step: solves for its end. Which of the running lanes converged.
+    pub(super) fn solve(&mut self, h: f64, end: f64) -> Vec<bool> {
+        self.set_step_size(h);
+        self.tile.lane_mut(self.program.layout.time).fill(end);
+        self.tile.run(self.program.step());
+        let mut converged = self.alive.clone();
+        self.newton.solve(self.program, &mut self.tile, h, &mut converged);
+        converged
+    }
+
+    /// Second half: the state becomes the one at the step's end.
+    pub(super) fn finish(&mut self) {
+        self.tile.run(self.program.advance());
     }
 
     /// The states q, v, a, w, λ of all lanes.
@@ -113,13 +148,10 @@ impl<'p> Stepper<'p> {
         }
     }
 
-    /// Runs the step-size stage where h differs. Then a ≈ w(t + αh) is moved to the new αh, along the line through a and w.
+    /// Runs the step-size stage where h differs, and moves a ≈ w(t + αh) to the new αh, along the line through a and w.
     fn set_step_size(&mut self, h: f64) {
-        if self.step_size == h {
-            return;
-        }
         let layout = &self.program.layout;
-        if self.step_size.is_finite() {
+        if self.step_size.is_finite() && self.step_size != h {
             let ratio = h / self.step_size;
             for (a, w) in layout.a.clone().zip(layout.w.clone()) {
                 for lane in 0..self.tile.width() {
@@ -129,9 +161,12 @@ impl<'p> Stepper<'p> {
                 }
             }
         }
-        self.tile.lane_mut(layout.step).fill(h);
-        self.tile.run(self.program.step_size());
         self.step_size = h;
+        if self.prepared_size != h {
+            self.tile.lane_mut(layout.step).fill(h);
+            self.tile.run(self.program.step_size());
+            self.prepared_size = h;
+        }
     }
 
     /// One lane alone, the step divided ever finer. Returns the equation that resists.
@@ -142,12 +177,10 @@ impl<'p> Stepper<'p> {
             alone.lane_mut(slot)[0] = self.tile.lane(slot)[lane];
         }
         let mut single = Stepper::new(self.program, &alone);
-        single.step_size = h;
         let start = single.save();
         for halvings in 1..=MAX_HALVINGS {
             let parts = 1_u32 << halvings;
-            single.restore_lanes(&start, |_| true);
-            single.step_size = h;
+            single.rewind(&start, h);
             let part = h / f64::from(parts);
             let done = (1..=parts).all(|count| single.try_step(part, end - f64::from(parts - count) * part)[0]);
             if done {

@@ -1,13 +1,19 @@
 //! Program → trajectories: a consistent start, and HHT-I3 steps over tiles of samples.
 
 mod assemble;
+mod fleet;
 mod hht;
+mod jets;
 mod newton;
+mod pilot;
 mod rank;
 mod simulator;
 mod steps;
 
+pub use fleet::{Fleet, Stop};
 pub use hht::{Stepper, Stuck};
+pub use jets::JetRun;
 pub use newton::Counters;
+pub use pilot::schedule as schedule_for_tolerance;
 pub use simulator::{Mobility, SimulationError, Simulator};
 pub use steps::{Controller, Schedule};

@@ -1,0 +1,191 @@
+//! Many samples in step: tiles over all cores, advanced row by row of output.
+
+use rayon::prelude::*;
+use symdiff::WIDTHS;
+
+use super::hht::{Stepper, Stuck};
+use super::newton::Counters;
+use super::simulator::{SimulationError, Simulator};
+use super::steps::Schedule;
+
+/// Widest tile in use: a wider one's memory would leave the first-level cache.
+const WIDEST: usize = 32;
+
+/// A block of samples in step.
+#[derive(Debug)]
+pub struct Fleet<'s> {
+    simulator: &'s Simulator,
+    tiles: Vec<Member<'s>>,
+    samples: usize,
+}
+
+#[derive(Debug)]
+struct Member<'s> {
+    stepper: Stepper<'s>,
+    /// First sample of the tile, and how many of its lanes are samples.
+    first: usize,
+    count: usize,
+    /// Largest local error seen, over the tolerance, of each lane.
+    strain: Vec<f64>,
+}
+
+/// A sample that stopped, and in which row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Sample of the fleet.
+    pub sample: usize,
+    /// First row of output that it did not reach.
+    pub row: usize,
+    /// s
+    pub time: f64,
+    /// Of n + m.
+    pub equation: usize,
+}
+
+/// How `samples` are cut into tiles for `threads`: (first, count, width). The results do not depend on it.
+fn tiles(samples: usize, threads: usize) -> Vec<(usize, usize, usize)> {
+    let share = samples.div_ceil(threads).min(WIDEST);
+    let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
+    let mut tiles = Vec::new();
+    let mut first = 0;
+    while first < samples {
+        let count = width.min(samples - first);
+        let width = WIDTHS.into_iter().find(|&width| width >= count).unwrap_or(width);
+        tiles.push((first, count, width));
+        first += count;
+    }
+    tiles
+}
+
+impl<'s> Fleet<'s> {
+    /// Assembles samples for a schedule that begins with steps of `first_step`.
+    ///
+    /// # Errors
+    /// The first sample that cannot be assembled.
+    pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
+        let tiles = tiles(samples.len(), rayon::current_num_threads());
+        let assembled: Vec<Result<Member<'s>, SimulationError>> = tiles
+            .into_par_iter()
+            .map(|(first, count, width)| {
+                // Lanes beyond the samples repeat the last one and do not run.
+                let sample = |lane: usize| samples[first + lane.min(count - 1)].clone();
+                let start = simulator.assemble(width, first_step, sample)?;
+                let mut stepper = Stepper::new(&simulator.program, &start);
+                stepper.retire(count..width);
+                Ok(Member { stepper, first, count, strain: vec![0.0; width] })
+            })
+            .collect();
+        let tiles = assembled.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { simulator, tiles, samples: samples.len() })
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.samples
+    }
+
+    /// Whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.samples == 0
+    }
+
+    /// Outputs at `rows`, which follow those asked for last (row 0 is the start): row by row, output by output, sample by
+    /// sample. With a tolerance, local errors are watched. Returns which samples stopped.
+    pub fn advance(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        tolerance: Option<f64>,
+        into: &mut Vec<f64>,
+    ) -> Vec<Stop> {
+        let outputs = self.simulator.program.outputs.len();
+        let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
+            .tiles
+            .par_iter_mut()
+            .map(|member| member.advance(schedule, rows.clone(), tolerance, outputs))
+            .collect();
+        into.clear();
+        into.resize(rows.len() * outputs * self.samples, 0.0);
+        let mut stops = Vec::new();
+        for (member, (values, stopped)) in self.tiles.iter().zip(parts) {
+            let width = member.stepper.tile().width();
+            for (line, lanes) in values.chunks_exact(width).enumerate() {
+                into[line * self.samples + member.first..][..member.count].copy_from_slice(&lanes[..member.count]);
+            }
+            stops.extend(stopped);
+        }
+        stops
+    }
+
+    /// Iterations and fallbacks so far.
+    pub fn counters(&self) -> Counters {
+        self.tiles.iter().fold(Counters::default(), |total, member| {
+            let counters = member.stepper.counters();
+            Counters {
+                iterations: total.iterations + counters.iterations,
+                rank_revealing: total.rank_revealing + counters.rank_revealing,
+            }
+        })
+    }
+
+    /// The sample whose local error was largest against the tolerance, and how large.
+    pub fn most_strained(&self) -> Option<(usize, f64)> {
+        let strains = self.tiles.iter().flat_map(|member| {
+            member.strain[..member.count].iter().enumerate().map(|(lane, &strain)| (member.first + lane, strain))
+        });
+        strains.reduce(|a, b| if b.1 > a.1 { b } else { a })
+    }
+}
+
+impl Member<'_> {
+    fn advance(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        tolerance: Option<f64>,
+        outputs: usize,
+    ) -> (Vec<f64>, Vec<Stop>) {
+        let width = self.stepper.tile().width();
+        let mut values = vec![0.0; rows.len() * outputs * width];
+        let mut stops = Vec::new();
+        for (place, row) in rows.enumerate() {
+            for (h, end) in schedule.steps_to(row) {
+                let before = tolerance.map(|_| self.stepper.save());
+                let stuck = self.stepper.step(h, end);
+                stops.extend(stuck.into_iter().map(|Stuck { lane, time, equation }| Stop {
+                    sample: self.first + lane,
+                    row,
+                    time,
+                    equation,
+                }));
+                if let (Some(tolerance), Some(before)) = (tolerance, before) {
+                    for (strain, error) in self.strain.iter_mut().zip(self.stepper.local_error(&before, h)) {
+                        *strain = strain.max(error / tolerance);
+                    }
+                }
+            }
+            self.stepper.observe(&mut values[place * outputs * width..][..outputs * width]);
+        }
+        (values, stops)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_all_samples_once() {
+        for samples in 1..200 {
+            for threads in [1, 2, 7] {
+                let mut next = 0;
+                for (first, count, width) in tiles(samples, threads) {
+                    assert_eq!(first, next);
+                    assert!(count >= 1 && count <= width && WIDTHS.contains(&width));
+                    next += count;
+                }
+                assert_eq!(next, samples);
+            }
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! One sample whose state is a polynomial in the uncertain parameters: the scheme in jet arithmetic.
+//!
+//! Newton solves each step at the box's centre. With the Newton matrix of that solution, J₀, every sweep
+//! x ← x − J₀⁻¹ R(x) in jets then makes one more order exact: the step's derivatives with respect to the parameters to
+//! any order, without differentiating anything by hand.
+
+use symdiff::{JetMemory, jet::JetSpace};
+
+use super::fleet::Stop;
+use super::hht::Stepper;
+use super::newton::Counters;
+use super::simulator::{SimulationError, Simulator};
+use super::steps::Schedule;
+
+/// The run of one jet.
+#[derive(Debug)]
+pub struct JetRun<'s> {
+    simulator: &'s Simulator,
+    order: usize,
+    /// The box's centre.
+    center: Stepper<'s>,
+    memory: JetMemory<'s>,
+    step_size: f64,
+}
+
+impl<'s> JetRun<'s> {
+    /// Assembles the jet around `center` with the parameters' half widths as slopes.
+    ///
+    /// # Errors
+    /// Where the centre cannot be assembled.
+    pub fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        center: &[f64],
+        half_width: &[f64],
+        first_step: f64,
+    ) -> Result<Self, SimulationError> {
+        let assembled = simulator.assemble(1, first_step, |_| center.to_vec())?;
+        let order = space.monomials().order();
+        let set_parameters = |memory: &mut JetMemory<'s>| {
+            for (variable, slot) in simulator.start.layout.parameters.clone().enumerate() {
+                space.variable(variable, center[variable], half_width[variable], memory.jet_mut(slot));
+            }
+        };
+        let mut start = JetMemory::new(space, simulator.start.slots(), simulator.start.constants());
+        for slot in simulator.start.layout.state() {
+            start.set_constant(slot, assembled.lane(slot)[0]);
+        }
+        set_parameters(&mut start);
+        consistent(simulator, &mut start, order, first_step);
+
+        let program = &simulator.program;
+        let mut memory = JetMemory::new(space, program.slots(), program.constants());
+        set_parameters(&mut memory);
+        for slot in program.layout.state() {
+            memory.jet_mut(slot).copy_from_slice(start.jet(slot));
+        }
+        memory.run(program.sample());
+        Ok(Self { simulator, order, center: Stepper::new(program, &assembled), memory, step_size: f64::NAN })
+    }
+
+    /// Outputs at `rows`, which follow those asked for last: row by row, output by output, coefficient by coefficient.
+    /// Returns where it stopped, if it did.
+    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        into.clear();
+        for row in rows {
+            for (h, end) in schedule.steps_to(row) {
+                if !self.step(h, end) {
+                    return Some(Stop { sample: 0, row, time: end, equation: 0 });
+                }
+            }
+            self.memory.run(self.simulator.program.observe());
+            for &slot in &self.simulator.program.outputs {
+                into.extend_from_slice(self.memory.jet(slot));
+            }
+        }
+        None
+    }
+
+    /// Iterations of the centre so far.
+    pub fn counters(&self) -> Counters {
+        self.center.counters()
+    }
+
+    /// One step; `false` where the centre does not converge, or only with the rank-revealing solve, whose matrix has no
+    /// inverse for the sweeps.
+    fn step(&mut self, h: f64, end: f64) -> bool {
+        let program = &self.simulator.program;
+        let layout = &program.layout;
+        self.set_step_size(h);
+        self.memory.set_constant(layout.time, end);
+        self.memory.run(program.step());
+
+        let dense_before = self.center.counters().rank_revealing;
+        if !self.center.solve(h, end)[0] || self.center.counters().rank_revealing != dense_before {
+            return false;
+        }
+        self.center.tile_mut().run(program.factor());
+        for &slot in program.factor_slots() {
+            self.memory.set_constant(slot as usize, self.center.tile().lane(slot as usize)[0]);
+        }
+        for (w, x) in layout.w.clone().zip(layout.iterate.clone()) {
+            let prediction = self.memory.jet(w).to_vec();
+            self.memory.jet_mut(x).copy_from_slice(&prediction);
+            self.memory.jet_mut(x)[0] = self.center.tile().lane(x)[0];
+        }
+        for slot in layout.lambda.clone() {
+            self.memory.jet_mut(slot)[0] = self.center.tile().lane(slot)[0];
+        }
+        for _ in 0..self.order {
+            self.memory.run(program.correct());
+            let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
+            add_correction(&mut self.memory, unknowns, layout.correction.start);
+        }
+        self.memory.run(program.advance());
+        self.center.finish();
+        true
+    }
+
+    /// As for a tile: see [`Stepper`].
+    fn set_step_size(&mut self, h: f64) {
+        if self.step_size == h {
+            return;
+        }
+        let program = &self.simulator.program;
+        let layout = &program.layout;
+        if self.step_size.is_finite() {
+            let ratio = h / self.step_size;
+            for (a, w) in layout.a.clone().zip(layout.w.clone()) {
+                let exact = self.memory.jet(w).to_vec();
+                self.memory.jet_mut(a).iter_mut().zip(exact).for_each(|(a, w)| *a = w + ratio * (*a - w));
+            }
+        }
+        self.memory.set_constant(layout.step, h);
+        self.memory.run(program.step_size());
+        self.step_size = h;
+    }
+}
+
+/// Adds the correction to the unknowns.
+fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>, correction: usize) {
+    for (place, slot) in unknowns.enumerate() {
+        let change = memory.jet(correction + place).to_vec();
+        memory.jet_mut(slot).iter_mut().zip(change).for_each(|(value, change)| *value += change);
+    }
+}
+
+/// Makes the jet of the start consistent. Its constant terms are so already, and every Newton correction in jets doubles
+/// the orders that are.
+fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
+    let start = &simulator.start;
+    let layout = &start.layout;
+    let corrections = (order + 1).ilog2() as usize + 2;
+    memory.run(start.sample());
+    memory.run(start.given());
+    for _ in 0..corrections {
+        memory.run(start.position());
+        add_correction(memory, layout.q.clone(), layout.correction.start);
+    }
+    for _ in 0..corrections {
+        memory.run(start.velocity());
+        add_correction(memory, layout.v.clone(), layout.correction.start);
+    }
+    let accelerate = |memory: &mut JetMemory| {
+        for _ in 0..corrections {
+            memory.run(start.acceleration());
+            add_correction(memory, layout.w.clone().chain(layout.lambda.clone()), layout.correction.start);
+        }
+    };
+    accelerate(memory);
+    // a = w(t + αh), as for tiles.
+    let shift = simulator.program.coefficients.alpha * first_step;
+    let saved: Vec<Vec<f64>> = layout.state().map(|slot| memory.jet(slot).to_vec()).collect();
+    let state = |slot: usize| &saved[slot - layout.q.start];
+    for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
+        for place in 0..state(q).len() {
+            memory.jet_mut(q)[place] += shift * (state(v)[place] + 0.5 * shift * state(w)[place]);
+            memory.jet_mut(v)[place] += shift * state(w)[place];
+        }
+    }
+    memory.set_constant(layout.time, shift);
+    accelerate(memory);
+    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|slot| memory.jet(slot).to_vec()).collect();
+    for (slot, saved) in layout.state().zip(&saved) {
+        memory.jet_mut(slot).copy_from_slice(saved);
+    }
+    for (slot, shifted) in layout.a.clone().zip(&shifted) {
+        memory.jet_mut(slot).copy_from_slice(shifted);
+    }
+    memory.set_constant(layout.time, 0.0);
+}
