@@ -22,6 +22,8 @@ mod placement;
 mod plane;
 mod start;
 mod system;
+#[cfg(test)]
+mod tests;
 
 pub use build::build;
 pub use error::BuildError;
