@@ -108,6 +108,7 @@ fn springs_have_their_potential() {
         let mut m = two_bodies();
         m.effect(spring(&m, along, "k", "0"));
         let system = m.build();
+        // Only the centripetal force of a's centre of mass: no damper is left behind.
         assert_eq!(system.graph.symbols_of(&system.force).iter().filter(|symbol| system.v.contains(symbol)).count(), 1);
         for seed in 0..5 {
             let state = State::random(&system, seed);

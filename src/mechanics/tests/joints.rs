@@ -31,8 +31,8 @@ fn kinds(m: &Model) -> Vec<JointKind> {
     ]
 }
 
-/// −Φ_qᵀ λ on the second body is the reaction's force at the second point and its torque; the first body feels the opposite, and
-/// the pair has no moment (but for gears).
+/// −Φ_qᵀ λ on the second body is the reaction's force at the second point and its torque; the first body feels the
+/// opposite, and the pair has no moment (but for gears).
 #[test]
 fn reactions_are_what_the_multipliers_do() {
     for kind in kinds(&two_bodies()) {
