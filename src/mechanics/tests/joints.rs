@@ -43,8 +43,8 @@ fn reactions_are_what_the_multipliers_do() {
         if let JointKind::Revolute { .. } | JointKind::Fixed { .. } = kind {
             // Points coincide, so that action and reaction do.
             let gap = state.values(&system.graph, &system.constraint[..2]);
-            for axis in 0..2 {
-                *state.0.get_mut(&system.q[3 + axis]).unwrap() += gap[axis];
+            for (place, gap) in system.q[3..5].iter().zip(gap) {
+                *state.0.get_mut(place).unwrap() += gap;
             }
         }
         let pull: Vec<f64> = constraint_forces(&mut system, &state).iter().map(|force| -force).collect();
