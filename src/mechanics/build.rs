@@ -10,13 +10,14 @@ use super::joints::{self, Row};
 use super::mechanism::Mechanism;
 use super::system::{ConstraintInfo, CoordinateInfo, System};
 
-/// How far from zero, relative to the model's size, a constraint that nothing can change may be: rounding only.
+/// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
+/// only.
 const CLOSED: f64 = 1e-9;
 
 /// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description.
 ///
-/// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both sides held) are left out. The work is
-/// linear in the number of bodies, joints and effects.
+/// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both
+/// sides held) are left out. The work is linear in the number of bodies, joints and effects.
 ///
 /// # Errors
 /// A constraint that nothing can fulfil, and (for descriptions that were not checked) a name out of place.
@@ -103,8 +104,7 @@ impl Constraints {
 
 /// Whether a row constrains anything. One without a coordinate holds always, and is not needed, or never.
 fn is_effective(g: &Graph, m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> Result<bool, BuildError> {
-    let fixed = |symbol: &Expr| *symbol == m.time || m.uncertain.iter().any(|known| known.symbol == *symbol);
-    if !g.symbols_of(&[row.value]).iter().all(fixed) {
+    if !m.is_given(g, &[row.value]) {
         return Ok(true);
     }
     let samples = [
@@ -115,8 +115,9 @@ fn is_effective(g: &Graph, m: &Mechanism, length: f64, info: &ConstraintInfo, ro
     ];
     for (at, values) in samples {
         let residual = values[0];
-        // Not `>`: what is not a number is not zero either.
-        if !(residual.abs() <= CLOSED * length.max(1.0)) {
+        // What is not a number is not closed.
+        let closed = residual.abs() <= CLOSED * length.min(1.0);
+        if !closed {
             let (joint, constraint) = (info.joint.clone(), info.name.clone());
             return Err(BuildError::Contradiction { joint, constraint, residual, at });
         }

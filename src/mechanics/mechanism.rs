@@ -217,6 +217,13 @@ impl<'d> Mechanism<'d> {
         MaterialPoint { body, arm, position, velocity }
     }
 
+    /// Whether only parameters and t stand in the expressions.
+    pub fn is_given(&self, g: &Graph, exprs: &[Expr]) -> bool {
+        let given =
+            |symbol: &Expr| *symbol == self.time || self.uncertain.iter().any(|parameter| parameter.symbol == *symbol);
+        g.symbols_of(exprs).iter().all(given)
+    }
+
     /// Values at the nominal parameters, t = 0 and, should they occur, zero coordinates.
     pub fn nominal(&self, g: &Graph, exprs: &[Expr]) -> Vec<f64> {
         self.sample(g, exprs, 0.0, |parameter| parameter.nominal)

@@ -1,7 +1,8 @@
 //! Description → [`System`]: the equations of motion as expressions.
 //!
-//! [`build`] reads like the derivation on paper: symbols and bodies ([`mechanism`], [`body`]), constraints
-//! ([`joints`]), applied forces ([`effects`]), inertia, outputs, and where the motion starts ([`start`], [`placement`]).
+//! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `body`), constraints
+//! (`joints`), applied forces (`effects`), inertia, outputs, and where the motion starts (`start`,
+//! `placement`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|
@@ -22,6 +23,8 @@ mod placement;
 mod plane;
 mod start;
 mod system;
+#[cfg(test)]
+mod tests;
 
 pub use build::build;
 pub use error::BuildError;

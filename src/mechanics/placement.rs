@@ -1,13 +1,14 @@
 //! A first guess of where the bodies are, in numbers, at the nominal parameters.
 //!
-//! Assembly is a Newton iteration and wants to begin near a solution, and never at a singular one: a four-bar linkage with all its links at
-//! angle 0 is stretched, and no small rotation closes its gap. So the bodies are placed one after the other, each onto a joint with a body that is
-//! already placed:
+//! Assembly is a Newton iteration and wants to begin near a solution, and never at a singular one: a four-bar linkage
+//! with all its links at angle 0 is stretched, and no small rotation closes its gap. So the bodies are placed one after
+//! the other, each onto a joint with a body that is already placed:
 //!
 //! - pins and welds before slides, since a slide does not say where along its line a body is;
 //! - bodies whose angle is given (kept, guessed or held) before others;
-//! - the angle, where it is not given: that of a weld or slide to a placed body; or towards the other pin, where the body's second pin is on a placed body;
-//!   or, where a second unplaced body leads on to a placed pin, that of the triangle with both bodies' lengths as sides, its corner on top; or 0.
+//! - the angle, where it is not given: that of a weld or slide to a placed body; or towards the other pin, where the
+//!   body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that of the
+//!   triangle with both bodies' lengths as sides, its corner on top; or 0.
 //!
 //! Bodies that nothing joins to the ground stay at 0.
 
@@ -147,8 +148,8 @@ impl Placement {
         aimed.or_else(|| pins().find_map(|next| self.corner(link, anchor, next)))
     }
 
-    /// The angle that makes a triangle of `anchor`, the pin `next` on the other side of `link.other`, and a placed pin on the far side of the body
-    /// behind it.
+    /// The angle that makes a triangle of `anchor`, the pin `next` on the other side of `link.other`, and a placed pin
+    /// on the far side of the body behind it.
     fn corner(&self, link: Link, anchor: [f64; 2], next: &Link) -> Option<f64> {
         if self.given[next.other][ANGLE].is_some() {
             return None;

@@ -10,8 +10,9 @@ use super::placement::Placement;
 use super::system::Start;
 
 impl Mechanism<'_> {
-    /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else where the joints put the
-    /// bodies when they are walked from the ground ([`Placement`]), with the nominal parameters.
+    /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
+    /// where the joints put the bodies when they are walked from the ground ([`Placement`]), with the nominal
+    /// parameters.
     pub fn start(&self, g: &mut Graph) -> Result<Start, BuildError> {
         let description = self.description;
         let position = self.values_at_start(g, &description.initial, TimeOrder::Position)?;
@@ -44,7 +45,8 @@ impl Mechanism<'_> {
         Ok(found)
     }
 
-    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held and initial positions; 1 where it names none.
+    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
+    /// and initial positions; 1 where it names none.
     pub fn characteristic_length(&self, g: &mut Graph) -> Result<f64, BuildError> {
         let mut lengths: Vec<Expr> = Vec::new();
         for body in &self.bodies {

@@ -1,7 +1,8 @@
 //! Applied forces, one file each.
 //!
-//! An effect adds forces and torques on bodies, and potential energy where it has one. Their generalised forces follow from virtual power:
-//! Σ Qᵢ vᵢ = F · ṙ + τ θ̇ for every motion, which [`Loads`] sees to. Values may depend on parameters, t, positions, velocities and reactions.
+//! An effect adds forces and torques on bodies, and potential energy where it has one. Their generalised forces follow
+//! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ θ̇ for every motion, which [`Loads`] sees to. Values may depend on
+//! parameters, t, positions, velocities and reactions.
 //!
 //! To add an effect: its file here, its variant in [`EffectKind`], its line in [`apply`].
 
@@ -73,7 +74,8 @@ impl Loads {
         *total = g.sub(*total, torque);
     }
 
-    /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the force.
+    /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the
+    /// force.
     pub fn add_potential(&mut self, g: &Graph, m: &Mechanism, coefficients: &[Expr], potential: Expr) {
         let fixed =
             |symbol: &Expr| *symbol == m.time || m.uncertain.iter().any(|parameter| parameter.symbol == *symbol);

@@ -7,9 +7,10 @@
 //!                               F_B = −f e,                                                      F_A = −F_B
 //! ```
 //!
-//! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and where d is not parallel to e the
-//! pair of forces is also a couple d × F, as in a guide. The line has no direction at ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and
-//! c = 0. A zero stiffness or damping leaves nothing behind. Where k or ℓ₀ depend on the motion there is no potential and none is counted.
+//! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
+//! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
+//! ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
+//! Where k or ℓ₀ depend on the motion there is no potential and none is counted.
 
 use symdiff::{Expr, Formula, Graph};
 

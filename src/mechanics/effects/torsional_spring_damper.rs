@@ -5,8 +5,8 @@
 //! Q_θ₂ = −τ,   Q_θ₁ = +τ
 //! ```
 //!
-//! Angles are never wrapped: the spring winds up over many turns. Where k or φ₀ depend on the motion there is no potential and none is
-//! counted.
+//! Angles are never wrapped: the spring winds up over many turns. Where k or φ₀ depend on the motion there is no
+//! potential and none is counted.
 
 use symdiff::{Formula, Graph};
 

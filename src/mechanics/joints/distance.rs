@@ -4,8 +4,9 @@
 //! Φ = (|r|² − d²) / (2 d) = 0,   r = r_B − r_A          1 row, m
 //! ```
 //!
-//! ∂Φ/∂r_B = r/d is the unit vector of the rod, so λ is the rod's tension, N: −Φ_qᵀ λ is −λ r/d at B and +λ r/d at A, and λ > 0 pulls the
-//! points together. Φ is |r| − d to first order and has no root. It fails at d = 0: two coincident points are a revolute joint.
+//! ∂Φ/∂r_B = r/d is the unit vector of the rod, so λ is the rod's tension, N: −Φ_qᵀ λ is −λ r/d at B and +λ r/d at A,
+//! and λ > 0 pulls the points together. Φ is |r| − d to first order and has no root. It fails at d = 0: two coincident
+//! points are a revolute joint.
 
 use symdiff::{Formula, Graph};
 

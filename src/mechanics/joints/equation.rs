@@ -4,9 +4,9 @@
 //! Φ = left − right = 0          1 row, in the unit of its sides
 //! ```
 //!
-//! The formulas speak of positions, parameters and t, not of velocities. There is no second body, hence no reaction force or torque: both
-//! are zero, and the multiplier λ itself (N for metres, N m for radians), with its sign, stands for `joint.force`. −Φ_qᵀ λ acts: with `crank.angle =
-//! omega*t` the drive's torque on the crank is −λ.
+//! The formulas speak of positions, parameters and t, not of velocities. There is no second body, hence no reaction
+//! force or torque: both are zero, and the multiplier λ itself (N for metres, N m for radians), with its sign, stands
+//! for `joint.force`. −Φ_qᵀ λ acts: with `crank.angle = omega*t` the drive's torque on the crank is −λ.
 
 use symdiff::{Formula, Graph};
 

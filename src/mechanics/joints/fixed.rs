@@ -5,8 +5,8 @@
 //!     ⎣ θ₂ − θ₁ − angle   ⎦
 //! ```
 //!
-//! The first two rows are those of the revolute joint: λ is the force on the second body, at B. −Φ_qᵀ λ of the third is the torque −λ on the
-//! second body and +λ on the first.
+//! The first two rows are those of the revolute joint: λ is the force on the second body, at B. −Φ_qᵀ λ of the third is
+//! the torque −λ on the second body and +λ on the first.
 
 use symdiff::{Formula, Graph};
 

@@ -4,9 +4,9 @@
 //! Φ = θ₂ − ratio θ₁ − offset = 0          1 row, rad
 //! ```
 //!
-//! An external pair has a negative ratio. −Φ_qᵀ λ is the torque −λ on the second body and +ratio λ on the first; the difference is carried
-//! by whatever holds the axles, so this is no pair of action and reaction. Tooth forces on the axles are not part of it: the reaction has no
-//! force.
+//! An external pair has a negative ratio. −Φ_qᵀ λ is the torque −λ on the second body and +ratio λ on the first; the
+//! difference is carried by whatever holds the axles, so this is no pair of action and reaction. Tooth forces on the
+//! axles are not part of it: the reaction has no force.
 
 use symdiff::{Formula, Graph};
 

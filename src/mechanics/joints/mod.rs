@@ -1,8 +1,8 @@
 //! What joints constrain, one file each.
 //!
 //! A joint contributes rows Φ(q, t) = 0. The equations of motion are M w = Q − Φ_qᵀ λ, so a row's generalised force is
-//! −Φ_qᵀ λ; each row says what that is on the joint's **second** body, for λ = 1: a force in the ground's axes and a torque
-//! about the second point. The first body feels the opposite, at the same place (but for gears, see there).
+//! −Φ_qᵀ λ; each row says what that is on the joint's **second** body, for λ = 1: a force in the ground's axes and a
+//! torque about the second point. The first body feels the opposite, at the same place (but for gears, see there).
 //!
 //! To add a joint: its file here, its variant in [`JointKind`], its line in [`rows`].
 
@@ -61,8 +61,8 @@ pub fn rows(g: &mut Graph, m: &Mechanism, kind: &JointKind) -> Result<Vec<Row>, 
 
 /// The reaction Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept.
 ///
-/// A dropped row (both sides held) has no multiplier: how much the ground carries there is not determined by the motion, and
-/// it counts as zero.
+/// A dropped row (both sides held) has no multiplier: how much the ground carries there is not determined by the
+/// motion, and it counts as zero.
 pub fn reaction(g: &mut Graph, kind: &JointKind, kept: &[(Row, Expr)]) -> Reaction {
     let mut force = plane::zero(g);
     let mut torque = g.constant(0.0);

@@ -4,8 +4,9 @@
 //! Φ = n₁ · (r_B − r_A) = 0          1 row, m
 //! ```
 //!
-//! n₁ = R₁ (axis/|axis|)⊥ is the slot's unit normal; the slot goes through A and does not end. −Φ_qᵀ λ is the force −λ n₁ at B on the second
-//! body (the pin) and the opposite on the first (the slot), at the same place. The first row of the prismatic joint.
+//! n₁ = R₁ (axis/|axis|)⊥ is the slot's unit normal; the slot goes through A and does not end. −Φ_qᵀ λ is the force −λ
+//! n₁ at B on the second body (the pin) and the opposite on the first (the slot), at the same place. The first row of
+//! the prismatic joint.
 
 use symdiff::{Formula, Graph};
 

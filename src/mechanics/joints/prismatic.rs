@@ -5,10 +5,10 @@
 //!     ⎣ θ₂ − θ₁ − angle    ⎦
 //! ```
 //!
-//! n₁ = R₁ (axis/|axis|)⊥ is the line's unit normal; the line goes through A. −Φ_qᵀ λ of the first row is the force −λ n₁ at B
-//! on the second body and the opposite on the first, at the same place, for B slides: its arm on the first body is r_B − r₁.
-//! That of the second row is the torque −λ on the second body and +λ on the first. An axis of length zero has no normal: the
-//! rows are not numbers then.
+//! n₁ = R₁ (axis/|axis|)⊥ is the line's unit normal; the line goes through A. −Φ_qᵀ λ of the first row is the force −λ
+//! n₁ at B on the second body and the opposite on the first, at the same place, for B slides: its arm on the first body
+//! is r_B − r₁. That of the second row is the torque −λ on the second body and +λ on the first. An axis of length zero
+//! has no normal: the rows are not numbers then.
 
 use symdiff::{Formula, Graph};
 

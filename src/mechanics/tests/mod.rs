@@ -1,0 +1,10 @@
+//! Tests of the equations of motion against mechanics done another way: finite differences, virtual power, Lagrange's
+//! equations, statics, closed forms.
+
+mod bodies;
+mod effects;
+mod joints;
+mod model;
+mod numbers;
+mod start;
+mod systems;

@@ -1,0 +1,161 @@
+//! Descriptions in a few lines.
+
+use symdiff::Formula;
+
+use crate::mechanics::{self, System};
+use crate::model::*;
+
+pub fn formula(text: &str) -> Formula {
+    Formula::parse(text).unwrap()
+}
+
+pub fn pair(x: &str, y: &str) -> [Formula; 2] {
+    [formula(x), formula(y)]
+}
+
+fn coordinate(letter: char) -> Coordinate {
+    match letter {
+        'x' => Coordinate::X,
+        'y' => Coordinate::Y,
+        'a' => Coordinate::Angle,
+        _ => panic!("coordinates are x, y and a"),
+    }
+}
+
+pub struct Model(pub Description);
+
+impl Model {
+    /// Only the ground.
+    pub fn new() -> Self {
+        let mut model = Self(Description {
+            name: "test".to_owned(),
+            description: None,
+            parameters: Vec::new(),
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            effects: Vec::new(),
+            initial: Vec::new(),
+            guess: Vec::new(),
+            outputs: Vec::new(),
+            simulation: Simulation { duration: 1.0, stepping: Stepping::Fixed(1e-3), alpha: -0.1, output_step: 0.01 },
+            bounds: BoundsRequest::default(),
+        });
+        model.body("ground", "0", "0", "", &[]);
+        model
+    }
+
+    pub fn parameter(&mut self, name: &str, value: &str) {
+        let value = ParameterValue::Formula(formula(value));
+        self.0.parameters.push(Parameter { name: name.to_owned(), unit: String::new(), value });
+    }
+
+    pub fn interval(&mut self, name: &str, [lower, nominal, upper]: [f64; 3]) {
+        let value = ParameterValue::Interval { nominal, lower, upper };
+        self.0.parameters.push(Parameter { name: name.to_owned(), unit: String::new(), value });
+    }
+
+    /// `coordinates` are letters of `xya`.
+    pub fn body(&mut self, name: &str, mass: &str, inertia: &str, coordinates: &str, points: &[(&str, &str, &str)]) {
+        let points = points.iter().map(|&(name, x, y)| Point { name: name.to_owned(), position: pair(x, y) });
+        self.0.bodies.push(Body {
+            name: name.to_owned(),
+            mass: Some(formula(mass)),
+            inertia: Some(formula(inertia)),
+            center_of_mass: None,
+            coordinates: coordinates.chars().map(coordinate).collect(),
+            held: Vec::new(),
+            points: points.collect(),
+        });
+    }
+
+    pub fn ground_point(&mut self, name: &str, x: &str, y: &str) {
+        self.0.bodies[0].points.push(Point { name: name.to_owned(), position: pair(x, y) });
+    }
+
+    /// Of the last body.
+    pub fn center_of_mass(&mut self, x: &str, y: &str) {
+        self.0.bodies.last_mut().unwrap().center_of_mass = Some(pair(x, y));
+    }
+
+    /// A coordinate of the last body.
+    pub fn hold(&mut self, letter: char, value: &str) {
+        self.0.bodies.last_mut().unwrap().held.push((coordinate(letter), formula(value)));
+    }
+
+    pub fn body_index(&self, name: &str) -> usize {
+        self.0.bodies.iter().position(|body| body.name == name).unwrap()
+    }
+
+    /// `body` or `body.point`.
+    pub fn point(&self, name: &str) -> PointRef {
+        let (body, point) = name.split_once('.').map_or((name, None), |(body, point)| (body, Some(point)));
+        let body = self.body_index(body);
+        let points = &self.0.bodies[body].points;
+        PointRef { body, point: point.map(|point| points.iter().position(|known| known.name == point).unwrap()) }
+    }
+
+    pub fn between(&self, first: &str, second: &str) -> [PointRef; 2] {
+        [self.point(first), self.point(second)]
+    }
+
+    pub fn joint(&mut self, name: &str, kind: JointKind) {
+        self.0.joints.push(Joint { name: name.to_owned(), kind });
+    }
+
+    pub fn revolute(&mut self, name: &str, first: &str, second: &str) {
+        let between = self.between(first, second);
+        self.joint(name, JointKind::Revolute { between });
+    }
+
+    pub fn effect(&mut self, kind: EffectKind) {
+        self.0.effects.push(Effect { name: format!("effect{}", self.0.effects.len()), kind });
+    }
+
+    pub fn gravity(&mut self) {
+        self.effect(EffectKind::Gravity { acceleration: pair("0", "-9.81") });
+    }
+
+    pub fn initial(&mut self, body: &str, letter: char, order: TimeOrder, value: &str) {
+        let value =
+            StartValue { body: self.body_index(body), coordinate: coordinate(letter), order, value: formula(value) };
+        self.0.initial.push(value);
+    }
+
+    pub fn output(&mut self, text: &str) {
+        let output = Output { name: text.to_owned(), formula: formula(text), unit: String::new() };
+        self.0.outputs.push(output);
+    }
+
+    pub fn build(&self) -> System {
+        mechanics::build(&self.0).unwrap()
+    }
+}
+
+/// The slider crank of the design.
+pub fn slider_crank() -> Model {
+    let mut m = Model::new();
+    m.interval("l1", [0.1485, 0.15, 0.1515]);
+    for (name, value) in [("l2", "0.56"), ("m1", "0.37"), ("m2", "0.77"), ("m3", "0.45"), ("c", "1"), ("k", "5")] {
+        m.parameter(name, value);
+    }
+    m.interval("tau", [-0.505, -0.5, -0.495]);
+    m.body("crank", "m1", "m1*l1^2/12", "xya", &[("A", "-l1/2", "0"), ("B", "l1/2", "0")]);
+    m.body("rod", "m2", "m2*l2^2/12", "xya", &[("B", "-l2/2", "0"), ("C", "l2/2", "0")]);
+    m.body("slider", "m3", "0", "x", &[]);
+    m.revolute("pivot", "ground", "crank.A");
+    m.revolute("pin", "crank.B", "rod.B");
+    m.revolute("wrist", "rod.C", "slider");
+    m.effect(EffectKind::Torque { on: 1, from: 0, value: formula("tau") });
+    let spring = EffectKind::SpringDamper {
+        between: m.between("ground", "slider"),
+        along: Some(pair("1", "0")),
+        stiffness: formula("k"),
+        damping: formula("c"),
+        free_length: formula("l1 + l2"),
+    };
+    m.effect(spring);
+    m.initial("crank", 'a', TimeOrder::Position, "0");
+    m.initial("crank", 'a', TimeOrder::Velocity, "0");
+    m.output("slider.x");
+    m
+}
