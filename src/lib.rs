@@ -3,6 +3,7 @@
 //! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
 
 pub mod bounds;
+pub mod cli;
 pub mod mechanics;
 pub mod model;
 pub mod report;

@@ -89,10 +89,16 @@ fn scaled(x: f64, exponent: i32) -> f64 {
     if exponent == 0 { x } else { x / 10f64.powi(exponent) }
 }
 
-/// The smallest of 1, 2, 5 times a power of ten that is not below `step`.
+/// The one of 1, 2, 5 times a power of ten that is nearest to `step` in ratio.
 fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|f| f * power >= step * (1.0 - 1e-9)).unwrap_or(10.0);
+    // Halfway between 1 and 2 is √2, and so on.
+    let factor = match step / power {
+        x if x < 2f64.sqrt() => 1.0,
+        x if x < 10f64.sqrt() => 2.0,
+        x if x < 50f64.sqrt() => 5.0,
+        _ => 10.0,
+    };
     factor * power
 }
 
@@ -139,8 +145,9 @@ mod tests {
     fn ticks_are_round_and_of_equal_precision() {
         let axis = Axis::fit([-0.11, 0.32].into_iter(), 5, 0.0);
         assert_eq!(labels(&axis), ["−0.1", "0.0", "0.1", "0.2", "0.3"]);
-        assert_eq!(labels(&Axis::fit([0.0, 2.0].into_iter(), 8, 0.0)), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+        assert_eq!(labels(&Axis::fit([0.0, 2.0].into_iter(), 5, 0.0)), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
         assert_eq!(axis.title("x3", "m"), "x3 [m]");
+        assert_eq!(labels(&Axis::fit([-43.0, 41.0].into_iter(), 4, 0.0)), ["−40", "−20", "0", "20", "40"]);
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::report::{Summary, bounds_csv, plot_svg};
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum ReportError {
-    #[error("cannot make the folder {}: {source}", path.display())]
+    #[error("cannot write into the folder {}: {source}", path.display())]
     Folder { path: PathBuf, source: io::Error },
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
@@ -33,7 +33,7 @@ pub enum ReportError {
 /// # Errors
 /// At the first file that cannot be written; those before it are kept.
 pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ReportError> {
-    fs::create_dir_all(dir).map_err(|source| ReportError::Folder { path: dir.to_owned(), source })?;
+    prepare_folder(dir)?;
     let mut written = Vec::new();
     let mut write = |name: &str, contents: &[u8]| {
         let path = dir.join(name);
@@ -57,8 +57,23 @@ pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<V
     Ok(written)
 }
 
+/// Makes `dir` if it is not there, and tries whether a file can be made in it: better known before a long run than after.
+///
+/// # Errors
+/// If it cannot.
+pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
+    let folder = |source| ReportError::Folder { path: dir.to_owned(), source };
+    if dir.exists() && !dir.is_dir() {
+        // The system would say "File exists".
+        return Err(folder(io::ErrorKind::NotADirectory.into()));
+    }
+    fs::create_dir_all(dir).map_err(folder)?;
+    tempfile::Builder::new().prefix(".mbint-").suffix(".tmp").tempfile_in(dir).map_err(|e| folder(plain(e)))?;
+    Ok(())
+}
+
 /// Writes a file under a temporary name in the same folder, then renames it into place.
-pub(crate) fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     let dir = path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".mbint-").suffix(".tmp");
@@ -185,7 +200,10 @@ mod tests {
         let (bounds, summary) = results();
         let error = write_results(&place, &bounds, &summary).unwrap_err();
         assert!(matches!(&error, ReportError::Folder { path, .. } if *path == place), "{error}");
-        assert!(error.to_string().starts_with(&format!("cannot make the folder {}: ", place.display())), "{error}");
+        assert!(
+            error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
+            "{error}"
+        );
         assert_eq!(fs::read_to_string(&place).unwrap(), "mine");
     }
 
@@ -198,7 +216,7 @@ mod tests {
         let error = write_results(dir.path(), &bounds, &summary).unwrap_err();
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
-        assert!(!error.to_string().contains(".tmp"), "{error}");
+        assert!(!error.to_string().contains(".mbint-"), "{error}");
         assert_eq!(names(dir.path()), ["bounds.csv", "x3.svg"]);
     }
 
@@ -212,8 +230,8 @@ mod tests {
         // The superuser may write anywhere: nothing to see then.
         if fs::write(dir.path().join("probe"), "").is_err() {
             let error = write_results(dir.path(), &bounds, &summary).unwrap_err();
-            let path = dir.path().join("bounds.csv");
-            assert!(error.to_string().starts_with(&format!("cannot write {}: Permission", path.display())), "{error}");
+            let path = dir.path().display().to_string();
+            assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: Perm")), "{error}");
         }
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o755)).unwrap();
     }

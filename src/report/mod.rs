@@ -10,7 +10,6 @@ mod summary;
 
 pub use self::csv::bounds_csv;
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
-pub(crate) use files::write_whole;
-pub use files::{ReportError, file_stem, write_results};
+pub use files::{ReportError, file_stem, prepare_folder, write_results};
 pub use plot::plot_svg;
 pub use summary::{MethodSummary, ParameterSummary, Summary};

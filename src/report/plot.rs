@@ -34,21 +34,26 @@ const NOMINAL: RGBColor = BLACK;
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-/// How a method is drawn. Colours from Okabe and Ito's palette, apart for every colour vision and in grey. Where bands coincide a
-/// later method's narrower edge leaves the earlier one's to be seen on both sides.
+/// How a method is drawn. The colours are apart for every colour vision and in grey. Where bands coincide the earlier
+/// method shows through the gaps of the later one's dashes.
 struct Style {
     label: &'static str,
     color: RGBColor,
+    /// Width of the edges, px.
     edge: f64,
+    /// Opacity of the band.
     fill: f64,
+    /// Lengths of dash and gap, px.
+    dashes: Option<[f64; 2]>,
 }
 
 fn style(method: Method) -> Style {
-    match method {
-        Method::Chebyshev => Style { label: "Chebyshev", color: RGBColor(0, 114, 178), edge: 3.4, fill: 0.16 },
-        Method::Taylor => Style { label: "Taylor", color: RGBColor(240, 170, 40), edge: 2.0, fill: 0.20 },
-        Method::Scan => Style { label: "Scan", color: RGBColor(120, 30, 80), edge: 0.8, fill: 0.12 },
-    }
+    let (label, color, edge, fill, dashes) = match method {
+        Method::Chebyshev => ("Chebyshev", RGBColor(0, 114, 178), 2.0, 0.16, None),
+        Method::Taylor => ("Taylor", RGBColor(240, 160, 20), 2.0, 0.18, Some([10.0, 7.0])),
+        Method::Scan => ("Scan", RGBColor(130, 25, 80), 2.0, 0.10, Some([2.0, 6.5])),
+    };
+    Style { label, color, edge, fill, dashes }
 }
 
 /// The plot of one output as an SVG document. The same data give the same bytes.
@@ -57,15 +62,26 @@ fn style(method: Method) -> Style {
 /// plotters' own, as text; none is known to occur.
 pub fn plot_svg(times: &[f64], output: &OutputBounds) -> Result<String, String> {
     let mut svg = String::new();
-    let fine = |x: u32| (f64::from(x) * FINE) as u32;
+    let (width, height) = (fine(f64::from(SIZE.0)), fine(f64::from(SIZE.1)));
     {
-        let canvas = SVGBackend::with_string(&mut svg, (fine(SIZE.0), fine(SIZE.1))).into_drawing_area();
+        let canvas = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
         draw(&canvas, times, output).map_err(|e| e.to_string())?;
         canvas.present().map_err(|e| e.to_string())?;
     }
-    let drawn = format!("<svg width=\"{}\" height=\"{}\"", fine(SIZE.0), fine(SIZE.1));
+    let drawn = format!("<svg width=\"{width}\" height=\"{height}\"");
     let shown = format!("<svg width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", SIZE.0, SIZE.1);
-    Ok(svg.replacen(&drawn, &shown, 1))
+    Ok(dashed(&svg.replacen(&drawn, &shown, 1)))
+}
+
+/// Gives methods' lines, known by their colours, their dashes: plotters would draw each dash as a line of its own.
+fn dashed(svg: &str) -> String {
+    Method::ALL.map(style).iter().fold(svg.to_owned(), |svg, style| {
+        let Some(dashes) = style.dashes else { return svg };
+        let RGBColor(r, g, b) = style.color;
+        let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
+        let [dash, gap] = dashes.map(fine);
+        svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{dash} {gap}\""))
+    })
 }
 
 fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), impl Display + use<>> {
@@ -174,7 +190,7 @@ impl Panel<'_, '_> {
         let mut x = self.left;
         self.line(&[(x, y), (x + 26.0, y)], NOMINAL.stroke_width(fine(1.4)))?;
         self.text("Nominal", (x + 33.0, y), HPos::Left, VPos::Center)?;
-        x += 118.0;
+        x += legend_step("Nominal");
         for band in bands {
             let style = style(band.method);
             let (top, bottom) = (y - 6.0, y + 6.0);
@@ -183,7 +199,7 @@ impl Panel<'_, '_> {
                 self.line(&[(x, edge), (x + 26.0, edge)], style.color.stroke_width(fine(style.edge)))?;
             }
             self.text(style.label, (x + 33.0, y), HPos::Left, VPos::Center)?;
-            x += 130.0;
+            x += legend_step(style.label);
         }
         Ok(())
     }
@@ -259,15 +275,24 @@ fn fine(width: f64) -> u32 {
     (width * FINE).round() as u32
 }
 
-/// About the width of an axis' widest label, px: a digit is 0.56 of the text size in sans-serif fonts.
+/// About the width of a text, px; a digit is 0.56 to 0.64 of the text's size in sans-serif fonts.
+fn text_width(text: &str) -> f64 {
+    0.6 * TEXT * text.chars().count() as f64
+}
+
+/// Width of an axis' widest label, px.
 fn label_width(axis: &Axis) -> f64 {
-    let longest = axis.ticks().iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0);
-    0.58 * TEXT * longest as f64
+    axis.ticks().iter().map(|(_, label)| text_width(label)).fold(0.0, f64::max)
+}
+
+/// From one entry of the legend to the next, px.
+fn legend_step(label: &str) -> f64 {
+    33.0 + text_width(label) + 26.0
 }
 
 /// A name that fits beside its panel.
 fn shortened(name: &str) -> String {
-    const LONGEST: usize = 36;
+    const LONGEST: usize = 28;
     if name.chars().count() <= LONGEST {
         name.to_owned()
     } else {
