@@ -89,10 +89,10 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
     let deviations: Vec<Band> = output.bands.iter().map(|band| deviation(band, &output.nominal)).collect();
 
     let time = Axis::fit(times.iter().copied(), 9, 0.0);
-    let sides = output.bands.iter().flat_map(|band| [&band.lower, &band.upper]);
-    let main = Axis::fit(sides.chain([&output.nominal]).flatten().copied(), 6, 0.04);
-    let sides = deviations.iter().flat_map(|band| [&band.lower, &band.upper]);
-    let below = Axis::fit(sides.flatten().copied().chain([0.0]), 4, 0.06);
+    let (values, beyond) = in_view(&output.nominal, &output.bands);
+    let main = Axis::fit(values.into_iter(), 6, 0.04);
+    let (values, beyond_below) = in_view(&[0.0], &deviations);
+    let below = Axis::fit(values.into_iter(), 4, 0.06);
 
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
     let left = 44.0 + label_width(&main).max(label_width(&below));
@@ -106,7 +106,8 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
     }
     upper.curve(times, &output.nominal, NOMINAL, 1.2)?;
     upper.y_title(&main.title(&shortened(&output.name), &output.unit))?;
-    upper.legend(&output.bands)?;
+    let beyond = beyond.iter().zip(beyond_below).map(|(&above, below)| above || below);
+    upper.legend(output.bands.iter().map(|band| style(band.method)).zip(beyond))?;
     if output.bands.is_empty() {
         upper.frame()?;
         return upper.time_axis();
@@ -118,12 +119,44 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
         lower.band(times, band)?;
     }
     // The nominal course, less itself: a line at zero with the same gaps.
-    let zero: Vec<f64> = output.nominal.iter().map(|x| x - x).collect();
+    let zero: Vec<f64> = output.nominal.iter().map(|x| if x.is_finite() { 0.0 } else { f64::NAN }).collect();
     lower.curve(times, &zero, NOMINAL, 1.2)?;
     lower.y_title(&below.title("bound − nominal", &output.unit))?;
     upper.frame()?;
     lower.frame()?;
     lower.time_axis()
+}
+
+/// How many times as wide as the narrowest band (with the nominal course) a band may be and still be shown whole.
+const WIDEST: f64 = 8.0;
+
+/// The values that an axis is to show, and which bands go beyond it. A bound that has exploded, as Taylor's does over long times,
+/// would make lines of all others: it leaves the plot instead.
+fn in_view(nominal: &[f64], bands: &[Band]) -> (Vec<f64>, Vec<bool>) {
+    let nominal = extent(nominal.iter());
+    let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();
+    let union = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+    // Halved, for the difference of the largest numbers not to overflow. Where there is nothing, half is -∞.
+    let half = |(low, high): (f64, f64)| 0.5 * high - 0.5 * low;
+    let whole = extents.iter().map(|&extent| union(extent, nominal)).filter(|&extent| half(extent).is_finite());
+    let narrowest = whole.min_by(|&a, &b| half(a).total_cmp(&half(b))).unwrap_or(nominal);
+    // A constant gives no measure.
+    let room = if half(narrowest) > 0.0 { (WIDEST - 1.0) * half(narrowest) } else { f64::INFINITY };
+    let view = (narrowest.0 - room, narrowest.1 + room);
+
+    let mut values = vec![nominal.0, nominal.1];
+    let mut beyond = Vec::new();
+    for (low, high) in extents {
+        values.extend([low.max(view.0), high.min(view.1)]);
+        beyond.push(low < view.0 || high > view.1);
+    }
+    (values, beyond)
+}
+
+/// The lowest and the highest of what is finite; (∞, −∞) of nothing.
+fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
+    let finite = values.filter(|x| x.is_finite());
+    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }
 
 /// A band less the nominal course.
@@ -185,21 +218,21 @@ impl Panel<'_, '_> {
     }
 
     /// A row above the panel: never in the way of the data.
-    fn legend(&self, bands: &[Band]) -> Drawn {
+    fn legend(&self, bands: impl Iterator<Item = (Style, bool)>) -> Drawn {
         let y = self.top - 19.0;
         let mut x = self.left;
         self.line(&[(x, y), (x + 26.0, y)], NOMINAL.stroke_width(fine(1.4)))?;
         self.text("Nominal", (x + 33.0, y), HPos::Left, VPos::Center)?;
         x += legend_step("Nominal");
-        for band in bands {
-            let style = style(band.method);
+        for (style, beyond) in bands {
             let (top, bottom) = (y - 6.0, y + 6.0);
             self.fill(&[(x, top), (x + 26.0, top), (x + 26.0, bottom), (x, bottom)], &style)?;
             for edge in [top, bottom] {
                 self.line(&[(x, edge), (x + 26.0, edge)], style.color.stroke_width(fine(style.edge)))?;
             }
-            self.text(style.label, (x + 33.0, y), HPos::Left, VPos::Center)?;
-            x += legend_step(style.label);
+            let label = if beyond { format!("{} (beyond the plot)", style.label) } else { style.label.to_owned() };
+            self.text(&label, (x + 33.0, y), HPos::Left, VPos::Center)?;
+            x += legend_step(&label);
         }
         Ok(())
     }
@@ -231,10 +264,10 @@ impl Panel<'_, '_> {
         }
     }
 
-    /// Where a point of the data lies on the canvas.
+    /// Where a point of the data lies on the canvas; what is beyond the panel, on its frame.
     fn place(&self, (t, y): Point) -> Point {
         let across = self.left + self.x.place(t) * (self.right - self.left);
-        (across, self.bottom - self.y.place(y) * (self.bottom - self.top))
+        (across, self.bottom - self.y.place(y).clamp(0.0, 1.0) * (self.bottom - self.top))
     }
 
     fn line(&self, points: &[Point], style: ShapeStyle) -> Drawn {
@@ -371,6 +404,17 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_bound_that_explodes_leaves_the_plot() {
+        let (times, mut output) = sample(101);
+        output.bands[1].upper[90..].fill(1e12);
+        output.bands[1].lower[90..].fill(-1e12);
+        let svg = plot_svg(&times, &output).unwrap();
+        check(&svg);
+        assert!(svg.contains("Taylor (beyond the plot)") && !svg.contains("Scan (beyond"));
+        assert!(svg.contains("x3 [m]"), "an axis for the others");
+    }
+
     /// Writes plots to look at: `MBINT_PLOTS=/tmp/plots cargo test --lib plots_to_look_at -- --ignored`.
     #[test]
     #[ignore = "for the eye"]
@@ -392,7 +436,13 @@ mod tests {
         wide.unit = "N*m".into();
         let constant = OutputBounds { nominal: vec![5.0; 201], bands: vec![], ..output.clone() };
         let (long_times, long) = sample(20_001);
-        let plots = [("x3", &output), ("gaps", &gaps), ("wide", &wide), ("constant", &constant)];
+        let mut exploding = output.clone();
+        for (i, t) in times.iter().enumerate() {
+            exploding.bands[1].upper[i] += 1e-4 * (8.0 * t).exp();
+            exploding.bands[1].lower[i] -= 1e-4 * (8.0 * t).exp();
+        }
+        let plots =
+            [("exploding", &exploding), ("x3", &output), ("gaps", &gaps), ("wide", &wide), ("constant", &constant)];
         for (name, output) in plots {
             std::fs::write(dir.join(name).with_extension("svg"), plot_svg(&times, output).unwrap()).unwrap();
         }
