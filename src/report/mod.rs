@@ -7,6 +7,7 @@ mod files;
 mod plot;
 mod polyline;
 mod summary;
+mod view;
 
 pub use self::csv::bounds_csv;
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};

@@ -10,6 +10,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axis::Axis;
 use super::polyline::{Point, band_pieces, pieces};
+use super::view::{deviation, in_view};
 use crate::bounds::{Band, Method, OutputBounds};
 
 /// Size on the page, px.
@@ -89,9 +90,9 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
     let deviations: Vec<Band> = output.bands.iter().map(|band| deviation(band, &output.nominal)).collect();
 
     let time = Axis::fit(times.iter().copied(), 9, 0.0);
-    let (values, beyond) = in_view(&output.nominal, &output.bands);
+    let (values, beyond) = in_view(&output.nominal, &output.bands, 4.0);
     let main = Axis::fit(values.into_iter(), 6, 0.04);
-    let (values, beyond_below) = in_view(&[0.0], &deviations);
+    let (values, beyond_below) = in_view(&[0.0], &deviations, 6.0);
     let below = Axis::fit(values.into_iter(), 4, 0.06);
 
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
@@ -125,44 +126,6 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
     upper.frame()?;
     lower.frame()?;
     lower.time_axis()
-}
-
-/// How many times as wide as the narrowest band (with the nominal course) a band may be and still be shown whole.
-const WIDEST: f64 = 8.0;
-
-/// The values that an axis is to show, and which bands go beyond it. A bound that has exploded, as Taylor's does over long times,
-/// would make lines of all others: it leaves the plot instead.
-fn in_view(nominal: &[f64], bands: &[Band]) -> (Vec<f64>, Vec<bool>) {
-    let nominal = extent(nominal.iter());
-    let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();
-    let union = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-    // Halved, for the difference of the largest numbers not to overflow. Where there is nothing, half is -∞.
-    let half = |(low, high): (f64, f64)| 0.5 * high - 0.5 * low;
-    let whole = extents.iter().map(|&extent| union(extent, nominal)).filter(|&extent| half(extent).is_finite());
-    let narrowest = whole.min_by(|&a, &b| half(a).total_cmp(&half(b))).unwrap_or(nominal);
-    // A constant gives no measure.
-    let room = if half(narrowest) > 0.0 { (WIDEST - 1.0) * half(narrowest) } else { f64::INFINITY };
-    let view = (narrowest.0 - room, narrowest.1 + room);
-
-    let mut values = vec![nominal.0, nominal.1];
-    let mut beyond = Vec::new();
-    for (low, high) in extents {
-        values.extend([low.max(view.0), high.min(view.1)]);
-        beyond.push(low < view.0 || high > view.1);
-    }
-    (values, beyond)
-}
-
-/// The lowest and the highest of what is finite; (∞, −∞) of nothing.
-fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
-    let finite = values.filter(|x| x.is_finite());
-    finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-}
-
-/// A band less the nominal course.
-fn deviation(band: &Band, nominal: &[f64]) -> Band {
-    let less = |side: &[f64]| side.iter().zip(nominal).map(|(x, nominal)| x - nominal).collect();
-    Band { method: band.method, lower: less(&band.lower), upper: less(&band.upper) }
 }
 
 /// A rectangle of the canvas with its axes; lengths in px.
