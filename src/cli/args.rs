@@ -57,7 +57,8 @@ pub(super) struct RunArgs {
     pub output: Option<PathBuf>,
 
     /// Only these of the model's methods: chebyshev, taylor, scan [default: all that the model asks for].
-    #[arg(short, long, value_name = "METHOD", value_delimiter = ',', value_parser = methods(), hide_possible_values = true)]
+    #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
+    #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,
 
     /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.

@@ -1,5 +1,5 @@
-//! The command line. Arguments are read (`args`), checked and built once into what a command needs, and carried out by one
-//! file a command.
+//! The command line. Arguments are read (`args`), checked and built once into what a command needs, and carried out
+//! by one file a command.
 //!
 //! Exit status: 0 done; 1 the run failed; 2 the command or the model is wrong.
 
