@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod integrate;
+pub mod cli;
 pub mod mechanics;
 pub mod model;
 pub mod program;

@@ -1,1 +1,7 @@
-fn main() {}
+//! The `mbint` command; everything is in [`mbint::cli`].
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    mbint::cli::main()
+}

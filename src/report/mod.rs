@@ -1,5 +1,16 @@
 //! Bounds → files: CSV, summary and plots.
 
+mod axis;
+mod csv;
+mod explanation;
+mod files;
+mod plot;
+mod polyline;
 mod summary;
+mod view;
 
+pub use self::csv::bounds_csv;
+pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+pub use files::{ReportError, file_stem, prepare_folder, write_results};
+pub use plot::plot_svg;
 pub use summary::{MethodSummary, ParameterSummary, Summary};

@@ -23,6 +23,16 @@ pub struct Summary {
     pub failure: Option<String>,
 }
 
+impl Summary {
+    /// The same without what differs from run to run.
+    #[must_use]
+    pub fn without_seconds(&self) -> Self {
+        let mut summary = self.clone();
+        summary.methods.iter_mut().for_each(|method| method.seconds = None);
+        summary
+    }
+}
+
 /// An uncertain parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]

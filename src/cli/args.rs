@@ -1,0 +1,151 @@
+//! What may stand on the command line.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+
+use super::pending::model::Override;
+use crate::bounds::Method;
+
+/// What a mechanism can do when its parameters are only known up to tolerances.
+#[derive(Debug, Parser)]
+#[command(name = "mbint", version, arg_required_else_help = true, after_help = EXIT_STATUS)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+
+    /// When to use colours.
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = Color::Auto)]
+    pub color: Color,
+}
+
+const EXIT_STATUS: &str = "\
+Exit status:
+  0  done
+  1  a run failed; what was finished is kept
+  2  the command or a model is wrong; nothing was run
+
+Begin with `mbint new NAME`, which writes a small model to change.";
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Compute bounds of every output over time.
+    Run(RunArgs),
+    /// Read and assemble models, and count: coordinates, constraints, degrees of freedom.
+    Check(CheckArgs),
+    /// Tell what a model is compiled to, and what is left out.
+    Explain(ExplainArgs),
+    /// Print the JSON Schema of model files, for editors.
+    Schema,
+    /// Write a small, commented model to begin with.
+    New(NewArgs),
+    /// Print a completion script for a shell.
+    Completions(CompletionsArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = RUN_HELP)]
+pub(super) struct RunArgs {
+    /// Model files.
+    #[arg(required = true, value_name = "MODEL")]
+    pub models: Vec<PathBuf>,
+
+    /// Folder for the results; with several models, a folder for each in it [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Only these of the model's methods: chebyshev, taylor, scan [default: all that the model asks for].
+    #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
+    #[arg(value_parser = methods(), hide_possible_values = true)]
+    pub method: Vec<Method>,
+
+    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
+    pub set: Vec<Override>,
+
+    /// Threads; results do not depend on it [default: one a core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Write seconds into summary.json, which is then no longer the same from run to run.
+    #[arg(long)]
+    pub timings: bool,
+}
+
+/// More than any machine that mbint is run on has; beyond it, a slip of the keyboard.
+const MOST_THREADS: i64 = 1024;
+
+const RUN_HELP: &str = "\
+Writes bounds.csv (a column t, then NAME.nominal, NAME.chebyshev.lower, … of each output),
+summary.json, and a plot NAME.svg of each output.";
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArgs {
+    /// Model files.
+    #[arg(required = true, value_name = "MODEL")]
+    pub models: Vec<PathBuf>,
+
+    /// Text for people, or a JSON array with an object a model.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Text for people, or a JSON object.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct NewArgs {
+    /// The model's name, perhaps with a folder before it; NAME.yaml is written, never over another file.
+    #[arg(value_name = "NAME")]
+    pub name: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArgs {
+    /// Which shell.
+    #[arg(value_name = "SHELL")]
+    pub shell: Shell,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    Text,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+/// Methods by the names that they have everywhere.
+fn methods() -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(Method::ALL.map(Method::name))
+        .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
+}
+
+fn parse_override(text: &str) -> Result<Override, String> {
+    let wrong = || "expected NAME=VALUE, such as l1=0.16 or l1=0.16±2%".to_owned();
+    let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() || value.is_empty() {
+        return Err(wrong());
+    }
+    Ok(Override { name: name.to_owned(), value: value.to_owned() })
+}

@@ -1,0 +1,138 @@
+//! `mbint check`: whether models are right, and what they are made of.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::args::{CheckArgs, Format};
+use super::console::{BOLD, Console, count};
+use super::pending::{self, model};
+use super::{Failure, Status};
+use crate::report::Explanation;
+
+/// What is known of a model; an element of the JSON output.
+#[derive(Serialize)]
+struct Checked {
+    file: String,
+    ok: bool,
+    #[serde(flatten)]
+    counts: Option<Counts>,
+    /// What is wrong, with its place.
+    diagnostics: Vec<model::Record>,
+    /// What is wrong with the mechanism as a whole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    /// `diagnostics` for people.
+    #[serde(skip)]
+    rendered: String,
+}
+
+#[derive(Serialize)]
+struct Counts {
+    model: String,
+    coordinates: usize,
+    constraints: usize,
+    degrees_of_freedom: usize,
+    uncertain_parameters: Vec<String>,
+    redundant_constraints: Vec<String>,
+    outputs: Vec<String>,
+}
+
+pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
+    let checked: Vec<Checked> = args.models.iter().map(|path| check_one(path, console.color())).collect();
+    match args.format {
+        Format::Text => {
+            for model in &checked {
+                console.complain(&model.rendered);
+                if let Some(error) = &model.error {
+                    console.error(&format!("{}: {error}", model.file));
+                }
+                if let Some(counts) = &model.counts {
+                    console.print(&counts.line())?;
+                }
+            }
+        }
+        Format::Json => console.print(&to_json(&checked)?)?,
+    }
+    let all = checked.iter().all(|model| model.ok);
+    Ok(if all { Status::Done } else { Status::Wrong })
+}
+
+fn check_one(path: &Path, color: bool) -> Checked {
+    let file = path.display().to_string();
+    let nothing =
+        Checked { file, ok: false, counts: None, diagnostics: Vec::new(), error: None, rendered: String::new() };
+    match model::load(path, &[]) {
+        Err(wrong) => Checked { diagnostics: wrong.records(), rendered: wrong.render(color), ..nothing },
+        Ok(description) => match pending::explain(&description) {
+            Err(error) => Checked { error: Some(error.to_string()), ..nothing },
+            Ok(explanation) => Checked { ok: true, counts: Some(explanation.into()), ..nothing },
+        },
+    }
+}
+
+impl From<Explanation> for Counts {
+    fn from(explanation: Explanation) -> Self {
+        Self {
+            model: explanation.model,
+            coordinates: explanation.coordinates.len(),
+            constraints: explanation.constraints.len(),
+            degrees_of_freedom: explanation.degrees_of_freedom,
+            uncertain_parameters: explanation.parameters,
+            redundant_constraints: explanation.redundant_constraints,
+            outputs: explanation.outputs,
+        }
+    }
+}
+
+impl Counts {
+    fn line(&self) -> String {
+        let redundant = match &self.redundant_constraints[..] {
+            [] => "no redundant constraints".to_owned(),
+            names => {
+                format!(
+                    "{} ({})",
+                    count(names.len(), "redundant constraint", "redundant constraints"),
+                    names.join(", ")
+                )
+            }
+        };
+        format!(
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}\n",
+            self.model,
+            count(self.coordinates, "coordinate", "coordinates"),
+            count(self.constraints, "constraint", "constraints"),
+            count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
+            count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
+        )
+    }
+}
+
+/// Indented JSON with a line end.
+pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    text.map(|text| text + "\n").map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_on_one_line() {
+        let mut counts = Counts {
+            model: "slider_crank".into(),
+            coordinates: 7,
+            constraints: 6,
+            degrees_of_freedom: 1,
+            uncertain_parameters: vec!["l1".into(), "tau".into()],
+            redundant_constraints: vec![],
+            outputs: vec![],
+        };
+        let plain = |counts: &Counts| anstream::adapter::strip_str(&counts.line()).to_string();
+        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
+        counts.redundant_constraints = vec!["pin.x".into(), "pin.y".into()];
+        counts.uncertain_parameters.clear();
+        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, no uncertain parameters, 2 redundant constraints (pin.x, pin.y)");
+    }
+}

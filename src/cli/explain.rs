@@ -1,0 +1,179 @@
+//! `mbint explain`: what a model is compiled to.
+
+use super::args::{ExplainArgs, Format};
+use super::check::to_json;
+use super::console::{BOLD, Console, count};
+use super::table::{Align, Table};
+use super::{Failure, Status, load, pending};
+use crate::report::Explanation;
+
+pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
+    let Some(model) = load::load(&args.model, &[], console) else {
+        return Ok(Status::Wrong);
+    };
+    let explanation =
+        pending::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
+    console.print(&match args.format {
+        Format::Text => text(&explanation),
+        Format::Json => to_json(&explanation)?,
+    })?;
+    Ok(Status::Done)
+}
+
+/// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
+fn text(explanation: &Explanation) -> String {
+    let e = explanation;
+    let mut text = format!("{BOLD}{}{BOLD:#}\n", e.model);
+    let mut section = |heading: String, body: String| text += &format!("\n{BOLD}{heading}{BOLD:#}\n{body}");
+
+    section(count(e.coordinates.len(), "coordinate", "coordinates"), list(&e.coordinates));
+    let mut constraints = count(e.constraints.len(), "constraint", "constraints");
+    constraints += &format!(", {}", count(e.degrees_of_freedom, "degree of freedom", "degrees of freedom"));
+    section(constraints, list(&e.constraints));
+    if !e.redundant_constraints.is_empty() {
+        let n = e.redundant_constraints.len();
+        let heading = format!("{}, implied by others", count(n, "redundant constraint", "redundant constraints"));
+        section(heading, list(&e.redundant_constraints));
+    }
+    section(count(e.parameters.len(), "uncertain parameter", "uncertain parameters"), list(&e.parameters));
+    section(count(e.outputs.len(), "output", "outputs"), list(&e.outputs));
+
+    let mut effects = Table::new([("", Align::Left), ("", Align::Left), ("", Align::Left), ("", Align::Left)]);
+    for effect in &e.effects {
+        let expressions = count(effect.expressions, "expression", "expressions");
+        let forces = format!("on {}", count(effect.forces, "coordinate", "coordinates"));
+        effects.row([effect.name.clone(), effect.kind.clone(), forces, expressions]);
+    }
+    section(count(e.effects.len(), "effect", "effects"), effects.render(2));
+
+    let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    for (stage, when, instructions) in e.instructions.stages() {
+        stages.row([stage.to_owned(), instructions.to_string(), when.to_owned()]);
+    }
+    let total: usize = e.instructions.stages().iter().map(|stage| stage.2).sum();
+    section(count(total, "instruction", "instructions"), stages.render(2));
+
+    let n = &e.newton;
+    let mut newton = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    let part = |k: usize| format!("{:.0} % of the square", 100.0 * k as f64 / (n.size * n.size).max(1) as f64);
+    newton.row(["nonzeros".into(), n.nonzeros.to_string(), part(n.nonzeros)]);
+    let fill = format!("{}, {} of fill", part(n.factor_nonzeros), n.fill);
+    newton.row(["nonzeros of L and U".into(), n.factor_nonzeros.to_string(), fill]);
+    let mut body = newton.render(2);
+    if !n.pivots.is_empty() {
+        let pivots = n.pivots.iter().map(|(row, column)| format!("({row}, {column})"));
+        body += &format!("  pivots (row, column)\n{}", indented(&list(&pivots.collect::<Vec<_>>())));
+    }
+    section(format!("Newton matrix, {0} × {0}", n.size), body);
+
+    let mut left_out = Table::new([("", Align::Left), ("", Align::Left)]);
+    for item in &e.left_out {
+        left_out.row([item.what.clone(), item.why.clone()]);
+    }
+    let heading = if e.left_out.is_empty() { "nothing left out" } else { "left out" };
+    section(heading.to_owned(), left_out.render(2));
+    text
+}
+
+/// Names, indented, in lines of a readable length.
+fn list(names: &[String]) -> String {
+    const WIDTH: usize = 100;
+    let mut text = String::new();
+    let mut line = String::new();
+    for (i, name) in names.iter().enumerate() {
+        let comma = if i + 1 < names.len() { "," } else { "" };
+        if !line.is_empty() && line.chars().count() + name.chars().count() + 2 > WIDTH {
+            text += &format!("{line}\n");
+            line.clear();
+        }
+        line += if line.is_empty() { "  " } else { " " };
+        line += &format!("{name}{comma}");
+    }
+    if line.is_empty() { text } else { text + &line + "\n" }
+}
+
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix};
+
+    #[test]
+    fn an_explanation_reads_well() {
+        let names = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let explanation = Explanation {
+            model: "slider_crank".into(),
+            coordinates: names("crank.x crank.y crank.angle rod.x rod.y rod.angle slider.x"),
+            constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),
+            degrees_of_freedom: 1,
+            redundant_constraints: vec![],
+            parameters: names("l1 tau"),
+            effects: vec![
+                EffectExplanation { name: "drive".into(), kind: "torque".into(), forces: 1, expressions: 1 },
+                EffectExplanation { name: "spring".into(), kind: "spring_damper".into(), forces: 1, expressions: 9 },
+            ],
+            outputs: names("x3"),
+            instructions: InstructionCounts {
+                sample: 21,
+                step_size: 4,
+                step: 30,
+                factor: 94,
+                correct: 122,
+                advance: 40,
+                observe: 2,
+            },
+            newton: NewtonMatrix { size: 13, nonzeros: 43, factor_nonzeros: 51, fill: 8, pivots: vec![(0, 7), (7, 0)] },
+            left_out: vec![LeftOut { what: "parameter m4".into(), why: "nothing depends on it".into() }],
+        };
+        let plain = anstream::adapter::strip_str(&text(&explanation)).to_string();
+        insta::assert_snapshot!(plain, @r"
+        slider_crank
+
+        7 coordinates
+          crank.x, crank.y, crank.angle, rod.x, rod.y, rod.angle, slider.x
+
+        6 constraints, 1 degree of freedom
+          pivot.x, pivot.y, pin.x, pin.y, wrist.x, wrist.y
+
+        2 uncertain parameters
+          l1, tau
+
+        1 output
+          x3
+
+        2 effects
+          drive   torque         on 1 coordinate  1 expression
+          spring  spring_damper  on 1 coordinate  9 expressions
+
+        313 instructions
+          sample      21  once a sample
+          step size    4  once a step size
+          step        30  once a step
+          factor      94  when the Newton matrix is factored
+          correct    122  every Newton iteration
+          advance     40  once a step, at its end
+          observe      2  once a row of output
+
+        Newton matrix, 13 × 13
+          nonzeros             43  25 % of the square
+          nonzeros of L and U  51  30 % of the square, 8 of fill
+          pivots (row, column)
+            (0, 7), (7, 0)
+
+        left out
+          parameter m4  nothing depends on it
+        ");
+    }
+
+    #[test]
+    fn long_lists_are_broken_between_names() {
+        let names: Vec<String> = (0..60).map(|i| format!("body{i}.angle")).collect();
+        let text = list(&names);
+        assert!(text.lines().all(|line| line.chars().count() <= 100 && line.starts_with("  ")));
+        assert_eq!(text.split_whitespace().count(), 60);
+        assert_eq!(list(&[]), "");
+    }
+}

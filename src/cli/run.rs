@@ -1,0 +1,210 @@
+//! `mbint run`: bounds of models, written to files.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use super::args::RunArgs;
+use super::console::{BOLD, Console, count};
+use super::pending::model::Override;
+use super::pending::{batch, mechanics};
+use super::progress::Progress;
+use super::table::{Align, Table};
+use super::{Failure, Status, load};
+use crate::bounds::Method;
+use crate::model::Description;
+use crate::report::{Summary, file_stem, prepare_folder, write_results};
+
+/// What a run needs, checked.
+struct Request {
+    models: Vec<PathBuf>,
+    overrides: Vec<Override>,
+    /// Absent: those that the model asks for.
+    methods: Option<Vec<Method>>,
+    output: Option<PathBuf>,
+    threads: Option<usize>,
+    quiet: bool,
+    timings: bool,
+}
+
+/// A model with the folder for its results.
+struct Job {
+    model: Description,
+    folder: PathBuf,
+}
+
+pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failure> {
+    let request = Request::check(args)?;
+    let Some(models) = load::load_all(&request.models, &request.overrides, console) else {
+        return Ok(Status::Wrong);
+    };
+    // All that can be wrong is found before the first run, which may take hours.
+    for (model, path) in models.iter().zip(&request.models) {
+        mechanics::build(model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+    }
+    let jobs = jobs(models, &request)?;
+    for job in &jobs {
+        prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    }
+
+    let mut status = Status::Done;
+    for (i, job) in jobs.iter().enumerate() {
+        if i > 0 && !request.quiet {
+            console.print("\n")?;
+        }
+        // A model that fails does not take the others with it.
+        match run_one(job, &request, console) {
+            Ok(done) => status = status.max(done),
+            Err(Failure::Failed(message)) => {
+                console.error(&message);
+                status = status.max(Status::Failed);
+            }
+            Err(wrong) => return Err(wrong),
+        }
+    }
+    Ok(status)
+}
+
+fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
+    let name = &job.model.name;
+    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
+    let progress = Progress::new(name, !request.quiet);
+    let report = |fraction| progress.set(fraction);
+    let options = batch::Options { methods: request.methods.clone(), threads: request.threads, progress: &report };
+    let (bounds, summary) = batch::run(&job.model, options).map_err(|error| failed(&error))?;
+    drop(progress);
+
+    let written = if request.timings { summary.clone() } else { summary.without_seconds() };
+    let files = write_results(&job.folder, &bounds, &written).map_err(|error| failed(&error))?;
+    if !request.quiet {
+        console.print(&overview(&summary, &job.folder, &files))?;
+    }
+    match &summary.failure {
+        None => Ok(Status::Done),
+        Some(failure) => Err(failed(failure)),
+    }
+}
+
+impl Request {
+    fn check(args: RunArgs) -> Result<Self, Failure> {
+        let wrong = |message: String| Err(Failure::Wrong(message));
+        for (i, setting) in args.set.iter().enumerate() {
+            if args.set[..i].iter().any(|earlier| earlier.name == setting.name) {
+                return wrong(format!("parameter `{}` is set twice", setting.name));
+            }
+        }
+        let mut methods = args.method;
+        methods.sort_unstable();
+        methods.dedup();
+        Ok(Self {
+            models: args.models,
+            overrides: args.set,
+            methods: if methods.is_empty() { None } else { Some(methods) },
+            output: args.output,
+            threads: args.threads.map(usize::from),
+            quiet: args.quiet,
+            timings: args.timings,
+        })
+    }
+}
+
+/// Gives every model its folder; no two the same.
+fn jobs(models: Vec<Description>, request: &Request) -> Result<Vec<Job>, Failure> {
+    let several = models.len() > 1;
+    let mut taken: HashMap<String, &Path> = HashMap::new();
+    let mut jobs = Vec::new();
+    for (model, path) in models.into_iter().zip(&request.models) {
+        let name = file_stem(&model.name);
+        // Folders that differ only in upper and lower case are one on some systems.
+        if let Some(other) = taken.insert(name.to_lowercase(), path) {
+            let (first, second) = (other.display(), path.display());
+            let message = format!("{first} and {second} would both write the results of `{}`", model.name);
+            return Err(Failure::Wrong(format!("{message}: run them one by one, each with its own --output")));
+        }
+        let folder = match &request.output {
+            Some(folder) if several => folder.join(name),
+            Some(folder) => folder.clone(),
+            None => Path::new("results").join(name),
+        };
+        jobs.push(Job { model, folder });
+    }
+    Ok(jobs)
+}
+
+/// What was done, and where it is, for people.
+fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
+    let mut table = Table::new([
+        ("method", Align::Left),
+        ("solves", Align::Right),
+        ("steps", Align::Right),
+        ("Newton iterations", Align::Right),
+        ("seconds", Align::Right),
+    ]);
+    for method in &summary.methods {
+        table.row([
+            method.method.clone(),
+            method.solves.to_string(),
+            method.steps.to_string(),
+            method.newton_iterations.to_string(),
+            method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
+        ]);
+    }
+    let mut text = format!(
+        "{BOLD}{}{BOLD:#}: {}, {}, {}\n\n{}\n",
+        summary.model,
+        count(summary.coordinates, "coordinate", "coordinates"),
+        count(summary.constraints, "constraint", "constraints"),
+        count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
+        table.render(2),
+    );
+    for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
+        let steps = count(method.rank_revealing_solves as usize, "step", "steps");
+        text += &format!("  {}: {steps} through a singular matrix, by the rank-revealing solve\n", method.method);
+    }
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::MethodSummary;
+
+    #[test]
+    fn the_overview_is_aligned() {
+        let method = |method: &str, solves, seconds, rank_revealing_solves| MethodSummary {
+            method: method.into(),
+            solves,
+            steps: 2000 * solves,
+            newton_iterations: 4013 * solves as u64,
+            rank_revealing_solves,
+            seconds,
+        };
+        let summary = Summary {
+            model: "slider_crank".into(),
+            mbint: "0.1.0".into(),
+            coordinates: 7,
+            constraints: 6,
+            degrees_of_freedom: 1,
+            redundant_constraints: vec![],
+            alpha: -0.1,
+            duration: 2.0,
+            parameters: vec![],
+            methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
+            failure: None,
+        };
+        let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
+        let text = overview(&summary, Path::new("results/slider_crank"), &files);
+        let plain = anstream::adapter::strip_str(&text).to_string();
+        insta::assert_snapshot!(plain, @r"
+        slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
+
+          method   solves    steps  Newton iterations  seconds
+          nominal       1     2000               4013    0.004
+          scan        900  1800000            3611700        –
+
+          scan: 12 steps through a singular matrix, by the rank-revealing solve
+          results/slider_crank: bounds.csv, x3.svg
+        ");
+    }
+}

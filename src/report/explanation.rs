@@ -1,0 +1,101 @@
+//! What a model was compiled to, and what was left out: the facts behind `mbint explain`.
+
+use serde::Serialize;
+
+/// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Explanation {
+    /// The model's name.
+    pub model: String,
+    /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.
+    pub coordinates: Vec<String>,
+    /// Constraint equations by name, e.g. `pin.x`.
+    pub constraints: Vec<String>,
+    /// Coordinates less independent constraints.
+    pub degrees_of_freedom: usize,
+    /// Names of constraints that others imply.
+    pub redundant_constraints: Vec<String>,
+    /// Uncertain parameters; the others were folded into the instructions as numbers.
+    pub parameters: Vec<String>,
+    /// Forces and torques, in file order.
+    pub effects: Vec<EffectExplanation>,
+    /// Outputs by name.
+    pub outputs: Vec<String>,
+    /// How the work is divided.
+    pub instructions: InstructionCounts,
+    /// The matrix of Newton's method.
+    pub newton: NewtonMatrix,
+    /// What the model says and the program does not hold.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// What an effect came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectExplanation {
+    /// Its name in the model.
+    pub name: String,
+    /// E.g. `spring_damper`.
+    pub kind: String,
+    /// Generalized forces that it adds to.
+    pub forces: usize,
+    /// Nodes of its expressions, before they are shared with others.
+    pub expressions: usize,
+}
+
+/// Instructions by how often they are run, seldom to often.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct InstructionCounts {
+    /// Once a sample: what depends on parameters alone.
+    pub sample: usize,
+    /// Once a step size: what depends on h and α.
+    pub step_size: usize,
+    /// Once a step: prediction, and what depends on t.
+    pub step: usize,
+    /// Once a Newton iteration: the matrix and its factors.
+    pub factor: usize,
+    /// Once a Newton iteration: residual and substitution.
+    pub correct: usize,
+    /// Once a step, at its end.
+    pub advance: usize,
+    /// Once a row of output.
+    pub observe: usize,
+}
+
+impl InstructionCounts {
+    /// Stages by name, with when they run and how many instructions they have.
+    pub fn stages(&self) -> [(&'static str, &'static str, usize); 7] {
+        [
+            ("sample", "once a sample", self.sample),
+            ("step size", "once a step size", self.step_size),
+            ("step", "once a step", self.step),
+            ("factor", "when the Newton matrix is factored", self.factor),
+            ("correct", "every Newton iteration", self.correct),
+            ("advance", "once a step, at its end", self.advance),
+            ("observe", "once a row of output", self.observe),
+        ]
+    }
+}
+
+/// The matrix of Newton's method, its factors and their pivots.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct NewtonMatrix {
+    /// Rows, coordinates and constraints together.
+    pub size: usize,
+    /// Entries that are not always zero.
+    pub nonzeros: usize,
+    /// Entries of L and U together, the diagonal once.
+    pub factor_nonzeros: usize,
+    /// Those of the factors that the matrix does not have.
+    pub fill: usize,
+    /// (row, column) in the order of elimination, counted from 0.
+    pub pivots: Vec<(usize, usize)>,
+}
+
+/// Something that the model says and the program does not hold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// E.g. `parameter k2`.
+    pub what: String,
+    /// E.g. `nothing depends on it`.
+    pub why: String,
+}
