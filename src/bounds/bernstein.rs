@@ -186,7 +186,7 @@ fn from_chebyshev(n: usize) -> Matrix {
 
 /// (−1)^(j−i) C(2j, 2i)/C(j, i), i = 0…j.
 fn chebyshev_in_its_own_degree(j: usize) -> Vec<f64> {
-    let mut coefficients = vec![if j % 2 == 0 { 1.0 } else { -1.0 }];
+    let mut coefficients = vec![if j.is_multiple_of(2) { 1.0 } else { -1.0 }];
     for i in 0..j {
         // C(2j, 2i+2)/C(2j, 2i) · C(j, i)/C(j, i+1) = (2j − 2i − 1)/(2i + 1)
         let ratio = (2 * j - 2 * i - 1) as f64 / (2 * i + 1) as f64;

@@ -322,7 +322,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
         fn tight_encloses_and_is_never_wider_than_the_terms((orders, c) in polynomial()) {
             let dense = dense(&orders, 61, &c);
