@@ -1,5 +1,26 @@
 //! Trajectories → [`Bounds`]: which parameters to run, and what their responses say of the whole box.
+//!
+//! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
+//!
+//! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
+//! - [`TaylorRange`]: the response's jet → range;
+//! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest.
 
+mod bernstein;
+mod chebyshev;
+mod domain;
+mod range;
 mod result;
+mod samples;
+mod scan;
+mod taylor;
+mod tensor;
 
+pub use chebyshev::{ChebyshevBasis, clenshaw};
+pub use domain::ParameterBox;
+pub use range::{PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
+pub use samples::TensorGrid;
+pub use scan::ScanBounds;
+pub use taylor::TaylorRange;
+pub use tensor::Work;
