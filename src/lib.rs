@@ -2,9 +2,10 @@
 //!
 //! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
 
+pub mod batch;
 pub mod bounds;
-pub mod integrate;
 pub mod cli;
+pub mod integrate;
 pub mod mechanics;
 pub mod model;
 pub mod program;

@@ -24,7 +24,7 @@ mod plane;
 mod start;
 mod system;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use build::build;
 pub use error::BuildError;

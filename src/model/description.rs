@@ -396,3 +396,24 @@ pub struct ScanRequest {
     /// Points per parameter, both ends included.
     pub points: Vec<usize>,
 }
+
+impl ChebyshevRequest {
+    /// One degree for each of k parameters, one node more than the degree, the tight range.
+    pub fn of_order(order: usize, k: usize) -> Self {
+        Self { order: vec![order; k], nodes: vec![order + 1; k], range: RangeKind::Tight }
+    }
+}
+
+impl Default for TaylorRequest {
+    /// Second order as in the paper, the tight range.
+    fn default() -> Self {
+        Self { order: 2, range: RangeKind::Tight }
+    }
+}
+
+impl ScanRequest {
+    /// One number of points for each of k parameters.
+    pub fn of_points(points: usize, k: usize) -> Self {
+        Self { points: vec![points; k] }
+    }
+}

@@ -4,7 +4,7 @@
 mod bodies;
 mod effects;
 mod joints;
-mod model;
+pub mod model;
 mod numbers;
 mod start;
 mod systems;
