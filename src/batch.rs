@@ -469,31 +469,33 @@ mod tests {
     #[test]
     fn try_it() {
         let text = std::fs::read_to_string("/work/shared/reference/slider_crank/bounds_l1_1pct.csv").unwrap();
-        let reference: Vec<Vec<f64>> = text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+        let reference: Vec<Vec<f64>> =
+            text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
         for h in [1e-3, 5e-4, 1e-4] {
-          for order in [5, 12] {
-            let mut m = slider_crank();
-            m.0.simulation.duration = 2.0;
-            m.0.simulation.stepping = Stepping::Fixed(h);
-            let tau = m.0.parameters.iter_mut().find(|p| p.name == "tau").unwrap();
-            tau.value = crate::model::ParameterValue::Formula(symdiff::Formula::number(-0.5));
-            m.0.bounds.chebyshev = Some(ChebyshevRequest::of_order(order, 1));
-            let (bounds, summary) = run(&m.0, Options { methods: None, threads: None, progress: &|_| {} }).unwrap();
-            let o = &bounds.outputs[0];
-            let mut worst = [0.0_f64; 3];
-            for (row, r) in reference.iter().enumerate() {
-                worst[0] = worst[0].max((o.nominal[row] - r[1]).abs());
-                worst[1] = worst[1].max((o.bands[0].lower[row] - r[2]).abs());
-                worst[2] = worst[2].max((o.bands[0].upper[row] - r[3]).abs());
+            for order in [5, 12] {
+                let mut m = slider_crank();
+                m.0.simulation.duration = 2.0;
+                m.0.simulation.stepping = Stepping::Fixed(h);
+                let tau = m.0.parameters.iter_mut().find(|p| p.name == "tau").unwrap();
+                tau.value = crate::model::ParameterValue::Formula(symdiff::Formula::number(-0.5));
+                m.0.bounds.chebyshev = Some(ChebyshevRequest::of_order(order, 1));
+                let (bounds, summary) = run(&m.0, Options { methods: None, threads: None, progress: &|_| {} }).unwrap();
+                let o = &bounds.outputs[0];
+                let mut worst = [0.0_f64; 3];
+                for (row, r) in reference.iter().enumerate() {
+                    worst[0] = worst[0].max((o.nominal[row] - r[1]).abs());
+                    worst[1] = worst[1].max((o.bands[0].lower[row] - r[2]).abs());
+                    worst[2] = worst[2].max((o.bands[0].upper[row] - r[3]).abs());
+                }
+                println!("{h} {order} {worst:?} {:?}", summary.methods[1].seconds);
             }
-            println!("{h} {order} {worst:?} {:?}", summary.methods[1].seconds);
-          }
         }
         for tol in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
             let mut m = slider_crank();
             m.0.simulation.duration = 2.0;
             m.0.simulation.stepping = Stepping::Tolerance(tol);
-            let (bounds, summary) = run(&m.0, Options { methods: Some(vec![]), threads: None, progress: &|_| {} }).unwrap();
+            let (bounds, summary) =
+                run(&m.0, Options { methods: Some(vec![]), threads: None, progress: &|_| {} }).unwrap();
             let o = &bounds.outputs[0];
             let worst = reference.iter().enumerate().fold(0.0_f64, |w, (row, r)| w.max((o.nominal[row] - r[1]).abs()));
             println!("{tol} {worst:e} {:?}", summary.methods[0]);

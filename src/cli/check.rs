@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, count};
-use super::pending::{self, model};
+use super::explain::explain_model;
+use super::pending::model;
 use super::{Failure, Status};
 use crate::report::Explanation;
 
@@ -64,7 +65,7 @@ fn check_one(path: &Path, color: bool) -> Checked {
         Checked { file, ok: false, counts: None, diagnostics: Vec::new(), error: None, rendered: String::new() };
     match model::load(path, &[]) {
         Err(wrong) => Checked { diagnostics: wrong.records(), rendered: wrong.render(color), ..nothing },
-        Ok(description) => match pending::explain(&description) {
+        Ok(description) => match explain_model(&description) {
             Err(error) => Checked { error: Some(error.to_string()), ..nothing },
             Ok(explanation) => Checked { ok: true, counts: Some(explanation.into()), ..nothing },
         },

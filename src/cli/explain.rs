@@ -4,7 +4,9 @@ use super::args::{ExplainArgs, Format};
 use super::check::to_json;
 use super::console::{BOLD, Console, count};
 use super::table::{Align, Table};
-use super::{Failure, Status, load, pending};
+use super::{Failure, Status, load};
+use crate::batch::{self, RunError};
+use crate::model::Description;
 use crate::report::Explanation;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
@@ -12,12 +14,20 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
         return Ok(Status::Wrong);
     };
     let explanation =
-        pending::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
+        explain_model(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,
     })?;
     Ok(Status::Done)
+}
+
+/// What a model is compiled to.
+///
+/// # Errors
+/// What is wrong with the mechanism as a whole: it cannot be built or assembled.
+pub(super) fn explain_model(model: &Description) -> Result<Explanation, RunError> {
+    Ok(Explanation::new(&model.name, &batch::prepare(model)?))
 }
 
 /// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
@@ -34,6 +44,9 @@ fn text(explanation: &Explanation) -> String {
         let n = e.redundant_constraints.len();
         let heading = format!("{}, implied by others", count(n, "redundant constraint", "redundant constraints"));
         section(heading, list(&e.redundant_constraints));
+    }
+    if !e.singular_at_start.is_empty() {
+        section("constraints that lose their independence at the start only".into(), list(&e.singular_at_start));
     }
     section(count(e.parameters.len(), "uncertain parameter", "uncertain parameters"), list(&e.parameters));
     section(count(e.outputs.len(), "output", "outputs"), list(&e.outputs));
@@ -110,6 +123,7 @@ mod tests {
             constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),
             degrees_of_freedom: 1,
             redundant_constraints: vec![],
+            singular_at_start: vec![],
             parameters: names("l1 tau"),
             effects: vec![
                 EffectExplanation { name: "drive".into(), kind: "torque".into(), forces: 1, expressions: 1 },

@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use super::args::RunArgs;
 use super::console::{BOLD, Console, count};
 use super::pending::model::Override;
-use super::pending::{batch, mechanics};
 use super::progress::Progress;
 use super::table::{Align, Table};
 use super::{Failure, Status, load};
+use crate::batch;
 use crate::bounds::Method;
+use crate::mechanics;
 use crate::model::Description;
 use crate::report::{Summary, file_stem, prepare_folder, write_results};
 

@@ -8,7 +8,7 @@ use super::effects::{self, Loads};
 use super::error::BuildError;
 use super::joints::{self, Row};
 use super::mechanism::Mechanism;
-use super::system::{ConstraintInfo, CoordinateInfo, System};
+use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, LeftOut, System};
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
 /// only.
@@ -27,6 +27,7 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
     let mut mechanism = Mechanism::new(g, description)?;
     let length = mechanism.characteristic_length(g)?;
 
+    let mut left_out = Vec::new();
     let mut constraints = Constraints::default();
     for joint in &description.joints {
         let rows = joints::rows(g, &mechanism, &joint.kind)?;
@@ -36,6 +37,9 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
             let info = ConstraintInfo { name, joint: joint.name.clone() };
             if is_effective(g, &mechanism, length, &info, row)? {
                 kept.push((row, constraints.add(g, info, row.value)));
+            } else {
+                let why = "nothing that it constrains can move".to_owned();
+                left_out.push(LeftOut { what: format!("constraint {}", info.name), why });
             }
         }
         let reaction = joints::reaction(g, &joint.kind, &kept);
@@ -43,8 +47,19 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
     }
 
     let mut loads = Loads::new(g, mechanism.bodies.len());
+    let mut effects = Vec::new();
     for effect in &description.effects {
+        let nodes = g.len();
+        loads.touched.clear();
         effects::apply(g, &mechanism, &mut loads, &effect.kind)?;
+        let moved = |&&(body, freedom): &&(usize, usize)| mechanism.bodies[body].index[freedom].is_some();
+        let forces = loads.touched.iter().filter(moved).count();
+        if forces == 0 {
+            let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
+            left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
+        }
+        let (name, kind) = (effect.name.clone(), effect.kind.keyword());
+        effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes });
     }
     mechanism.potentials = loads.potentials;
 
@@ -66,7 +81,7 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         name: mechanism.coordinate_name(body, coordinate),
         scale: if coordinate == Coordinate::Angle { 1.0 } else { length },
     });
-    Ok(System {
+    let mut system = System {
         coordinates: coordinates.collect(),
         parameters: mechanism.uncertain,
         time: mechanism.time,
@@ -80,8 +95,12 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         constraint: constraints.values,
         outputs,
         start,
+        effects,
+        left_out,
         graph,
-    })
+    };
+    system.note_unused_parameters();
+    Ok(system)
 }
 
 /// The rows that are kept, with their multipliers.

@@ -29,4 +29,4 @@ pub(crate) mod tests;
 pub use build::build;
 pub use error::BuildError;
 pub use mechanism::Context;
-pub use system::{ConstraintInfo, CoordinateInfo, OutputInfo, Start, System, UncertainParameter};
+pub use system::{ConstraintInfo, CoordinateInfo, EffectInfo, LeftOut, OutputInfo, Start, System, UncertainParameter};

@@ -35,6 +35,31 @@ pub struct System {
     pub outputs: Vec<OutputInfo>,
     /// What is known at the start.
     pub start: Start,
+    /// What each effect came to, in file order.
+    pub effects: Vec<EffectInfo>,
+    /// What the model says and no equation holds.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// What an effect came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EffectInfo {
+    /// Name in the model.
+    pub name: String,
+    /// E.g. `spring_damper`.
+    pub kind: &'static str,
+    /// Number of generalised forces that it adds to.
+    pub forces: usize,
+    /// Number of expressions that no earlier effect has.
+    pub expressions: usize,
+}
+
+/// Something that the model says and no equation holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct LeftOut {
+    pub what: String,
+    pub why: String,
 }
 
 /// A parameter that is an interval.
@@ -85,4 +110,19 @@ pub struct Start {
     pub velocity: Vec<Option<Expr>>,
     /// Where assembly begins to look, n.
     pub guess: Vec<Expr>,
+}
+
+impl System {
+    /// Uncertain parameters that no equation, output or start value depends on are noted as left out.
+    pub(super) fn note_unused_parameters(&mut self) {
+        let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
+        roots.extend(self.force.iter().chain(&self.constraint).chain(&self.start.guess));
+        roots.extend(self.outputs.iter().map(|output| output.expr));
+        roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
+        let used = self.graph.symbols_of(&roots);
+        for parameter in self.parameters.iter().filter(|parameter| used.binary_search(&parameter.symbol).is_err()) {
+            let why = "nothing depends on it".to_owned();
+            self.left_out.push(LeftOut { what: format!("parameter {}", parameter.name), why });
+        }
+    }
 }

@@ -235,6 +235,19 @@ pub enum EffectKind {
     },
 }
 
+impl EffectKind {
+    /// The word for it in a model file.
+    pub fn keyword(&self) -> &'static str {
+        match self {
+            Self::Gravity { .. } => "gravity",
+            Self::Force { .. } => "force",
+            Self::Torque { .. } => "torque",
+            Self::SpringDamper { .. } => "spring_damper",
+            Self::TorsionalSpringDamper { .. } => "torsional_spring_damper",
+        }
+    }
+}
+
 /// How often a quantity is differentiated by time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs)]

@@ -51,6 +51,8 @@ pub struct Program {
     pub equilibration: Vec<f64>,
     /// Nonzeros of the Newton matrix and of its factors.
     pub nonzeros: (usize, usize),
+    /// Equation and unknown of each pivot, in the order of elimination.
+    pub pivots: Vec<(usize, usize)>,
     lowered: Lowered,
 }
 
@@ -209,6 +211,7 @@ pub fn compile(
         watched,
         equilibration,
         nonzeros: (nonzeros, factors.nonzeros()),
+        pivots: factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect(),
         layout,
         lowered,
     })

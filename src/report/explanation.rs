@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::integrate::Simulator;
+
 /// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Explanation {
@@ -15,6 +17,8 @@ pub struct Explanation {
     pub degrees_of_freedom: usize,
     /// Names of constraints that others imply.
     pub redundant_constraints: Vec<String>,
+    /// Names of constraints that depend on others at the start only: it is a singular configuration.
+    pub singular_at_start: Vec<String>,
     /// Uncertain parameters; the others were folded into the instructions as numbers.
     pub parameters: Vec<String>,
     /// Forces and torques, in file order.
@@ -27,6 +31,59 @@ pub struct Explanation {
     pub newton: NewtonMatrix,
     /// What the model says and the program does not hold.
     pub left_out: Vec<LeftOut>,
+}
+
+impl Explanation {
+    /// Of a model by this name.
+    pub fn new(model: &str, simulator: &Simulator) -> Self {
+        let (system, program) = (&simulator.system, &simulator.program);
+        let (nonzeros, factor_nonzeros) = program.nonzeros;
+        Self {
+            model: model.to_owned(),
+            coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
+            constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
+            degrees_of_freedom: simulator.mobility.degrees_of_freedom,
+            redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+            singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
+            parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            effects: system
+                .effects
+                .iter()
+                .map(|effect| EffectExplanation {
+                    name: effect.name.clone(),
+                    kind: effect.kind.to_owned(),
+                    forces: effect.forces,
+                    expressions: effect.expressions,
+                })
+                .collect(),
+            outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+            instructions: InstructionCounts {
+                sample: program.sample().len(),
+                step_size: program.step_size().len(),
+                step: program.step().len(),
+                factor: program.factor().len(),
+                correct: program.correct().len(),
+                advance: program.advance().len(),
+                observe: program.observe().len(),
+            },
+            newton: NewtonMatrix {
+                size: program.residual.len(),
+                nonzeros,
+                factor_nonzeros,
+                fill: factor_nonzeros.saturating_sub(nonzeros),
+                pivots: program.pivots.clone(),
+            },
+            left_out: system
+                .left_out
+                .iter()
+                .map(|left_out| LeftOut { what: left_out.what.clone(), why: left_out.why.clone() })
+                .collect(),
+        }
+    }
+}
+
+fn constraint_names(simulator: &Simulator, constraints: &[usize]) -> Vec<String> {
+    constraints.iter().map(|&constraint| simulator.system.constraints[constraint].name.clone()).collect()
 }
 
 /// What an effect came to.

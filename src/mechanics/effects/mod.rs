@@ -12,6 +12,8 @@ mod spring_damper;
 mod torque;
 mod torsional_spring_damper;
 
+use std::collections::BTreeSet;
+
 use symdiff::{Expr, Graph};
 
 use crate::model::EffectKind;
@@ -43,19 +45,21 @@ pub struct Loads {
     pub bodies: Vec<[Expr; FREEDOMS]>,
     /// Potential energies, J.
     pub potentials: Vec<Expr>,
+    /// (body, freedom) of the generalised forces added to since this was last cleared.
+    pub touched: BTreeSet<(usize, usize)>,
 }
 
 impl Loads {
     /// No forces.
     pub fn new(g: &mut Graph, bodies: usize) -> Self {
-        Self { bodies: vec![[g.constant(0.0); FREEDOMS]; bodies], potentials: Vec::new() }
+        Self { bodies: vec![[g.constant(0.0); FREEDOMS]; bodies], potentials: Vec::new(), touched: BTreeSet::new() }
     }
 
     /// A force at a point: (Fₓ, F_y, R s × F).
     pub fn add_force(&mut self, g: &mut Graph, at: &MaterialPoint, force: Vector) {
         let moment = plane::cross(g, at.arm, force);
-        for (total, part) in self.bodies[at.body].iter_mut().zip([force[0], force[1], moment]) {
-            *total = g.add(*total, part);
+        for (freedom, part) in [force[0], force[1], moment].into_iter().enumerate() {
+            self.add(g, at.body, freedom, part);
         }
     }
 
@@ -68,10 +72,17 @@ impl Loads {
 
     /// A torque on `on` and its opposite on `from`.
     pub fn add_torque_pair(&mut self, g: &mut Graph, from: usize, on: usize, torque: Expr) {
-        let total = &mut self.bodies[on][ANGLE];
-        *total = g.add(*total, torque);
-        let total = &mut self.bodies[from][ANGLE];
-        *total = g.sub(*total, torque);
+        self.add(g, on, ANGLE, torque);
+        let opposite = g.neg(torque);
+        self.add(g, from, ANGLE, opposite);
+    }
+
+    fn add(&mut self, g: &mut Graph, body: usize, freedom: usize, part: Expr) {
+        if !g.is_zero(part) {
+            let total = &mut self.bodies[body][freedom];
+            *total = g.add(*total, part);
+            self.touched.insert((body, freedom));
+        }
     }
 
     /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the
