@@ -466,39 +466,49 @@ mod tests {
     use super::*;
     use crate::mechanics::tests::model::slider_crank;
 
+    fn n_four_bar(n: usize) -> crate::mechanics::tests::model::Model {
+        use crate::model::TimeOrder;
+        let mut m = crate::mechanics::tests::model::Model::new();
+        m.interval("m", [0.99, 1.0, 1.01]);
+        for i in 0..=n {
+            m.ground_point(&format!("G{i}"), &i.to_string(), "0");
+            m.body(&format!("bar{i}"), "m", "1/12", "xya", &[("A", "-0.5", "0"), ("B", "0.5", "0")]);
+        }
+        for i in 0..n {
+            m.body(&format!("coupler{i}"), "m", "1/12", "xya", &[("A", "-0.5", "0"), ("B", "0.5", "0")]);
+        }
+        for i in 0..=n {
+            m.revolute(&format!("pivot{i}"), &format!("ground.G{i}"), &format!("bar{i}.A"));
+        }
+        for i in 0..n {
+            m.revolute(&format!("left{i}"), &format!("bar{i}.B"), &format!("coupler{i}.A"));
+            m.revolute(&format!("right{i}"), &format!("coupler{i}.B"), &format!("bar{}.B", i + 1));
+        }
+        m.gravity();
+        for i in 0..=n { m.initial(&format!("bar{i}"), 'a', TimeOrder::Position, "pi/2"); }
+        for i in 0..n { m.initial(&format!("coupler{i}"), 'a', TimeOrder::Position, "0"); }
+        m.initial("bar0", 'a', TimeOrder::Velocity, "-1");
+        m.output("bar0.B.x");
+        m.output("bar0.B.y");
+        m.output("energy");
+        m
+    }
+
     #[test]
     fn try_it() {
-        let text = std::fs::read_to_string("/work/shared/reference/slider_crank/bounds_l1_1pct.csv").unwrap();
-        let reference: Vec<Vec<f64>> =
-            text.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
-        for h in [1e-3, 5e-4, 1e-4] {
-            for order in [5, 12] {
-                let mut m = slider_crank();
-                m.0.simulation.duration = 2.0;
-                m.0.simulation.stepping = Stepping::Fixed(h);
-                let tau = m.0.parameters.iter_mut().find(|p| p.name == "tau").unwrap();
-                tau.value = crate::model::ParameterValue::Formula(symdiff::Formula::number(-0.5));
-                m.0.bounds.chebyshev = Some(ChebyshevRequest::of_order(order, 1));
-                let (bounds, summary) = run(&m.0, Options { methods: None, threads: None, progress: &|_| {} }).unwrap();
-                let o = &bounds.outputs[0];
-                let mut worst = [0.0_f64; 3];
-                for (row, r) in reference.iter().enumerate() {
-                    worst[0] = worst[0].max((o.nominal[row] - r[1]).abs());
-                    worst[1] = worst[1].max((o.bands[0].lower[row] - r[2]).abs());
-                    worst[2] = worst[2].max((o.bands[0].upper[row] - r[3]).abs());
-                }
-                println!("{h} {order} {worst:?} {:?}", summary.methods[1].seconds);
-            }
-        }
-        for tol in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
-            let mut m = slider_crank();
-            m.0.simulation.duration = 2.0;
-            m.0.simulation.stepping = Stepping::Tolerance(tol);
-            let (bounds, summary) =
-                run(&m.0, Options { methods: Some(vec![]), threads: None, progress: &|_| {} }).unwrap();
-            let o = &bounds.outputs[0];
-            let worst = reference.iter().enumerate().fold(0.0_f64, |w, (row, r)| w.max((o.nominal[row] - r[1]).abs()));
-            println!("{tol} {worst:e} {:?}", summary.methods[0]);
+        for n in [160, 640] {
+            let mut m = n_four_bar(n);
+            m.0.simulation.duration = if n <= 40 { 10.0 } else { 0.1 };
+            m.0.simulation.output_step = if n <= 40 { 1.0 } else { 0.01 };
+            let t = Instant::now();
+            let system = mechanics::build(&m.0).unwrap();
+            let t1 = t.elapsed();
+            let sim = Simulator::new(system, -0.1, 1e-3);
+            let sim = match sim { Ok(s) => s, Err(e) => { println!("{n}: {e}"); continue; } };
+            println!("{n}: build {t1:?} compile {:?} mobility {} redundant {} singular {} nonzeros {:?} factor {} correct {} step {} adv {} slots {}", t.elapsed(), sim.mobility.degrees_of_freedom, sim.mobility.redundant.len(), sim.mobility.singular_at_start.len(), sim.program.nonzeros, sim.program.factor().len(), sim.program.correct().len(), sim.program.step().len(), sim.program.advance().len(), sim.program.slots());
+            let (bounds, summary) = run(&m.0, Options { methods: Some(vec![]), threads: None, progress: &|_| {} }).unwrap();
+            for o in &bounds.outputs { println!("   {:?}", o.nominal); }
+            println!("   {:?} {:?}", summary.methods, summary.failure);
         }
         panic!();
     }

@@ -20,6 +20,9 @@ const THRESHOLD: f64 = 0.1;
 /// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
 const SINGULAR: f64 = 1e-11;
 
+/// The same for a quasi-definite matrix, which is never singular: its pivots may be as small as its regularisation.
+const SINGULAR_DIAGONAL: f64 = 1e-15;
+
 /// How many of the sparsest columns and rows are searched for a pivot.
 const SEARCHED: usize = 4;
 
@@ -30,6 +33,15 @@ pub enum Pivoting {
     Any,
     /// The diagonal only: for quasi-definite matrices, where every order is stable whatever the numbers.
     Diagonal,
+}
+
+impl Pivoting {
+    fn smallest(self) -> f64 {
+        match self {
+            Self::Any => SINGULAR,
+            Self::Diagonal => SINGULAR_DIAGONAL,
+        }
+    }
 }
 
 /// One step of the elimination.
@@ -122,12 +134,13 @@ impl Active<'_> {
     /// The cheapest pivot that is large enough; the threshold is lowered where none is.
     fn choose(&mut self, pivoting: Pivoting) -> Option<(usize, usize)> {
         self.stages.update(self.graph);
+        let singular = pivoting.smallest();
         let mut threshold = THRESHOLD;
-        while threshold > SINGULAR {
+        while threshold > singular {
             let searched = if threshold == THRESHOLD { SEARCHED } else { usize::MAX };
             let best = self
                 .candidates(pivoting, searched)
-                .filter(|&(row, column)| self.size_against_column(row, column) >= threshold)
+                .filter(|&(row, column)| self.size_against_column(row, column, singular) >= threshold)
                 .min_by_key(|&(row, column)| (self.cost(row, column), row != column, row, column));
             if best.is_some() {
                 return best;
@@ -154,7 +167,7 @@ impl Active<'_> {
     }
 
     /// |entry| over the largest of its column, at the worst probe.
-    fn size_against_column(&self, row: usize, column: usize) -> f64 {
+    fn size_against_column(&self, row: usize, column: usize, singular: f64) -> f64 {
         let numbers = self.rows[row][&column].numbers;
         (0..PROBES)
             .map(|probe| {
@@ -162,7 +175,7 @@ impl Active<'_> {
                     .iter()
                     .map(|&other| self.rows[other][&column].numbers[probe].abs())
                     .fold(0.0, f64::max);
-                if largest > SINGULAR && numbers[probe].is_finite() { numbers[probe].abs() / largest } else { 0.0 }
+                if largest > singular && numbers[probe].is_finite() { numbers[probe].abs() / largest } else { 0.0 }
             })
             .fold(f64::INFINITY, f64::min)
     }

@@ -21,7 +21,7 @@ use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
 use crate::mechanics::System;
 
 /// ε relative to a constraint's own size in the matrix's metric.
-const REGULARISATION: f64 = 1e-9;
+const REGULARISATION: f64 = 1e-12;
 
 /// Tapes for the start of a tile of samples; states stand where [`Layout`] says, corrections too.
 #[derive(Clone, Debug)]
