@@ -131,24 +131,38 @@ pub fn factorise(
 }
 
 impl Active<'_> {
-    /// The cheapest pivot that is large enough; the threshold is lowered where none is.
+    /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where none
+    /// has, the threshold is lowered.
     fn choose(&mut self, pivoting: Pivoting) -> Option<(usize, usize)> {
         self.stages.update(self.graph);
         let singular = pivoting.smallest();
         let mut threshold = THRESHOLD;
         while threshold > singular {
-            let searched = if threshold == THRESHOLD { SEARCHED } else { usize::MAX };
-            let best = self
-                .candidates(pivoting, searched)
-                .filter(|&(row, column)| self.size_against_column(row, column, singular) >= threshold)
-                .min_by_key(|&(row, column)| (self.cost(row, column), row != column, row, column));
-            if best.is_some() {
-                return best;
+            let mut searched = SEARCHED;
+            loop {
+                if let Some(best) = self.best_of(pivoting, searched, threshold) {
+                    return Some(best);
+                }
+                if searched >= self.sparsest_columns.len() {
+                    break;
+                }
+                searched *= 8;
             }
-            // First all candidates at the same threshold, then lower ones.
-            threshold = if searched == SEARCHED { THRESHOLD * 0.999 } else { threshold * 0.1 };
+            threshold *= 0.1;
         }
         None
+    }
+
+    fn best_of(&self, pivoting: Pivoting, searched: usize, threshold: f64) -> Option<(usize, usize)> {
+        let mut best: Option<((usize, bool, usize, usize), (usize, usize))> = None;
+        for (row, column) in self.candidates(pivoting, searched) {
+            let merit = (self.cost(row, column), row != column, row, column);
+            let better = best.is_none_or(|(least, _)| merit < least);
+            if better && self.size_against_column(row, column, pivoting.smallest()) >= threshold {
+                best = Some((merit, (row, column)));
+            }
+        }
+        best.map(|(_, place)| place)
     }
 
     /// Entries in the sparsest columns and rows.
@@ -161,7 +175,7 @@ impl Active<'_> {
         let in_rows = self
             .sparsest_rows
             .iter()
-            .take(if searched == usize::MAX { 0 } else { searched })
+            .take(searched)
             .flat_map(|&(_, row)| self.rows[row].keys().map(move |&column| (row, column)));
         in_columns.chain(in_rows).filter(move |(row, column)| pivoting == Pivoting::Any || row == column)
     }

@@ -105,9 +105,9 @@ impl Graph {
         self.nodes.is_empty()
     }
 
-    /// Every node, children before parents.
-    pub fn exprs(&self) -> impl Iterator<Item = Expr> + use<> {
-        (0..self.nodes.len() as u32).map(Expr)
+    /// Every node but the first `known`, children before parents.
+    pub fn exprs_after(&self, known: usize) -> impl Iterator<Item = Expr> + use<> {
+        (known as u32..self.nodes.len() as u32).map(Expr)
     }
 
     /// The node behind a handle.

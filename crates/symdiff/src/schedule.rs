@@ -61,7 +61,7 @@ impl Stages {
 
     /// Takes in the nodes that are new since the last call.
     pub fn update(&mut self, graph: &Graph) {
-        for expr in graph.exprs().skip(self.of.len()) {
+        for expr in graph.exprs_after(self.of.len()) {
             let stage = match graph.node(expr) {
                 Node::Symbol(_) => Some(self.given.get(&expr).copied().unwrap_or(UNKNOWN)),
                 node => node.children().filter_map(|child| self.of[child.index()]).max(),
