@@ -23,8 +23,9 @@ pub struct WatchedPivot {
     pub largest_inverse: f64,
 }
 
-/// A pivot may fall this far below its size at the probes.
-const PIVOT_LOSS: f64 = 1e-6;
+/// A pivot may fall this far below its size at the probes: the corrections then still have some six digits, which is
+/// all that Newton's iteration needs of them.
+const PIVOT_LOSS: f64 = 1e-10;
 
 /// Regularisation of a redundant constraint's multiplier, relative to the size of its row: large enough that round-off
 /// over it stays small, small enough that Newton's iteration (whose residual is exact) hardly notices.
@@ -161,6 +162,7 @@ pub fn compile(
     let mut frozen: Vec<(Expr, Option<u32>)> = Vec::new();
     let mut next = layout.slots() as u32;
     let mut symbol_of = rustc_hash::FxHashMap::default();
+    let mut slot_of = rustc_hash::FxHashMap::default();
     let mut watched = Vec::new();
     let substituted = factors.map(|value| {
         if stages.of(value) != Some(ITERATION) {
@@ -170,15 +172,16 @@ pub fn compile(
             let symbol = graph.symbol(&format!("factor:{}", frozen.len()));
             inputs.push(Input { symbol, stage: ITERATION, slot: next });
             frozen.push((value, Some(next)));
+            slot_of.insert(value, next as usize);
             next += 1;
             symbol
         })
     });
     for pivot in &factors.pivots {
-        if let Some(place) = frozen.iter().position(|&(value, _)| value == pivot.inverse) {
+        if let Some(&slot) = slot_of.get(&pivot.inverse) {
             let smallest = pivot.magnitude.into_iter().fold(f64::INFINITY, f64::min)
                 / (equilibration[pivot.row] * equilibration[pivot.column]);
-            watched.push(WatchedPivot { slot: layout.slots() + place, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
+            watched.push(WatchedPivot { slot, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
         }
     }
     let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();

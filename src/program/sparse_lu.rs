@@ -31,16 +31,26 @@ const SEARCHED: usize = 4;
 pub enum Pivoting {
     /// Any entry, by cost and size.
     Any,
-    /// The diagonal only: for quasi-definite matrices, where every order is stable whatever the numbers.
-    Diagonal,
+    /// The diagonal only, of the rows before `constraints` first: for quasi-definite matrices, where this order exists
+    /// whatever the numbers.
+    Diagonal {
+        /// First row of the block that is nearly zero until the others are eliminated.
+        constraints: usize,
+    },
 }
 
 impl Pivoting {
     fn smallest(self) -> f64 {
         match self {
             Self::Any => SINGULAR,
-            Self::Diagonal => SINGULAR_DIAGONAL,
+            Self::Diagonal { .. } => SINGULAR_DIAGONAL,
         }
+    }
+
+    /// How rows and columns are sorted for the search: late ones, then by count.
+    fn key(self, count: usize, index: usize) -> Key {
+        let late = matches!(self, Self::Diagonal { constraints } if index >= constraints);
+        (late, count, index)
     }
 }
 
@@ -76,6 +86,9 @@ pub struct Singular {
     pub rows: Vec<usize>,
 }
 
+/// Whether it is late, number of entries, index.
+type Key = (bool, usize, usize);
+
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     value: Expr,
@@ -90,9 +103,10 @@ struct Active<'g> {
     dear: usize,
     rows: Vec<BTreeMap<usize, Entry>>,
     columns: Vec<BTreeSet<usize>>,
-    /// (count, index) of the rows and columns left.
-    sparsest_rows: BTreeSet<(usize, usize)>,
-    sparsest_columns: BTreeSet<(usize, usize)>,
+    pivoting: Pivoting,
+    /// The rows and columns left.
+    sparsest_rows: BTreeSet<Key>,
+    sparsest_columns: BTreeSet<Key>,
 }
 
 /// Factorises a square matrix. `numbers` runs over its entries row by row; `scale` (one a row, symmetric) makes entries
@@ -117,14 +131,14 @@ pub fn factorise(
         rows[row].insert(column, Entry { value, numbers });
         columns[column].insert(row);
     }
-    let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| (entries.len(), row)).collect();
-    let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| (rows.len(), column)).collect();
-    let mut active = Active { graph, stages, dear, rows, columns, sparsest_rows, sparsest_columns };
+    let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| pivoting.key(entries.len(), row)).collect();
+    let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| pivoting.key(rows.len(), column)).collect();
+    let mut active = Active { graph, stages, dear, pivoting, rows, columns, sparsest_rows, sparsest_columns };
     let mut pivots = Vec::with_capacity(size);
     while pivots.len() < size {
-        match active.choose(pivoting) {
+        match active.choose() {
             Some((row, column)) => pivots.push(active.eliminate(row, column)),
-            None => return Err(Singular { rows: active.sparsest_rows.iter().map(|&(_, row)| row).collect() }),
+            None => return Err(Singular { rows: active.sparsest_rows.iter().map(|&(_, _, row)| row).collect() }),
         }
     }
     Ok(Factors { pivots })
@@ -133,14 +147,14 @@ pub fn factorise(
 impl Active<'_> {
     /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where none
     /// has, the threshold is lowered.
-    fn choose(&mut self, pivoting: Pivoting) -> Option<(usize, usize)> {
+    fn choose(&mut self) -> Option<(usize, usize)> {
         self.stages.update(self.graph);
-        let singular = pivoting.smallest();
+        let singular = self.pivoting.smallest();
         let mut threshold = THRESHOLD;
         while threshold > singular {
             let mut searched = SEARCHED;
             loop {
-                if let Some(best) = self.best_of(pivoting, searched, threshold) {
+                if let Some(best) = self.best_of(searched, threshold) {
                     return Some(best);
                 }
                 if searched >= self.sparsest_columns.len() {
@@ -153,12 +167,12 @@ impl Active<'_> {
         None
     }
 
-    fn best_of(&self, pivoting: Pivoting, searched: usize, threshold: f64) -> Option<(usize, usize)> {
+    fn best_of(&self, searched: usize, threshold: f64) -> Option<(usize, usize)> {
         let mut best: Option<((usize, bool, usize, usize), (usize, usize))> = None;
-        for (row, column) in self.candidates(pivoting, searched) {
+        for (row, column) in self.candidates(searched) {
             let merit = (self.cost(row, column), row != column, row, column);
             let better = best.is_none_or(|(least, _)| merit < least);
-            if better && self.size_against_column(row, column, pivoting.smallest()) >= threshold {
+            if better && self.size_against_column(row, column, self.pivoting.smallest()) >= threshold {
                 best = Some((merit, (row, column)));
             }
         }
@@ -166,18 +180,18 @@ impl Active<'_> {
     }
 
     /// Entries in the sparsest columns and rows.
-    fn candidates(&self, pivoting: Pivoting, searched: usize) -> impl Iterator<Item = (usize, usize)> {
+    fn candidates(&self, searched: usize) -> impl Iterator<Item = (usize, usize)> {
         let in_columns = self
             .sparsest_columns
             .iter()
             .take(searched)
-            .flat_map(|&(_, column)| self.columns[column].iter().map(move |&row| (row, column)));
+            .flat_map(|&(_, _, column)| self.columns[column].iter().map(move |&row| (row, column)));
         let in_rows = self
             .sparsest_rows
             .iter()
             .take(searched)
-            .flat_map(|&(_, row)| self.rows[row].keys().map(move |&column| (row, column)));
-        in_columns.chain(in_rows).filter(move |(row, column)| pivoting == Pivoting::Any || row == column)
+            .flat_map(|&(_, _, row)| self.rows[row].keys().map(move |&column| (row, column)));
+        in_columns.chain(in_rows).filter(|(row, column)| self.pivoting == Pivoting::Any || row == column)
     }
 
     /// |entry| over the largest of its column, at the worst probe.
@@ -211,8 +225,8 @@ impl Active<'_> {
     }
 
     fn eliminate(&mut self, row: usize, column: usize) -> Pivot {
-        self.sparsest_rows.remove(&(self.rows[row].len(), row));
-        self.sparsest_columns.remove(&(self.columns[column].len(), column));
+        self.sparsest_rows.remove(&self.pivoting.key(self.rows[row].len(), row));
+        self.sparsest_columns.remove(&self.pivoting.key(self.columns[column].len(), column));
         let mut upper = std::mem::take(&mut self.rows[row]);
         let pivot = upper.remove(&column).expect("the pivot was chosen among the row's entries");
         let one = self.graph.constant(1.0);
@@ -226,14 +240,14 @@ impl Active<'_> {
             std::mem::take(&mut self.columns[column]).into_iter().filter(|&other| other != row).collect();
         let mut lower = Vec::with_capacity(below.len());
         for other in below {
-            self.sparsest_rows.remove(&(self.rows[other].len(), other));
+            self.sparsest_rows.remove(&self.pivoting.key(self.rows[other].len(), other));
             let entry = self.rows[other].remove(&column).expect("columns list the rows that have an entry there");
             let multiplier = self.graph.mul(entry.value, inverse);
             let ratio: Numbers = std::array::from_fn(|probe| entry.numbers[probe] / pivot.numbers[probe]);
             for (&right, above) in &upper {
                 self.update(other, right, multiplier, &ratio, above);
             }
-            self.sparsest_rows.insert((self.rows[other].len(), other));
+            self.sparsest_rows.insert(self.pivoting.key(self.rows[other].len(), other));
             lower.push((other, multiplier));
         }
         Pivot {
@@ -272,9 +286,9 @@ impl Active<'_> {
     }
 
     fn recount_column(&mut self, column: usize, change: impl FnOnce(&mut BTreeSet<usize>)) {
-        self.sparsest_columns.remove(&(self.columns[column].len(), column));
+        self.sparsest_columns.remove(&self.pivoting.key(self.columns[column].len(), column));
         change(&mut self.columns[column]);
-        self.sparsest_columns.insert((self.columns[column].len(), column));
+        self.sparsest_columns.insert(self.pivoting.key(self.columns[column].len(), column));
     }
 }
 

@@ -225,7 +225,8 @@ impl Builder<'_> {
             }
         }
         let stages = Stages::new(self.inputs);
-        let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, Pivoting::Diagonal)?;
+        let factors =
+            factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, Pivoting::Diagonal { constraints: n })?;
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);
         kept.iter().zip(&mut right).filter(|(kept, _)| **kept).for_each(|(_, value)| *value = zero);
