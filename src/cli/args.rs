@@ -6,8 +6,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use super::pending::model::Override;
 use crate::bounds::Method;
+use crate::model::Override;
 
 /// What a mechanism can do when its parameters are only known up to tolerances.
 #[derive(Debug, Parser)]
@@ -141,11 +141,11 @@ fn methods() -> impl TypedValueParser<Value = Method> {
 }
 
 fn parse_override(text: &str) -> Result<Override, String> {
-    let wrong = || "expected NAME=VALUE, such as l1=0.16 or l1=0.16±2%".to_owned();
-    let (name, value) = text.split_once('=').ok_or_else(wrong)?;
-    let (name, value) = (name.trim(), value.trim());
-    if name.is_empty() || value.is_empty() {
-        return Err(wrong());
-    }
-    Ok(Override { name: name.to_owned(), value: value.to_owned() })
+    Override::parse(text).map_err(|wrong| {
+        let told = wrong.records().into_iter().map(|record| match record.help {
+            Some(help) => format!("{}; {help}", record.message),
+            None => record.message,
+        });
+        told.collect::<Vec<_>>().join("; ")
+    })
 }

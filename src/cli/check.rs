@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, count};
 use super::explain::explain_model;
-use super::pending::model;
 use super::{Failure, Status};
+use crate::model;
 use crate::report::Explanation;
 
 /// What is known of a model; an element of the JSON output.
@@ -63,12 +63,14 @@ fn check_one(path: &Path, color: bool) -> Checked {
     let file = path.display().to_string();
     let nothing =
         Checked { file, ok: false, counts: None, diagnostics: Vec::new(), error: None, rendered: String::new() };
-    match model::load(path, &[]) {
-        Err(wrong) => Checked { diagnostics: wrong.records(), rendered: wrong.render(color), ..nothing },
-        Ok(description) => match explain_model(&description) {
-            Err(error) => Checked { error: Some(error.to_string()), ..nothing },
-            Ok(explanation) => Checked { ok: true, counts: Some(explanation.into()), ..nothing },
-        },
+    let reading = model::read(path, &[]);
+    let told = &reading.diagnostics;
+    let rendered = if told.is_empty() { String::new() } else { told.render(color) };
+    let read = Checked { diagnostics: told.records(), rendered, ..nothing };
+    match reading.description.as_ref().map(explain_model) {
+        None => read,
+        Some(Err(error)) => Checked { error: Some(error.to_string()), ..read },
+        Some(Ok(explanation)) => Checked { ok: true, counts: Some(explanation.into()), ..read },
     }
 }
 

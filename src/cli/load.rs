@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::console::Console;
-use super::pending::model::{self, Override};
 use crate::model::Description;
+use crate::model::{self, Override};
 
 /// Reads all models. If any is wrong, everything that is wrong with any of them is told and there is no result.
 pub(super) fn load_all(models: &[PathBuf], overrides: &[Override], console: &Console) -> Option<Vec<Description>> {
@@ -12,7 +12,11 @@ pub(super) fn load_all(models: &[PathBuf], overrides: &[Override], console: &Con
     read.into_iter().collect()
 }
 
-/// Reads a model, or tells what is wrong with it.
+/// Reads a model, and tells what is wrong or doubtful about it.
 pub(super) fn load(path: &Path, overrides: &[Override], console: &Console) -> Option<Description> {
-    model::load(path, overrides).map_err(|diagnostics| console.complain(&diagnostics.render(console.color()))).ok()
+    let reading = model::read(path, overrides);
+    if !reading.diagnostics.is_empty() {
+        console.complain(&reading.diagnostics.render(console.color()));
+    }
+    reading.description
 }

@@ -9,7 +9,6 @@ mod console;
 mod explain;
 mod load;
 mod new;
-mod pending;
 mod progress;
 mod run;
 mod table;
@@ -74,7 +73,7 @@ fn carry_out(command: Command, console: &mut Console) -> Result<Status, Failure>
         Command::Run(args) => run::run(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Explain(args) => explain::explain(&args, console),
-        Command::Schema => console.print(&pending::model::schema()).map(|()| Status::Done),
+        Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Completions(args) => {
             let mut script = Vec::new();

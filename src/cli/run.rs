@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::args::RunArgs;
 use super::console::{BOLD, Console, count};
-use super::pending::model::Override;
 use super::progress::Progress;
 use super::table::{Align, Table};
 use super::{Failure, Status, load};
@@ -13,6 +12,7 @@ use crate::batch;
 use crate::bounds::Method;
 use crate::mechanics;
 use crate::model::Description;
+use crate::model::Override;
 use crate::report::{Summary, file_stem, prepare_folder, write_results};
 
 /// What a run needs, checked.
