@@ -104,6 +104,9 @@ impl<'s> JetRun<'s> {
             self.memory.jet_mut(x).copy_from_slice(&prediction);
             self.memory.jet_mut(x)[0] = self.center.tile().lane(x)[0];
         }
+        for &slot in &program.redundant {
+            self.memory.set_constant(slot, 0.0);
+        }
         for slot in layout.lambda.clone() {
             self.memory.jet_mut(slot)[0] = self.center.tile().lane(slot)[0];
         }

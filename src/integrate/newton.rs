@@ -84,7 +84,8 @@ impl Newton {
         }
     }
 
-    /// w₊ ≈ w where the iteration is still to run; λ₊ starts from λ.
+    /// w₊ ≈ w where the iteration is still to run; λ₊ starts from λ, that of a redundant constraint from zero: what has no
+    /// unique value must not have a memory either.
     fn predict(&mut self, program: &Program, tile: &mut Tile) {
         let layout = &program.layout;
         for (from, to) in layout.w.clone().zip(layout.iterate.clone()) {
@@ -93,6 +94,11 @@ impl Newton {
             }
         }
         self.restore_multipliers(program, tile);
+        for &slot in &program.redundant {
+            for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane]) {
+                tile.lane_mut(slot)[lane] = 0.0;
+            }
+        }
     }
 
     /// λ as it was when the step began, for pending lanes.

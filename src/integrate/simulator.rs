@@ -101,12 +101,20 @@ impl Simulator {
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
         let singular =
             |singular: Singular| SimulationError::Singular { equations: equation_names(&system, &singular.rows) };
-        let start = compile_start(&system, &guess_probe(&system, &layout, &parameters)).map_err(singular)?;
-        let mut assembly = Assembly::new(&start, &system, 1, |parameter, _| parameters[parameter]);
-        assembly.assemble_nominal().map_err(|gap| assembly_error(&system, &gap, &parameters))?;
-        assembly.shift_accelerations(alpha * h);
-        let nominal = assembly.tile().values()[..layout.slots()].to_vec();
+        let probe = guess_probe(&system, &layout, &parameters);
+        let assembled = |start: &StartProgram| {
+            let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
+            assembly.assemble_nominal().map_err(|gap| assembly_error(&system, &gap, &parameters))?;
+            assembly.shift_accelerations(alpha * h);
+            Ok(assembly.tile().values()[..layout.slots()].to_vec())
+        };
+        let mut start = compile_start(&system, &[], &probe).map_err(singular)?;
+        let mut nominal = assembled(&start)?;
         let mobility = mobility(&system, &start, &nominal);
+        if !mobility.redundant.is_empty() {
+            start = compile_start(&system, &mobility.redundant, &probe).map_err(singular)?;
+            nominal = assembled(&start)?;
+        }
         let probes = probes(&system, &layout, &nominal, h);
         let program = compile(&system, alpha, &mobility.redundant, &probes).map_err(singular)?;
         Ok(Self { system, start, program, nominal, mobility })

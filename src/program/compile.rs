@@ -27,9 +27,9 @@ pub struct WatchedPivot {
 /// all that Newton's iteration needs of them.
 const PIVOT_LOSS: f64 = 1e-10;
 
-/// Regularisation of a redundant constraint's multiplier, relative to the size of its row: large enough that round-off
-/// over it stays small, small enough that Newton's iteration (whose residual is exact) hardly notices.
-const REDUNDANT_WEIGHT: f64 = 1e-4;
+/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. What the constraint asks for
+/// the others see to, so its multiplier stays near the zero from which every step starts it.
+const REDUNDANT_WEIGHT: f64 = 1.0;
 
 /// Compiled form of a system for HHT-I3 at one α. A tile of samples has [`Program::slots`] slots.
 #[derive(Clone, Debug)]
@@ -46,6 +46,8 @@ pub struct Program {
     pub matrix_entries: Vec<(usize, usize, usize)>,
     /// Slots of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
+    /// Slots of the multipliers of redundant constraints: reactions that equilibrium does not determine, taken as zero.
+    pub redundant: Vec<usize>,
     /// Pivots that can become small.
     pub watched: Vec<WatchedPivot>,
     /// Symmetric scaling that equilibrates the Newton matrix, n + m.
@@ -211,6 +213,7 @@ pub fn compile(
         outputs: lowered.outputs[OBSERVE].iter().map(|&slot| slot as usize).collect(),
         matrix_entries,
         residual: places[nonzeros..].iter().map(|&slot| slot as usize).collect(),
+        redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint).collect(),
         watched,
         equilibration,
         nonzeros: (nonzeros, factors.nonzeros()),

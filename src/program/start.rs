@@ -23,6 +23,9 @@ use crate::mechanics::System;
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
 
+/// The same for constraints known to be redundant: the others do their work, and their multipliers stay near zero.
+const RELAXATION: f64 = 1e6;
+
 /// Tapes for the start of a tile of samples; states stand where [`Layout`] says, corrections too.
 #[derive(Clone, Debug)]
 pub struct StartProgram {
@@ -91,11 +94,11 @@ impl StartProgram {
     }
 }
 
-/// Compiles the start of a system; `probe` is a state near the one that is looked for (values of the layout's slots).
+/// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `probe` is a state near the one that is looked for (values of the layout's slots).
 ///
 /// # Errors
 /// [`Singular`] where the equations have no finite values at the probe.
-pub fn compile_start(system: &System, probe: &[f64]) -> Result<StartProgram, Singular> {
+pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Result<StartProgram, Singular> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = inputs(system, &layout);
     let mut graph = system.graph.clone();
@@ -103,7 +106,7 @@ pub fn compile_start(system: &System, probe: &[f64]) -> Result<StartProgram, Sin
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
 
-    let mut builder = Builder { system, graph, inputs: &inputs, slopes: &slopes, probe };
+    let mut builder = Builder { system, graph, inputs: &inputs, slopes: &slopes, redundant, probe };
     let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
     let diagonal: Vec<(usize, usize, Expr)> =
         metric.iter().enumerate().map(|(i, &weight)| (i, i, builder.graph.constant(weight))).collect();
@@ -186,6 +189,7 @@ struct Builder<'s> {
     graph: Graph,
     inputs: &'s [Input],
     slopes: &'s SparseMatrix,
+    redundant: &'s [usize],
     probe: &'s [f64],
 }
 
@@ -214,7 +218,8 @@ impl Builder<'_> {
         let sizes = self.constraint_sizes(&matrix, &numbers, n);
         let mut scale = vec![1.0; n + m];
         for (constraint, size) in sizes.into_iter().enumerate() {
-            let value = self.graph.constant(-REGULARISATION * size);
+            let relaxed = self.redundant.contains(&constraint);
+            let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
             matrix.add(&mut self.graph, n + constraint, n + constraint, value);
             scale[n + constraint] = size.sqrt().recip();
         }
