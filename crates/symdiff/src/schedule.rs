@@ -110,9 +110,10 @@ pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kern
     let mut lowered = Lowered::default();
     let mut targets = Vec::with_capacity(kernels.len());
     for outputs in kernels {
-        targets.push(
-            outputs.iter().map(|&(expr, slot)| (expr, slot.unwrap_or_else(|| lowering.keep(expr)))).collect::<Vec<_>>(),
-        );
+        let replaced: FxHashSet<u32> = outputs.iter().filter_map(|&(_, slot)| slot).collect();
+        let target =
+            |&(expr, slot): &(Expr, Option<u32>)| (expr, slot.unwrap_or_else(|| lowering.keep(expr, &replaced)));
+        targets.push(outputs.iter().map(target).collect::<Vec<_>>());
     }
     for body in stage_bodies.iter().rev() {
         lowered.stages.push(lowering.emit(body, &[]));
@@ -145,13 +146,16 @@ impl Lowering<'_> {
         })
     }
 
-    /// A slot in which a kernel's output outlives it: its own where it has one already, else a new one.
-    fn keep(&mut self, expr: Expr) -> u32 {
-        if let Some(&slot) = self.slot_of.get(&expr) {
-            return slot;
+    /// A slot in which a kernel's output outlives it: its own where it has one that the kernel does not replace, else a
+    /// new one.
+    fn keep(&mut self, expr: Expr, replaced: &FxHashSet<u32>) -> u32 {
+        match self.slot_of.get(&expr) {
+            Some(&slot) if !replaced.contains(&slot) => slot,
+            _ => {
+                self.next += 1;
+                self.next - 1
+            }
         }
-        self.next += 1;
-        self.next - 1
     }
 
     /// The nodes that one tape has to compute for `wanted`, operands first (depth first, so that what is used together
@@ -325,11 +329,21 @@ impl Lowering<'_> {
             instructions.push((instruction.op, Operands { a, b, c, d }));
             free.extend(unused);
         }
-        let place = |expr: Expr| self.slot_of.get(&expr).or_else(|| place_of.get(&expr)).copied();
-        instructions.extend(copies.iter().map(|&(expr, slot)| {
-            let a = place(expr).expect("an output is a symbol, a constant, kept, or computed here");
-            (Op::Copy, Operands { a, b: a, c: a, d: slot })
-        }));
+        // All copies happen at once: what another copy overwrites is put aside first.
+        let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, slot)| slot).collect();
+        let copy = |from: u32, to: u32| (Op::Copy, Operands { a: from, b: from, c: from, d: to });
+        let mut last = Vec::with_capacity(copies.len());
+        for &(expr, slot) in &copies {
+            let kept = self.slot_of.get(&expr).or_else(|| place_of.get(&expr)).copied();
+            let mut source = kept.expect("an output is a symbol, a constant, kept, or computed here");
+            if overwritten.contains(&source) {
+                let aside = take(&mut free, &mut next);
+                instructions.push(copy(source, aside));
+                source = aside;
+            }
+            last.push(copy(source, slot));
+        }
+        instructions.extend(last);
         Tape::new(instructions)
     }
 }

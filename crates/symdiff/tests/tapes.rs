@@ -1,0 +1,105 @@
+//! Tapes against direct evaluation, bit for bit: random graphs with shared subexpressions, inputs of all stages, two
+//! kernels, results that replace inputs, every tile width.
+
+use proptest::prelude::*;
+use symdiff::{Binary, Expr, Graph, Input, Tile, Unary, WIDTHS, lower};
+
+const INPUTS: usize = 5;
+/// Stages below the kernels'.
+const SHARED: usize = 2;
+
+/// What one more node does with earlier ones.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    Constant(f64),
+    Unary(Unary, usize),
+    Binary(Binary, usize, usize),
+}
+
+fn step() -> impl Strategy<Value = Step> {
+    use Unary::*;
+    let unary = prop::sample::select(vec![Neg, Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Abs, Tanh, Sign]);
+    // Sums and products most often: what is fused.
+    let binary = prop_oneof![
+        6 => prop::sample::select(vec![Binary::Add, Binary::Sub, Binary::Mul]),
+        1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max]),
+    ];
+    prop_oneof![
+        1 => (-2.0..2.0_f64).prop_map(Step::Constant),
+        3 => (unary, any::<usize>()).prop_map(|(function, a)| Step::Unary(function, a)),
+        8 => (binary, any::<usize>(), any::<usize>()).prop_map(|(function, a, b)| Step::Binary(function, a, b)),
+    ]
+}
+
+/// All nodes of a random graph, the inputs first.
+fn build(graph: &mut Graph, steps: &[Step]) -> Vec<Expr> {
+    let mut nodes: Vec<Expr> = (0..INPUTS).map(|input| graph.symbol(&format!("x{input}"))).collect();
+    for &step in steps {
+        let node = match step {
+            Step::Constant(value) => graph.constant(value),
+            Step::Unary(function, a) => graph.unary(function, nodes[a % nodes.len()]),
+            Step::Binary(function, a, b) => graph.binary(function, nodes[a % nodes.len()], nodes[b % nodes.len()]),
+        };
+        nodes.push(node);
+    }
+    nodes
+}
+
+/// The value of an input in a lane.
+fn value(input: usize, lane: usize, seed: f64) -> f64 {
+    (seed + 0.7 * input as f64 + 0.31 * lane as f64).sin() * 3.0
+}
+
+/// Equal to the bit; all that is not a number counts as one.
+fn same(a: f64, b: f64) -> bool {
+    a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
+}
+
+proptest! {
+    #[test]
+    fn tapes_give_the_bits_of_direct_evaluation(
+        steps in prop::collection::vec(step(), 1..60),
+        stages in prop::array::uniform5(0..=SHARED),
+        picks in prop::collection::vec((any::<usize>(), any::<bool>()), 1..8),
+        seed in 0.0..6.0_f64,
+    ) {
+        let mut graph = Graph::new();
+        let nodes = build(&mut graph, &steps);
+        let inputs: Vec<Input> =
+            (0..INPUTS).map(|i| Input { symbol: nodes[i], stage: stages[i], slot: i as u32 }).collect();
+        let observed: Vec<Expr> = picks.iter().map(|&(pick, _)| nodes[pick % nodes.len()]).collect();
+        // The second kernel puts results where inputs of its own stage stand, as a step does with the state.
+        let mut places = (0..INPUTS).filter(|&i| stages[i] == SHARED);
+        let replaced: Vec<(Expr, Option<u32>)> =
+            observed.iter().zip(&picks).map(|(&expr, &(_, replace))| {
+                (expr, if replace { places.next().map(|place| place as u32) } else { None })
+            }).collect();
+        let kernels = [observed.iter().map(|&expr| (expr, None)).collect(), replaced];
+        let lowered = lower(&graph, &inputs, SHARED, INPUTS as u32, &kernels);
+
+        for width in WIDTHS {
+            let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+            for input in 0..INPUTS {
+                for lane in 0..width {
+                    tile.lane_mut(input)[lane] = value(input, lane, seed);
+                }
+            }
+            for stage in &lowered.stages {
+                tile.run(stage);
+            }
+            for (kernel, outputs) in lowered.kernels.iter().zip(&lowered.outputs) {
+                tile.run(kernel);
+                for lane in 0..width {
+                    let direct = graph.evaluate(&observed, |symbol| {
+                        let input = nodes.iter().position(|&node| node == symbol).unwrap();
+                        value(input, lane, seed)
+                    });
+                    for (&slot, &direct) in outputs.iter().zip(&direct) {
+                        let found = tile.lane(slot as usize)[lane];
+                        prop_assert!(same(found, direct), "{found:e} is not {direct:e} (width {width}, lane {lane})");
+                    }
+                }
+            }
+        }
+    }
+}
