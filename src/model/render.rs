@@ -1,0 +1,139 @@
+//! How a diagnostic looks: rustc's way, through `annotate-snippets`.
+
+use std::ops::Range;
+
+use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+
+use super::diagnostic::{Diagnostic, Diagnostics, Severity};
+use super::source::Source;
+
+/// Diagnostics shown; the others are counted.
+const MOST_SHOWN: usize = 50;
+
+/// Places at most this many lines apart are shown in one piece.
+const LINES_TOGETHER: usize = 6;
+
+/// Characters of a line shown on either side of the marker when the line is longer than three times this.
+const LONG_LINE: usize = 400;
+
+impl Diagnostics {
+    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty.
+    pub fn render(&self, colour: bool) -> String {
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let mut text = String::new();
+        for diagnostic in self.iter().take(MOST_SHOWN) {
+            text += &renderer.render(&self.report(diagnostic));
+            text += "\n\n";
+        }
+        let hidden = self.iter().count().saturating_sub(MOST_SHOWN);
+        if hidden > 0 {
+            text += &format!("… and {hidden} more\n\n");
+        }
+        text.truncate(text.trim_end().len());
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text
+    }
+
+    fn report<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Group<'d>> {
+        let level = match diagnostic.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()));
+        for element in self.places(diagnostic) {
+            group = group.element(element);
+        }
+        let help = diagnostic.help.as_deref().map(|help| Level::HELP.message(help));
+        vec![group.elements(help)]
+    }
+
+    /// The lines with their markers; only the path where no line is meant.
+    fn places<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Element<'d>> {
+        let primary = diagnostic.span.as_ref().map(|span| (span, diagnostic.label.as_deref(), AnnotationKind::Primary));
+        let secondary = diagnostic
+            .secondary
+            .iter()
+            .map(|(span, label)| (span, Some(label.as_str()), AnnotationKind::Context));
+        let mut excerpts: Vec<Excerpt> = Vec::new();
+        for (span, label, kind) in primary.into_iter().chain(secondary) {
+            let Some((source, span)) = self.sources.locate(span) else { continue };
+            let mark = Mark { span: first_line_of(&source.text, span), label, kind };
+            match excerpts.iter_mut().find(|excerpt| excerpt.is_near(source, &mark)) {
+                Some(excerpt) => excerpt.marks.push(mark),
+                None => excerpts.push(Excerpt { source, marks: vec![mark] }),
+            }
+        }
+        if excerpts.is_empty() {
+            return self.sources.first().map(|source| Origin::path(source.name.as_str()).into()).into_iter().collect();
+        }
+        excerpts.into_iter().flat_map(Excerpt::elements).collect()
+    }
+}
+
+struct Mark<'d> {
+    span: Range<usize>,
+    label: Option<&'d str>,
+    kind: AnnotationKind,
+}
+
+/// Neighbouring lines of one source.
+struct Excerpt<'d> {
+    source: &'d Source,
+    marks: Vec<Mark<'d>>,
+}
+
+impl<'d> Excerpt<'d> {
+    fn is_near(&self, source: &Source, mark: &Mark) -> bool {
+        let near = |other: &Mark| {
+            let between = mark.span.start.min(other.span.start)..mark.span.start.max(other.span.start);
+            let between = &source.text[between];
+            between.len() < 4 * LONG_LINE && between.matches('\n').count() <= LINES_TOGETHER
+        };
+        std::ptr::eq(self.source, source) && self.marks.iter().all(near)
+    }
+
+    fn elements(self) -> Vec<Element<'d>> {
+        let text = self.source.text.as_str();
+        let first = self.marks.iter().map(|mark| mark.span.start).min().unwrap_or(0);
+        let last = self.marks.iter().map(|mark| mark.span.end).max().unwrap_or(0);
+        let place = self.source.place(self.marks.first().map_or(0, |mark| mark.span.start));
+        let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
+        let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
+        // What is shown of very long lines begins and ends near the marks; the place stands above it all the same.
+        let cut_start = nearby(text, start, first, |text, from| text[..from].char_indices().rev().nth(LONG_LINE - 1));
+        let cut_end = match text[last..end].char_indices().nth(LONG_LINE) {
+            Some((offset, _)) => last + offset,
+            None => end,
+        };
+        let annotations = self.marks.into_iter().map(|mark| {
+            let span = mark.span.start - cut_start..mark.span.end - cut_start;
+            mark.kind.span(span).label(mark.label)
+        });
+        let annotations: Vec<Annotation> = annotations.collect();
+        let snippet = Snippet::source(&text[cut_start..cut_end])
+            .line_start(self.source.place(cut_start).line)
+            .annotations(annotations);
+        if cut_start == start {
+            vec![snippet.path(self.source.name.as_str()).into()]
+        } else {
+            let origin = Origin::path(self.source.name.as_str()).line(place.line).char_column(place.column);
+            vec![origin.into(), snippet.into()]
+        }
+    }
+}
+
+/// `start`, or a character not far before `mark` when that is nearer.
+fn nearby(text: &str, start: usize, mark: usize, back: impl Fn(&str, usize) -> Option<(usize, char)>) -> usize {
+    match back(text, mark) {
+        Some((offset, _)) if offset > start => offset,
+        _ => start,
+    }
+}
+
+/// The part of a span on its first line, without the space around it.
+fn first_line_of(text: &str, span: Range<usize>) -> Range<usize> {
+    let line = text[span.clone()].split('\n').next().unwrap_or("");
+    span.start..span.start + line.trim_end().len()
+}

@@ -1,0 +1,97 @@
+//! The texts that diagnostics point into: the model file, and one for each `--set`.
+//!
+//! All texts share one range of byte offsets, each text behind the one before, so that a [`Span`] alone says which
+//! text it is in.
+
+use std::ops::Range;
+
+/// Bytes of the texts that were read.
+pub type Span = Range<usize>;
+
+/// A text and what it is called.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Path, or the command-line option that the text came with.
+    pub name: String,
+    /// The text; empty where it could not be read.
+    pub text: String,
+    /// Offset of its first byte.
+    pub start: usize,
+}
+
+/// A place as people count it, both from 1; columns are characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct Place {
+    pub line: usize,
+    pub column: usize,
+}
+
+impl Source {
+    /// The place of a byte of this source; `offset` counts from the source's own start.
+    pub fn place(&self, offset: usize) -> Place {
+        let before = &self.text[..floor_char_boundary(&self.text, offset)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Place {
+            line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+}
+
+/// Every text that was read.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    all: Vec<Source>,
+}
+
+impl Sources {
+    /// Adds a text and gives the offset of its first byte.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
+        // One offset lies between two texts, so that the end of one is not the start of the next.
+        let start = self.all.last().map_or(0, |last| last.start + last.text.len() + 1);
+        self.all.push(Source { name: name.into(), text: text.into(), start });
+        start
+    }
+
+    /// The first text: the model file.
+    pub fn first(&self) -> Option<&Source> {
+        self.all.first()
+    }
+
+    /// The text that a span is in, and the span within it, cut to what there is.
+    pub fn locate(&self, span: &Span) -> Option<(&Source, Span)> {
+        let source = self.all.iter().rev().find(|source| source.start <= span.start)?;
+        let cut = |offset: usize| floor_char_boundary(&source.text, offset.saturating_sub(source.start));
+        let start = cut(span.start);
+        Some((source, start..cut(span.end).max(start)))
+    }
+}
+
+/// The nearest start of a character at or before `offset`.
+fn floor_char_boundary(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_finds_its_text() {
+        let mut sources = Sources::default();
+        assert_eq!(sources.add("a", "xyz\nü!"), 0);
+        let second = sources.add("b", "hello");
+        assert_eq!(second, 8);
+        let (source, span) = sources.locate(&(6..7)).unwrap();
+        assert_eq!((source.name.as_str(), &source.text[span.clone()]), ("a", "!"));
+        assert_eq!(source.place(span.start), Place { line: 2, column: 2 });
+        let (source, span) = sources.locate(&(8..100)).unwrap();
+        assert_eq!((source.name.as_str(), span), ("b", 0..5));
+        assert_eq!(sources.locate(&(7..7)).unwrap().0.name, "a");
+    }
+}
