@@ -1,0 +1,237 @@
+//! Which dimension a formula has, and whether its parts agree.
+//!
+//! A bare number is a pure factor in a product with a parameter, and takes the other side's dimension in a sum. Beside
+//! `t` or a motion (`-5*slider.vx`, `sin(2*t)`) it may be a coefficient of any unit, so such a product fits anywhere.
+//! A parameter without unit fits anywhere, and so does what is made with it.
+
+use symdiff::formula::Term;
+use symdiff::{Binary, Formula, Unary};
+
+use super::quantity::Dimension;
+use super::source::Span;
+
+/// What is known of the dimension of a part of a formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// Made of bare numbers; its value where that is plain.
+    Number(Option<f64>),
+    /// Nothing is known.
+    Any,
+    /// This dimension.
+    Known {
+        #[allow(missing_docs)]
+        dimension: Dimension,
+        /// Made without parameters, of `t` and motions only.
+        motion: bool,
+    },
+}
+
+impl Kind {
+    /// A parameter of this dimension.
+    pub fn parameter(dimension: Dimension) -> Self {
+        Self::Known { dimension, motion: false }
+    }
+
+    /// Time or a part of the motion.
+    pub fn motion(dimension: Dimension) -> Self {
+        Self::Known { dimension, motion: true }
+    }
+
+    /// The dimension, where one is known.
+    pub fn dimension(self) -> Option<Dimension> {
+        match self {
+            Self::Known { dimension, .. } => Some(dimension),
+            Self::Number(_) | Self::Any => None,
+        }
+    }
+}
+
+/// Two parts that do not go together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    /// What is wrong.
+    pub message: String,
+    /// Bytes of the formula's text.
+    pub span: Span,
+}
+
+/// The formula's dimension, each name's given by `name`; every mismatch within it goes to `mismatches`.
+pub fn analyse(formula: &Formula, mut name: impl FnMut(&str) -> Kind, mismatches: &mut Vec<Mismatch>) -> Kind {
+    let mut kinds: Vec<Kind> = Vec::with_capacity(formula.terms().len());
+    for (term, span) in formula.terms() {
+        let kind = match term {
+            Term::Number(value) => Ok(Kind::Number(Some(*value))),
+            Term::Name(text) => Ok(name(text)),
+            Term::Unary(function, a) => unary(*function, kinds[*a]),
+            Term::Binary(function, a, b) => binary(*function, kinds[*a], kinds[*b]),
+        };
+        kinds.push(kind.unwrap_or_else(|message| {
+            mismatches.push(Mismatch { message, span: span.clone() });
+            Kind::Any
+        }));
+    }
+    kinds.pop().unwrap_or(Kind::Any)
+}
+
+fn unary(function: Unary, a: Kind) -> Result<Kind, String> {
+    match function {
+        Unary::Neg => Ok(match a {
+            Kind::Number(value) => Kind::Number(value.map(|value| -value)),
+            other => other,
+        }),
+        Unary::Abs => Ok(match a {
+            Kind::Number(value) => Kind::Number(value.map(f64::abs)),
+            other => other,
+        }),
+        Unary::Sqrt => power(a, Some(0.5)),
+        Unary::Sign => Ok(Kind::Number(None)),
+        _ => match a {
+            Kind::Known { dimension, .. } if !dimension.fits(Dimension::NUMBER) => {
+                let wanted = match function {
+                    Unary::Sin | Unary::Cos | Unary::Tan => "an angle (rad)",
+                    _ => "a pure number",
+                };
+                Err(format!("{dimension} stands where {wanted} belongs"))
+            }
+            _ => Ok(Kind::Number(None)),
+        },
+    }
+}
+
+fn binary(function: Binary, a: Kind, b: Kind) -> Result<Kind, String> {
+    match function {
+        Binary::Add | Binary::Sub => sum(a, b, if function == Binary::Add { "added" } else { "subtracted" }),
+        Binary::Min | Binary::Max => sum(a, b, "compared"),
+        Binary::Atan2 => sum(a, b, "compared").map(|_| Kind::Number(None)),
+        Binary::Mul => Ok(product(a, b, Dimension::times, |x, y| x * y)),
+        Binary::Div => Ok(product(a, b, Dimension::per, |x, y| x / y)),
+        Binary::Pow => match b {
+            Kind::Number(exponent) => power(a, exponent),
+            Kind::Any => power(a, None),
+            Kind::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => power(a, None),
+            Kind::Known { dimension, .. } => Err(format!("{dimension} cannot be an exponent")),
+        },
+    }
+}
+
+fn sum(a: Kind, b: Kind, verb: &str) -> Result<Kind, String> {
+    match (a, b) {
+        (Kind::Number(_), Kind::Number(_)) => Ok(Kind::Number(None)),
+        (Kind::Known { dimension: x, motion: m }, Kind::Known { dimension: y, motion: n }) => {
+            if x.fits(y) {
+                Ok(Kind::Known { dimension: x.of_sum(y), motion: m && n })
+            } else {
+                Err(format!("{x} and {y} cannot be {verb}"))
+            }
+        }
+        (known @ Kind::Known { .. }, _) | (_, known @ Kind::Known { .. }) => Ok(known),
+        _ => Ok(Kind::Any),
+    }
+}
+
+fn product(
+    a: Kind,
+    b: Kind,
+    dimensions: impl Fn(Dimension, Dimension) -> Dimension,
+    numbers: impl Fn(f64, f64) -> f64,
+) -> Kind {
+    match (a, b) {
+        (Kind::Number(x), Kind::Number(y)) => Kind::Number(x.zip(y).map(|(x, y)| numbers(x, y))),
+        (Kind::Any, _) | (_, Kind::Any) => Kind::Any,
+        (Kind::Number(_), Kind::Known { motion: true, .. }) | (Kind::Known { motion: true, .. }, Kind::Number(_)) => {
+            Kind::Any
+        }
+        (Kind::Number(_), Kind::Known { dimension, .. }) => Kind::parameter(dimensions(Dimension::NUMBER, dimension)),
+        (known @ Kind::Known { .. }, Kind::Number(_)) => known,
+        (Kind::Known { dimension: x, motion: m }, Kind::Known { dimension: y, motion: n }) => {
+            Kind::Known { dimension: dimensions(x, y), motion: m && n }
+        }
+    }
+}
+
+fn power(base: Kind, exponent: Option<f64>) -> Result<Kind, String> {
+    match base {
+        Kind::Number(value) => Ok(Kind::Number(value.zip(exponent).map(|(value, exponent)| value.powf(exponent)))),
+        Kind::Any => Ok(Kind::Any),
+        Kind::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => Ok(Kind::Number(None)),
+        Kind::Known { dimension, motion } => {
+            let Some(exponent) = exponent else {
+                return Err(format!("{dimension} needs a number as its exponent"));
+            };
+            match dimension.to_the(exponent) {
+                Some(dimension) => Ok(Kind::Known { dimension, motion }),
+                None => Err(format!("{dimension} to the power {exponent} has no unit")),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(name: &str) -> Kind {
+        match name {
+            "l" => Kind::parameter(Dimension::LENGTH),
+            "m" => Kind::parameter(Dimension::MASS),
+            "omega" => Kind::parameter(Dimension::ANGULAR_VELOCITY),
+            "F" => Kind::parameter(Dimension::FORCE),
+            "t" => Kind::motion(Dimension::TIME),
+            "v" => Kind::motion(Dimension::VELOCITY),
+            "angle" => Kind::motion(Dimension::ANGLE),
+            _ => Kind::Any,
+        }
+    }
+
+    fn unit(text: &str) -> Result<String, String> {
+        let mut mismatches = Vec::new();
+        let kind = analyse(&Formula::parse(text).unwrap(), name, &mut mismatches);
+        match mismatches.into_iter().next() {
+            Some(mismatch) => Err(format!("{:?} {}", mismatch.span, mismatch.message)),
+            None => Ok(match kind {
+                Kind::Number(_) => "number".to_owned(),
+                Kind::Any => "any".to_owned(),
+                Kind::Known { dimension, .. } => dimension.unit(),
+            }),
+        }
+    }
+
+    #[test]
+    fn dimensions_follow_the_formula() {
+        for (text, wanted) in [
+            ("m*l^2/12", "kg*m^2"),
+            ("-l/2", "m"),
+            ("1 + l", "m"),
+            ("sqrt(l^2 + l^2)", "m"),
+            ("l^(1/3)*l^(2/3)", "m"),
+            ("0.5*m*v^2", "N*m"),
+            ("omega*t", "rad"),
+            ("l*omega", "m/s"),
+            ("F*sin(omega*t)", "N"),
+            ("10*sin(2*t)", "number"),
+            ("-5*v", "any"),
+            ("k*l", "any"),
+            ("k + l", "m"),
+            ("2*9.81", "number"),
+            ("angle - angle", "rad"),
+            ("max(l, 0)", "m"),
+            ("F*(l/l)^2.5", "N"),
+        ] {
+            assert_eq!(unit(text).as_deref(), Ok(wanted), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_placed() {
+        for (text, wanted) in [
+            ("1 + (l + m)", "5..10 a length (m) and a mass (kg) cannot be added"),
+            ("sin(l)", "0..6 a length (m) stands where an angle (rad) belongs"),
+            ("sin(t)", "0..6 a time (s) stands where an angle (rad) belongs"),
+            ("2^l", "0..3 a length (m) cannot be an exponent"),
+            ("l^k", "0..3 a length (m) needs a number as its exponent"),
+            ("max(l, m)", "0..9 a length (m) and a mass (kg) cannot be compared"),
+        ] {
+            assert_eq!(unit(text).unwrap_err(), wanted, "{text}");
+        }
+    }
+}

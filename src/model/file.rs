@@ -1,0 +1,377 @@
+//! The grammar of a model file: which keys stand where.
+//!
+//! One declaration serves the reader, which takes the known keys from it, and the JSON Schema for editors.
+
+#![allow(dead_code)] // the fields are there for their names and types
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+
+/// A mapping of the file whose keys are fixed.
+pub trait Grammar {
+    /// What the mapping is, for messages: `a body`.
+    const WHAT: &'static str;
+    /// Its keys, in the order in which they are suggested.
+    const KEYS: &'static [&'static str];
+}
+
+/// A number, a formula, or a number with its unit.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum Number {
+    /// A number in SI units.
+    Plain(f64),
+    /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
+    Text(String),
+}
+
+/// Direction: `x`, `y` or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum Direction {
+    Named(Axis),
+    Components([Number; 2]),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum Axis {
+    X,
+    Y,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum CoordinateName {
+    X,
+    Y,
+    Angle,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum Frame {
+    /// Components along the ground's axes.
+    Ground,
+    /// Components along the body's axes.
+    Body,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum Range {
+    /// The polynomial's own range.
+    Tight,
+    /// Interval arithmetic term by term, as in the paper: wider.
+    Interval,
+}
+
+/// Either the mapping or, where it needs nothing else, the list of what it is between.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum OrBetween<T> {
+    /// Short for `{ between: [a, b] }`.
+    Short([String; 2]),
+    Full(T),
+}
+
+/// A whole number for all parameters, or one for each uncertain parameter.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum PerParameter {
+    All(u32),
+    Each(IndexMap<String, u32>),
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum ParameterFile {
+    /// A number, a formula, or a number with its unit.
+    Number(Number),
+    Full(Parameter),
+}
+
+macro_rules! grammar {
+    ($(
+        $(#[doc = $doc:literal])*
+        $name:ident is $what:literal $(with $extension:literal = $value:literal)* {
+            $($(#[doc = $field_doc:literal])* $field:ident: $type:ty,)*
+        }
+    )*) => {$(
+        $(#[doc = $doc])*
+        #[derive(JsonSchema)]
+        #[schemars(deny_unknown_fields, inline $(, extend($extension = $value))*)]
+        pub(super) struct $name {
+            $($(#[doc = $field_doc])* $field: $type,)*
+        }
+
+        impl Grammar for $name {
+            const WHAT: &'static str = $what;
+            const KEYS: &'static [&'static str] = &[$(stringify!($field)),*];
+        }
+    )*};
+}
+
+grammar! {
+    /// A mechanism, its uncertain parameters, and what is asked of it.
+    File is "a model" {
+        /// Short name; by default the file's.
+        model: Option<String>,
+        /// One line for people.
+        description: Option<String>,
+        /// Named numbers; those with a tolerance or an interval are uncertain.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Rigid bodies. `ground` is there already, and may be given points.
+        bodies: IndexMap<String, Body>,
+        /// What holds the bodies together.
+        joints: Option<IndexMap<String, Joint>>,
+        /// What moves the bodies.
+        effects: Option<IndexMap<String, Effect>>,
+        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
+        initial: Option<IndexMap<String, Number>>,
+        /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
+        guess: Option<IndexMap<String, Number>>,
+        /// What is observed: names with formulas, e.g. `x3: slider.x`.
+        outputs: IndexMap<String, Number>,
+        /// How long, and in which steps.
+        simulation: Simulation,
+        /// Which bounds to compute; without this, Chebyshev of order 5.
+        bounds: Option<Bounds>,
+    }
+
+    /// A parameter; certain unless it has a tolerance, an interval, or plus and minus.
+    Parameter is "a parameter" {
+        /// Its nominal value.
+        value: Option<Number>,
+        /// Unit of the bare numbers given here, e.g. `mm` or `N*s/m`.
+        unit: Option<String>,
+        /// Largest deviation either way: `1%` of the value, or a quantity.
+        tolerance: Option<Number>,
+        /// Smallest and largest value; without `value`, the nominal is the middle.
+        interval: Option<[Number; 2]>,
+        /// Largest deviation upwards.
+        plus: Option<Number>,
+        /// Largest deviation downwards.
+        minus: Option<Number>,
+        /// What it is, for people.
+        description: Option<String>,
+    }
+
+    /// A rigid body with its frame.
+    Body is "a body" {
+        /// kg
+        mass: Option<Number>,
+        /// About the centre of mass, kg*m^2.
+        inertia: Option<Number>,
+        /// In the body's frame, m; by default the frame's origin.
+        center_of_mass: Option<[Number; 2]>,
+        /// What can change; by default x, y and angle.
+        coordinates: Option<Vec<CoordinateName>>,
+        /// Values of the coordinates that cannot change; by default 0.
+        held: Option<Held>,
+        /// Named points in the body's frame, m.
+        points: Option<IndexMap<String, [Number; 2]>>,
+    }
+
+    /// Values of coordinates that cannot change.
+    Held is "held coordinates" {
+        /// m
+        x: Option<Number>,
+        /// m
+        y: Option<Number>,
+        /// rad
+        angle: Option<Number>,
+    }
+
+    /// A joint: one kind with its details.
+    Joint is "a joint" with "minProperties" = 1 with "maxProperties" = 1 {
+        /// Two points coincide.
+        revolute: Option<OrBetween<Between>>,
+        /// The second point moves along a line through the first, without turning against the first body.
+        prismatic: Option<Prismatic>,
+        /// Two points coincide and the bodies do not turn against one another.
+        fixed: Option<OrBetween<Fixed>>,
+        /// The second point moves along a line through the first, fixed in the first body; it may turn.
+        pin_in_slot: Option<PinInSlot>,
+        /// Two points keep their distance.
+        distance: Option<Distance>,
+        /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
+        gear: Option<Gear>,
+        /// `left = right` between coordinates, parameters and t, e.g. `crank.angle = omega*t`.
+        equation: Option<String>,
+    }
+
+    /// Two points.
+    Between is "a revolute joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+    }
+
+    /// A prismatic joint.
+    Prismatic is "a prismatic joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction in the first body's frame.
+        axis: Direction,
+        /// Angle of the second body against the first, rad; by default 0.
+        angle: Option<Number>,
+    }
+
+    /// A fixed joint.
+    Fixed is "a fixed joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Angle of the second body against the first, rad; by default 0.
+        angle: Option<Number>,
+    }
+
+    /// A pin in a slot.
+    PinInSlot is "a pin in a slot" {
+        /// A point of the slot's line, then the pin; each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction of the slot in the first body's frame.
+        axis: Direction,
+    }
+
+    /// A massless rod between two points.
+    Distance is "a distance joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// m
+        length: Number,
+    }
+
+    /// A gear pair.
+    Gear is "a gear" {
+        /// Two bodies.
+        between: [String; 2],
+        /// Angle of the second per angle of the first; negative for external gears.
+        ratio: Number,
+        /// rad; by default 0.
+        offset: Option<Number>,
+    }
+
+    /// An effect: one kind with its details.
+    Effect is "an effect" with "minProperties" = 1 with "maxProperties" = 1 {
+        /// The same acceleration on every body.
+        gravity: Option<Gravity>,
+        /// A force at a point.
+        force: Option<Force>,
+        /// A torque on a body.
+        torque: Option<Torque>,
+        /// A spring and damper between two points.
+        spring_damper: Option<SpringDamper>,
+        /// A spring and damper between the angles of two bodies.
+        torsional_spring_damper: Option<TorsionalSpringDamper>,
+    }
+
+    /// Gravity.
+    Gravity is "gravity" {
+        /// m/s^2, e.g. [0, -9.81].
+        acceleration: [Number; 2],
+    }
+
+    /// A force.
+    Force is "a force" {
+        /// `body.point` or `body`.
+        on: String,
+        /// N; may depend on t, positions and velocities.
+        value: [Number; 2],
+        /// Whose axes the components are along; by default the ground's.
+        frame: Option<Frame>,
+    }
+
+    /// A torque.
+    Torque is "a torque" {
+        /// The body it acts on.
+        on: String,
+        /// The body its reaction acts on; by default the ground.
+        from: Option<String>,
+        /// N*m; may depend on t, positions and velocities.
+        value: Number,
+    }
+
+    /// A spring and damper.
+    SpringDamper is "a spring_damper" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction in the ground's frame; by default the line between the points.
+        along: Option<Direction>,
+        /// N/m; by default 0.
+        stiffness: Option<Number>,
+        /// N*s/m; by default 0.
+        damping: Option<Number>,
+        /// m; by default 0.
+        free_length: Option<Number>,
+    }
+
+    /// A torsional spring and damper.
+    TorsionalSpringDamper is "a torsional_spring_damper" {
+        /// Two bodies.
+        between: [String; 2],
+        /// N*m/rad; by default 0.
+        stiffness: Option<Number>,
+        /// N*m*s/rad; by default 0.
+        damping: Option<Number>,
+        /// rad; by default 0.
+        free_angle: Option<Number>,
+    }
+
+    /// How time is stepped.
+    Simulation is "a simulation" {
+        /// s
+        duration: Number,
+        /// Length of every step, s; by default 1e-3.
+        step: Option<Number>,
+        /// Instead of `step`: local position error allowed, relative to max(1, |q|).
+        tolerance: Option<Number>,
+        /// HHT parameter from -1/3 to below 0; by default -0.1.
+        alpha: Option<Number>,
+        /// s between rows of output; by default about a 200th of the duration.
+        output_step: Option<Number>,
+    }
+
+    /// Which bounds to compute; a method that is not named is not run.
+    Bounds is "bounds" {
+        /// A Chebyshev polynomial in the parameters.
+        chebyshev: Option<Chebyshev>,
+        /// A Taylor polynomial in the parameters.
+        taylor: Option<Taylor>,
+        /// Many samples; inner bounds.
+        scan: Option<Scan>,
+    }
+
+    /// Chebyshev bounds.
+    Chebyshev is "chebyshev bounds" {
+        /// Degree, for all parameters or by parameter; by default 5.
+        order: Option<PerParameter>,
+        /// Nodes, more than the degree; by default one more.
+        nodes: Option<PerParameter>,
+        /// By default tight.
+        range: Option<Range>,
+    }
+
+    /// Taylor bounds.
+    Taylor is "taylor bounds" {
+        /// Total degree; by default 2.
+        order: Option<u32>,
+        /// By default tight.
+        range: Option<Range>,
+    }
+
+    /// Scanning bounds.
+    Scan is "a scan" {
+        /// Points, for all parameters or by parameter, both ends included; by default 30.
+        points: Option<PerParameter>,
+    }
+}
+
+/// The JSON Schema of model files, as text that ends with a newline.
+pub fn schema() -> String {
+    let mut schema = schemars::schema_for!(File);
+    schema.insert("title".to_owned(), "mbint model".into());
+    // A schema is a tree of JSON values: writing it out cannot fail.
+    let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
+    text.push('\n');
+    text
+}

@@ -1,0 +1,268 @@
+//! What a name in a formula means: the one place that decides it.
+
+use std::ops::Range;
+
+use super::description::{Coordinate, Description, EnergyKind, ReactionComponent, Referent, TimeOrder};
+use super::dimension::Kind;
+use super::quantity::Dimension;
+use super::suggest;
+
+/// The ground's name.
+pub const GROUND: &str = "ground";
+
+/// Parts of a body's or a point's motion: name, coordinate, how often it is differentiated.
+pub const MOTIONS: [(&str, Coordinate, TimeOrder); 9] = [
+    ("x", Coordinate::X, TimeOrder::Position),
+    ("y", Coordinate::Y, TimeOrder::Position),
+    ("angle", Coordinate::Angle, TimeOrder::Position),
+    ("vx", Coordinate::X, TimeOrder::Velocity),
+    ("vy", Coordinate::Y, TimeOrder::Velocity),
+    ("angular_velocity", Coordinate::Angle, TimeOrder::Velocity),
+    ("ax", Coordinate::X, TimeOrder::Acceleration),
+    ("ay", Coordinate::Y, TimeOrder::Acceleration),
+    ("angular_acceleration", Coordinate::Angle, TimeOrder::Acceleration),
+];
+
+/// Names without a dot that are taken.
+const ENERGIES: [(&str, EnergyKind); 3] = [
+    ("energy", EnergyKind::Total),
+    ("kinetic_energy", EnergyKind::Kinetic),
+    ("potential_energy", EnergyKind::Potential),
+];
+
+/// Where a formula stands, and so what it may be made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Context {
+    /// Parameters only.
+    Constant,
+    /// Parameters, time, positions and velocities.
+    Effect,
+    /// Parameters, time and positions.
+    Equation,
+    /// Everything.
+    Output,
+}
+
+/// A name that means nothing, or nothing here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameError {
+    /// What is wrong.
+    pub message: String,
+    /// The part of the name that is wrong, in bytes.
+    pub part: Range<usize>,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+/// Whether the word means something by itself in every formula, so that nothing else may be called so.
+pub fn is_reserved(name: &str) -> bool {
+    matches!(name, "t" | "pi")
+        || ENERGIES.iter().any(|(energy, _)| *energy == name)
+        || symdiff::formula::FUNCTIONS.iter().any(|(function, _)| *function == name)
+}
+
+/// The coordinate's name, as in `body.angle`.
+pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
+    MOTIONS.iter().find(|(_, c, o)| (*c, *o) == (coordinate, order)).map_or("", |(name, ..)| name)
+}
+
+impl Description {
+    /// What a name in a formula stands for; `None` where it stands for nothing.
+    pub fn referent(&self, name: &str) -> Option<Referent> {
+        let mut parts = name.split('.');
+        match (parts.next()?, parts.next(), parts.next(), parts.next()) {
+            (word, None, ..) => self.word(word),
+            (owner, Some(member), None, _) => self
+                .body_motion(owner, member)
+                .or_else(|| self.reaction(owner, member, None)),
+            (owner, Some(member), Some(part), None) => self
+                .point_motion(owner, member, part)
+                .or_else(|| self.reaction(owner, member, Some(part))),
+            _ => None,
+        }
+    }
+
+    fn word(&self, word: &str) -> Option<Referent> {
+        if word == "t" {
+            return Some(Referent::Time);
+        }
+        if let Some((_, kind)) = ENERGIES.iter().find(|(energy, _)| *energy == word) {
+            return Some(Referent::Energy(*kind));
+        }
+        self.parameters.iter().position(|parameter| parameter.name == word).map(Referent::Parameter)
+    }
+
+    fn body_motion(&self, body: &str, member: &str) -> Option<Referent> {
+        let body = self.bodies.iter().position(|known| known.name == body)?;
+        let (_, coordinate, order) = MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
+        (body != 0).then_some(Referent::Coordinate { body, coordinate: *coordinate, order: *order })
+    }
+
+    fn point_motion(&self, body: &str, point: &str, member: &str) -> Option<Referent> {
+        let body = self.bodies.iter().position(|known| known.name == body)?;
+        let point = self.bodies[body].points.iter().position(|known| known.name == point)?;
+        let (_, coordinate, order) = MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
+        (*coordinate != Coordinate::Angle).then_some(Referent::Point {
+            body,
+            point,
+            coordinate: *coordinate,
+            order: *order,
+        })
+    }
+
+    fn reaction(&self, joint: &str, member: &str, part: Option<&str>) -> Option<Referent> {
+        let joint = self.joints.iter().position(|known| known.name == joint)?;
+        let component = match (member, part) {
+            ("force", None) => ReactionComponent::Force,
+            ("force", Some("x")) => ReactionComponent::ForceX,
+            ("force", Some("y")) => ReactionComponent::ForceY,
+            ("torque", None) => ReactionComponent::Torque,
+            _ => return None,
+        };
+        Some(Referent::Reaction { joint, component })
+    }
+
+    /// What a name stands for where it may stand for that.
+    pub(super) fn resolve(&self, name: &str, context: Context) -> Result<Referent, NameError> {
+        let Some(referent) = self.referent(name) else { return Err(self.unknown(name, context)) };
+        let refusal = match (context, referent) {
+            (Context::Output, _) | (_, Referent::Parameter(_)) => None,
+            (Context::Constant, Referent::Time) => Some("only parameters can stand here: this value cannot change in time"),
+            (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
+            (_, Referent::Time) => None,
+            (_, Referent::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
+            (_, Referent::Energy(_)) => Some("only outputs may use energies"),
+            (_, Referent::Coordinate { order, .. } | Referent::Point { order, .. }) => match (context, order) {
+                (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
+                (Context::Equation, TimeOrder::Velocity) => Some("an equation constrains positions, so it cannot use velocities"),
+                _ => Some("accelerations are known only when the motion is; only outputs may use them"),
+            },
+        };
+        match refusal {
+            None => Ok(referent),
+            Some(reason) => Err(NameError {
+                message: format!("`{name}` cannot stand here"),
+                part: 0..name.len(),
+                help: Some(reason.to_owned()),
+            }),
+        }
+    }
+
+    fn unknown(&self, name: &str, context: Context) -> NameError {
+        let shown = suggest::clip(name);
+        match name.split_once('.') {
+            None => self.unknown_word(name, &shown, context),
+            Some((owner, rest)) => self.unknown_member(name, owner, rest, context),
+        }
+    }
+
+    fn unknown_word(&self, name: &str, shown: &str, context: Context) -> NameError {
+        let part = 0..name.len();
+        if self.bodies.iter().any(|body| body.name == name) {
+            let help = match context {
+                Context::Constant => "only parameters can stand here".to_owned(),
+                _ => format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
+            };
+            return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
+        }
+        if self.joints.iter().any(|joint| joint.name == name) {
+            let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
+            return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
+        }
+        let parameters = self.parameters.iter().map(|parameter| parameter.name.as_str());
+        let more: &[&str] = match context {
+            Context::Constant => &[],
+            Context::Output => &["t", "energy", "kinetic_energy", "potential_energy"],
+            Context::Effect | Context::Equation => &["t"],
+        };
+        let help = suggest::help(name, "parameters", parameters.chain(more.iter().copied()).chain(["pi"]));
+        let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
+        let message =
+            if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };
+        NameError { message, part, help: if infinite { None } else { help } }
+    }
+
+    fn unknown_member(&self, name: &str, owner: &str, rest: &str, context: Context) -> NameError {
+        let body = self.bodies.iter().position(|body| body.name == owner);
+        let joint = self.joints.iter().any(|joint| joint.name == owner);
+        let after = owner.len() + 1;
+        let motions = MOTIONS.iter().map(|(motion, ..)| *motion);
+        match (body, joint) {
+            (Some(body), joint) => {
+                let points = self.bodies[body].points.iter().map(|point| point.name.as_str());
+                let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
+                let point = points.clone().any(|point| point == member);
+                if body == 0 && !point && MOTIONS.iter().any(|(motion, ..)| *motion == member) {
+                    let message = format!("the ground does not move: `{}` is always 0", suggest::clip(name));
+                    return NameError { message, part: 0..name.len(), help: None };
+                }
+                if point && part.is_empty() {
+                    let message = format!("`{}` is a point, not a number", suggest::clip(name));
+                    let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
+                    return NameError { message, part: 0..name.len(), help };
+                }
+                if point {
+                    let start = after + member.len() + 1;
+                    let message = format!("a point has no `{}`", suggest::clip(part));
+                    let help = suggest::help(part, "parts of its motion", ["x", "y", "vx", "vy", "ax", "ay"]);
+                    return NameError { message, part: start..name.len(), help };
+                }
+                let reactions: &[&str] = if joint { &["force", "torque"] } else { &[] };
+                let known: Vec<&str> = if part.is_empty() {
+                    points.chain(reactions.iter().copied()).chain(motions).collect()
+                } else {
+                    points.collect()
+                };
+                let what = if part.is_empty() { "has no" } else { "has no point" };
+                NameError {
+                    message: format!("body `{}` {what} `{}`", suggest::clip(owner), suggest::clip(member)),
+                    part: after..after + member.len(),
+                    help: suggest::help(member, if part.is_empty() { "names in it" } else { "points of it" }, known),
+                }
+            }
+            (None, true) => NameError {
+                message: format!("joint `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+                part: after..name.len(),
+                help: Some("a joint has `force`, `force.x`, `force.y` and `torque`".to_owned()),
+            },
+            (None, false) => {
+                let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
+                let joints = self.joints.iter().map(|joint| joint.name.as_str());
+                let (what, kind, joints) = match context {
+                    Context::Output => ("body or joint", "bodies and joints", Some(joints)),
+                    _ => ("body", "bodies", None),
+                };
+                NameError {
+                    message: format!("unknown {what} `{}`", suggest::clip(owner)),
+                    part: 0..owner.len(),
+                    help: suggest::help(owner, kind, bodies.chain(joints.into_iter().flatten())),
+                }
+            }
+        }
+    }
+}
+
+/// The dimension of what a name stands for; `parameters` has those of the parameters.
+pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
+    Kind::motion(match referent {
+        Referent::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
+        Referent::Time => Dimension::TIME,
+        Referent::Coordinate { coordinate, order, .. } | Referent::Point { coordinate, order, .. } => {
+            motion_dimension(coordinate, order)
+        }
+        Referent::Reaction { component: ReactionComponent::Torque, .. } | Referent::Energy(_) => Dimension::TORQUE,
+        Referent::Reaction { .. } => Dimension::FORCE,
+    })
+}
+
+/// The dimension of a coordinate and of its derivatives.
+pub fn motion_dimension(coordinate: Coordinate, order: TimeOrder) -> Dimension {
+    match (coordinate, order) {
+        (Coordinate::Angle, TimeOrder::Position) => Dimension::ANGLE,
+        (Coordinate::Angle, TimeOrder::Velocity) => Dimension::ANGULAR_VELOCITY,
+        (Coordinate::Angle, TimeOrder::Acceleration) => Dimension::ANGULAR_ACCELERATION,
+        (_, TimeOrder::Position) => Dimension::LENGTH,
+        (_, TimeOrder::Velocity) => Dimension::VELOCITY,
+        (_, TimeOrder::Acceleration) => Dimension::ACCELERATION,
+    }
+}
