@@ -1,15 +1,37 @@
 //! What a file may say: reading, checking, and the typed [`Description`].
+//!
+//! [`load`] goes text → tree ([`yaml`]) → sections (one file each) → [`Description`]. Reading goes on after an error:
+//! [`Diagnostics`] collects them all, each with its place.
 
 mod description;
-mod dimension;
-pub mod diagnostic;
-pub mod quantity;
-mod names;
+mod diagnostic;
 mod render;
-pub mod source;
-mod file;
+mod source;
 mod suggest;
+
 mod yaml;
 
+mod dimension;
+mod names;
+mod quantity;
+
+mod file;
+mod reader;
+
+mod bodies;
+mod bounds;
+mod effects;
+mod joints;
+mod load;
+mod overrides;
+mod parameters;
+mod requests;
+#[cfg(test)]
+mod tests;
+
 pub use description::*;
-pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
+pub use file::schema;
+pub use load::{Reading, load, load_str, read, read_str};
+pub use overrides::Override;
+pub use source::{Place, Source, Sources, Span};

@@ -72,12 +72,12 @@ impl Description {
         let mut parts = name.split('.');
         match (parts.next()?, parts.next(), parts.next(), parts.next()) {
             (word, None, ..) => self.word(word),
-            (owner, Some(member), None, _) => self
-                .body_motion(owner, member)
-                .or_else(|| self.reaction(owner, member, None)),
-            (owner, Some(member), Some(part), None) => self
-                .point_motion(owner, member, part)
-                .or_else(|| self.reaction(owner, member, Some(part))),
+            (owner, Some(member), None, _) => {
+                self.body_motion(owner, member).or_else(|| self.reaction(owner, member, None))
+            }
+            (owner, Some(member), Some(part), None) => {
+                self.point_motion(owner, member, part).or_else(|| self.reaction(owner, member, Some(part)))
+            }
             _ => None,
         }
     }
@@ -127,14 +127,20 @@ impl Description {
         let Some(referent) = self.referent(name) else { return Err(self.unknown(name, context)) };
         let refusal = match (context, referent) {
             (Context::Output, _) | (_, Referent::Parameter(_)) => None,
-            (Context::Constant, Referent::Time) => Some("only parameters can stand here: this value cannot change in time"),
+            (Context::Constant, Referent::Time) => {
+                Some("only parameters can stand here: this value cannot change in time")
+            }
             (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
             (_, Referent::Time) => None,
-            (_, Referent::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
+            (_, Referent::Reaction { .. }) => {
+                Some("reactions are known only when the motion is; only outputs may use them")
+            }
             (_, Referent::Energy(_)) => Some("only outputs may use energies"),
             (_, Referent::Coordinate { order, .. } | Referent::Point { order, .. }) => match (context, order) {
                 (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
-                (Context::Equation, TimeOrder::Velocity) => Some("an equation constrains positions, so it cannot use velocities"),
+                (Context::Equation, TimeOrder::Velocity) => {
+                    Some("an equation constrains positions, so it cannot use velocities")
+                }
                 _ => Some("accelerations are known only when the motion is; only outputs may use them"),
             },
         };
@@ -166,7 +172,8 @@ impl Description {
             return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
         }
         if self.joints.iter().any(|joint| joint.name == name) {
-            let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
+            let help =
+                (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
             return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
         }
         let parameters = self.parameters.iter().map(|parameter| parameter.name.as_str());

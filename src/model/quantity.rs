@@ -393,7 +393,9 @@ impl UnitParser<'_> {
             "Hz" | "kHz" => Some("write `rev/s` or `rad/s`, whichever is meant; or `1/s`".to_owned()),
             _ => match suggest::nearest(name, UNITS.iter().map(|(known, ..)| *known)) {
                 Some(near) => Some(format!("did you mean `{near}`?")),
-                None => Some("units are written like `N*s/m` or `kg*m^2`; a product of numbers needs its `*`".to_owned()),
+                None => {
+                    Some("units are written like `N*s/m` or `kg*m^2`; a product of numbers needs its `*`".to_owned())
+                }
             },
         };
         Err(UnitError { message: format!("unknown unit `{}`", suggest::clip(name)), span, help })

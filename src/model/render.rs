@@ -52,10 +52,8 @@ impl Diagnostics {
     /// The lines with their markers; only the path where no line is meant.
     fn places<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Element<'d>> {
         let primary = diagnostic.span.as_ref().map(|span| (span, diagnostic.label.as_deref(), AnnotationKind::Primary));
-        let secondary = diagnostic
-            .secondary
-            .iter()
-            .map(|(span, label)| (span, Some(label.as_str()), AnnotationKind::Context));
+        let secondary =
+            diagnostic.secondary.iter().map(|(span, label)| (span, Some(label.as_str()), AnnotationKind::Context));
         let mut excerpts: Vec<Excerpt> = Vec::new();
         for (span, label, kind) in primary.into_iter().chain(secondary) {
             let Some((source, span)) = self.sources.locate(span) else { continue };

@@ -163,8 +163,9 @@ impl Builder<'_, '_> {
             }
             kind => Diagnostic::error(span, format!("this is not YAML: {kind}")),
         };
-        let tab = self.text[..at].rsplit('\n').next().is_some_and(|line| line.trim_start_matches(' ').starts_with('\t'))
-            || self.text[at..].starts_with('\t');
+        let tab =
+            self.text[..at].rsplit('\n').next().is_some_and(|line| line.trim_start_matches(' ').starts_with('\t'))
+                || self.text[at..].starts_with('\t');
         let help = tab.then(|| "YAML is indented with spaces, not tabs".to_owned());
         self.diagnostics.push(diagnostic.help(help));
     }

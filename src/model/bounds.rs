@@ -1,0 +1,151 @@
+//! `bounds:`.
+
+use std::collections::HashMap;
+
+use super::description::{BoundsRequest, ChebyshevRequest, ParameterValue, RangeKind, ScanRequest, TaylorRequest};
+use super::diagnostic::Diagnostic;
+use super::file;
+use super::reader::{Fields, Reader};
+use super::source::Span;
+use super::suggest::{self, clip};
+use super::yaml::{Node, Value};
+
+/// Simulations that one method may ask for.
+const MOST_SOLVES: f64 = 1e7;
+
+/// Coefficients of a Taylor polynomial.
+const MOST_COEFFICIENTS: f64 = 1e5;
+
+const MOST_ORDER: usize = 200;
+const MOST_NODES: usize = 1000;
+const MOST_POINTS: usize = 1_000_000;
+
+const RANGES: [(&str, RangeKind); 2] = [("tight", RangeKind::Tight), ("interval", RangeKind::Interval)];
+
+/// Reads the section; without one, Chebyshev bounds of order 5.
+pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<BoundsRequest> {
+    let uncertain: Vec<String> = reader
+        .model
+        .parameters
+        .iter()
+        .filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. }))
+        .map(|parameter| parameter.name.clone())
+        .collect();
+    let Some((node, at)) = section else {
+        let (order, nodes) = (vec![5; uncertain.len()], vec![6; uncertain.len()]);
+        let chebyshev = ChebyshevRequest { order, nodes, range: RangeKind::Tight };
+        return Some(BoundsRequest { chebyshev: Some(chebyshev), taylor: None, scan: None });
+    };
+    let fields = reader.fields::<file::Bounds>(node, at.clone())?;
+    if uncertain.is_empty() && !reader.diagnostics.has_errors() {
+        let warning = Diagnostic::warning(at, "no parameter is uncertain: the bounds will all be the nominal motion");
+        let help = "give a parameter a `tolerance` or an `interval`".to_owned();
+        reader.diagnostics.push(warning.help(help));
+    }
+    let mut request = BoundsRequest::default();
+    if let Some(node) = fields.get("chebyshev")
+        && let Some(fields) = reader.fields::<file::Chebyshev>(node, fields.key_span("chebyshev"))
+    {
+        request.chebyshev = chebyshev(reader, &fields, &uncertain);
+    }
+    if let Some(node) = fields.get("taylor")
+        && let Some(fields) = reader.fields::<file::Taylor>(node, fields.key_span("taylor"))
+    {
+        request.taylor = taylor(reader, &fields, uncertain.len());
+    }
+    if let Some(node) = fields.get("scan")
+        && let Some(fields) = reader.fields::<file::Scan>(node, fields.key_span("scan"))
+    {
+        request.scan = scan(reader, &fields, &uncertain);
+    }
+    Some(request)
+}
+
+fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ChebyshevRequest> {
+    let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, 5);
+    let nodes = match fields.get("nodes") {
+        Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, 6),
+        None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
+    };
+    let range = range(reader, fields);
+    let (order, nodes) = (order?, nodes?);
+    let few = order.iter().zip(&nodes).position(|(order, nodes)| nodes <= order);
+    if let (Some(few), Some(node)) = (few, fields.get("nodes")) {
+        let message = format!("{} nodes are too few for order {}", nodes[few], order[few]);
+        reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
+    }
+    let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
+    check_solves(reader, fields, key, &nodes);
+    Some(ChebyshevRequest { order, nodes, range: range? })
+}
+
+fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<TaylorRequest> {
+    let range = range(reader, fields);
+    let order = fields.get("order").map_or(Some(2), |node| reader.count(node, 1, 50))?;
+    // Monomials of degree up to n in k variables: (n + k)! / (n! k!).
+    let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
+    if coefficients > MOST_COEFFICIENTS {
+        let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
+        reader.error(fields.key_span("order"), message, format!("at most {MOST_COEFFICIENTS:e} can be computed"));
+    }
+    Some(TaylorRequest { order, range: range? })
+}
+
+fn scan(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ScanRequest> {
+    let points = per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, 30)?;
+    check_solves(reader, fields, "points", &points);
+    Some(ScanRequest { points })
+}
+
+fn range(reader: &mut Reader, fields: &Fields) -> Option<RangeKind> {
+    fields.get("range").map_or(Some(RangeKind::Tight), |node| reader.choice(node, &RANGES))
+}
+
+/// One whole number for all, or one for each by name.
+fn per_parameter(
+    reader: &mut Reader,
+    fields: &Fields,
+    key: &str,
+    uncertain: &[String],
+    allowed: std::ops::RangeInclusive<usize>,
+    default: usize,
+) -> Option<Vec<usize>> {
+    let Some(node) = fields.get(key) else { return Some(vec![default; uncertain.len()]) };
+    let (least, most) = allowed.into_inner();
+    let Value::Mapping(entries) = &node.value else {
+        return reader.count(node, least, most).map(|count| vec![count; uncertain.len()]);
+    };
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    let mut complete = true;
+    for entry in entries {
+        let count = reader.count(&entry.value, least, most);
+        if uncertain.iter().any(|name| *name == entry.key) {
+            complete &= count.is_some();
+            counts.insert(&entry.key, count.unwrap_or(default));
+        } else {
+            complete = false;
+            let known = reader.model.parameters.iter().any(|parameter| parameter.name == entry.key);
+            let message = if known {
+                format!("parameter `{}` is not uncertain", clip(&entry.key))
+            } else {
+                format!("unknown parameter `{}`", clip(&entry.key))
+            };
+            let help = suggest::help(&entry.key, "uncertain parameters", uncertain.iter().map(String::as_str));
+            reader.error(entry.key_span.clone(), message, help);
+        }
+    }
+    for missing in uncertain.iter().filter(|name| !counts.contains_key(name.as_str())) {
+        complete = false;
+        reader.error(fields.key_span(key), format!("`{key}` is missing for parameter `{}`", clip(missing)), None);
+    }
+    complete.then(|| uncertain.iter().filter_map(|name| counts.get(name.as_str()).copied()).collect())
+}
+
+fn check_solves(reader: &mut Reader, fields: &Fields, key: &str, counts: &[usize]) {
+    let solves: f64 = counts.iter().map(|count| *count as f64).product();
+    if solves > MOST_SOLVES {
+        let message = format!("{} parameters make {solves:.2e} simulations", counts.len());
+        let help = "lower the number, or make fewer parameters uncertain";
+        reader.error(fields.key_span(key), message, format!("at most {MOST_SOLVES:e} can be run: {help}"));
+    }
+}

@@ -1,0 +1,198 @@
+//! A file → its [`Description`], or everything that is wrong with it.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use super::description::{BoundsRequest, Description, Simulation, Stepping};
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::file;
+use super::overrides::Override;
+use super::reader::Reader;
+use super::source::Span;
+use super::suggest::clip;
+use super::yaml::{self, Entry, Node};
+use super::{bodies, bounds, effects, joints, parameters, requests};
+
+/// Largest file that is read.
+const MAX_BYTES: u64 = 10_000_000;
+
+/// What reading a model gave: both may be there when there are only warnings.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The model, unless it has errors.
+    pub description: Option<Description>,
+    /// Errors and warnings.
+    pub diagnostics: Diagnostics,
+}
+
+/// Reads a model file, parameters replaced as the command line says.
+///
+/// # Errors
+/// Everything that is wrong with the file.
+pub fn load(path: &Path, overrides: &[Override]) -> Result<Description, Diagnostics> {
+    let Reading { description, diagnostics } = read(path, overrides);
+    description.ok_or(diagnostics)
+}
+
+/// Reads a model from text; `name` is what diagnostics call it.
+///
+/// # Errors
+/// Everything that is wrong with the text.
+pub fn load_str(name: &str, text: &str, overrides: &[Override]) -> Result<Description, Diagnostics> {
+    let Reading { description, diagnostics } = read_str(name, text, overrides);
+    description.ok_or(diagnostics)
+}
+
+/// Like [`load`], with the warnings of a model that can be used.
+pub fn read(path: &Path, overrides: &[Override]) -> Reading {
+    let name = path.display().to_string();
+    match read_text(path) {
+        Ok(text) => read_str(&name, &text, overrides),
+        Err(error) => {
+            let mut diagnostics = Diagnostics::new(name, "");
+            diagnostics.push(error);
+            Reading { description: None, diagnostics }
+        }
+    }
+}
+
+fn read_text(path: &Path) -> Result<String, Diagnostic> {
+    let cannot = |error: std::io::Error| {
+        let reason = match error.kind() {
+            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+            std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
+            _ => error.to_string(),
+        };
+        Diagnostic::of_file(format!("the file cannot be read: {reason}"))
+    };
+    let metadata = fs::metadata(path).map_err(cannot)?;
+    if metadata.is_dir() {
+        return Err(Diagnostic::of_file("this is a directory, not a model file"));
+    }
+    let too_large = |length: u64| {
+        let megabytes = length as f64 / 1e6;
+        let limit = MAX_BYTES / 1_000_000;
+        Err(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB")))
+    };
+    if metadata.len() > MAX_BYTES {
+        return too_large(metadata.len());
+    }
+    // What is not a regular file (a pipe) says no length: never read more than allowed.
+    let mut bytes = Vec::new();
+    fs::File::open(path).map_err(cannot)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return too_large(bytes.len() as u64);
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..offset].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let message = format!("the file is not UTF-8 text: byte {} in line {line}", offset + 1);
+        Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned())
+    })
+}
+
+/// Like [`load_str`], with the warnings of a model that can be used.
+pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
+    let mut diagnostics = Diagnostics::new(name, text);
+    let mut placed = Vec::new();
+    for wanted in overrides {
+        let start = diagnostics.sources.add("--set", wanted.text.clone());
+        match Override::at(&wanted.text, start) {
+            Ok(wanted) => {
+                let leading = wanted.text.len() - wanted.text.trim_start().len();
+                let span = start + leading..start + leading + wanted.name.len();
+                placed.push((wanted, span));
+            }
+            Err(error) => diagnostics.push(*error),
+        }
+    }
+    if let Some(zero) = text.find('\0') {
+        let message = "the file is not text: it has a zero byte";
+        diagnostics.push(Diagnostic::error(zero..zero + 1, message));
+        return Reading { description: None, diagnostics };
+    }
+    let root = yaml::parse(text, &mut diagnostics);
+    let description = root.map(|root| describe(name, &root, &placed, &mut diagnostics));
+    Reading { description: description.filter(|_| !diagnostics.has_errors()), diagnostics }
+}
+
+/// Reads every section. What others refer to comes before what refers to it.
+fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics: &mut Diagnostics) -> Description {
+    let model = Description {
+        name: Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned()),
+        description: None,
+        parameters: Vec::new(),
+        bodies: Vec::new(),
+        joints: Vec::new(),
+        effects: Vec::new(),
+        initial: Vec::new(),
+        guess: Vec::new(),
+        outputs: Vec::new(),
+        simulation: Simulation { duration: 1.0, stepping: Stepping::Fixed(1e-3), alpha: -0.1, output_step: 0.01 },
+        bounds: BoundsRequest::default(),
+    };
+    let mut reader =
+        Reader { diagnostics, model, kinds: Vec::new(), corners: Vec::new(), varies: Vec::new(), used: Vec::new() };
+    let start = root.span.start..root.span.start;
+    let Some(fields) = reader.fields::<file::File>(root, start) else { return reader.model };
+    if let Some(node) = fields.get("model") {
+        title(&mut reader, node);
+    }
+    if let Some(node) = fields.get("description") {
+        let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
+        reader.model.description = text;
+    }
+    let body_entries = section(&mut reader, fields.get("bodies"), "bodies");
+    let joint_entries = section(&mut reader, fields.get("joints"), "joints");
+    let effect_entries = section(&mut reader, fields.get("effects"), "effects");
+    let output_entries = section(&mut reader, fields.get("outputs"), "outputs");
+    let initial_entries = section(&mut reader, fields.get("initial"), "start values");
+    let guess_entries = section(&mut reader, fields.get("guess"), "start values");
+
+    bodies::declare(&mut reader, body_entries);
+    joints::declare(&mut reader, joint_entries);
+    parameters::read(&mut reader, fields.get("parameters"), overrides);
+    bodies::read(&mut reader, body_entries);
+    joints::read(&mut reader, joint_entries);
+    effects::read(&mut reader, effect_entries);
+    reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
+    reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
+    requests::outputs(&mut reader, output_entries);
+    if let Some(node) = reader.required(&fields, "simulation") {
+        requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
+    }
+    let bounds_section = fields.get("bounds").map(|node| (node, fields.key_span("bounds")));
+    if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
+        reader.model.bounds = bounds;
+    }
+    if body_entries.iter().all(|entry| entry.key == super::names::GROUND) {
+        let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
+        reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
+    }
+    if output_entries.is_empty() {
+        let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
+        reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
+    }
+    if !reader.diagnostics.has_errors() {
+        parameters::warn_unused(&mut reader, fields.get("parameters"));
+    }
+    reader.model
+}
+
+fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
+    node.map_or(&[], |node| reader.entries(node, what))
+}
+
+/// The model's name, which is also that of its folder.
+fn title(reader: &mut Reader, node: &Node) {
+    let Some(scalar) = reader.scalar(node, "a name") else { return };
+    let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+    if scalar.text.len() > 100 || !scalar.text.chars().all(good) {
+        let message = format!("`{}` cannot be the name of a model", clip(&scalar.text));
+        let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
+        reader.error(node.span.clone(), message, help);
+        return;
+    }
+    reader.model.name.clone_from(&scalar.text);
+}

@@ -1,0 +1,456 @@
+//! What every part of the reader needs: mappings with known keys, formulas in their context, values that are checked.
+//!
+//! Reading goes on after an error, so that one run reports as many as can be found. A reader gives `None` only when it
+//! has reported why.
+
+use std::collections::HashMap;
+
+use symdiff::{Formula, Graph};
+
+use super::description::{Description, Referent};
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::dimension::{self, Kind};
+use super::file::Grammar;
+use super::names::{self, Context};
+use super::quantity::{Dimension, Unit, number_and_unit};
+use super::source::Span;
+use super::suggest::{self, clip};
+use super::yaml::{Entry, Node, Scalar, Value};
+
+/// Operations in one formula.
+const MAX_TERMS: usize = 10_000;
+
+/// A description in the making.
+pub struct Reader<'d> {
+    pub diagnostics: &'d mut Diagnostics,
+    /// Names first, then what they stand for.
+    pub model: Description,
+    /// Dimension of each parameter.
+    pub kinds: Vec<Kind>,
+    /// Parameter values at which requirements are checked.
+    pub corners: Vec<Corner>,
+    /// Whether the parameter's value is uncertain.
+    pub varies: Vec<bool>,
+    /// Names that formulas used, for the warning about the others.
+    pub used: Vec<bool>,
+}
+
+/// Values of all parameters at once.
+#[derive(Clone, Debug)]
+pub struct Corner {
+    pub values: Vec<f64>,
+    /// ` at l1 = 0.1`; empty for the nominal values.
+    pub label: String,
+}
+
+/// What stands in a field: a number with its unit, or a formula.
+pub enum Written {
+    Quantity { value: f64, unit: Unit },
+    Formula(Formula),
+}
+
+/// A mapping whose keys are known.
+pub struct Fields<'n> {
+    /// Where to say that something is missing.
+    pub at: Span,
+    what: &'static str,
+    keys: &'static [&'static str],
+    entries: HashMap<&'n str, &'n Entry>,
+}
+
+impl<'n> Fields<'n> {
+    /// The value of a key, if it is there.
+    pub fn get(&self, key: &str) -> Option<&'n Node> {
+        debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
+        self.entries.get(key).map(|entry| &entry.value)
+    }
+
+    /// The place of a key.
+    pub fn key_span(&self, key: &str) -> Span {
+        self.entries.get(key).map_or_else(|| self.at.clone(), |entry| entry.key_span.clone())
+    }
+}
+
+impl Reader<'_> {
+    /// Reports an error.
+    pub fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
+        self.diagnostics.push(Diagnostic::error(span, message).help(help));
+    }
+
+    /// The entries of a mapping with free keys; nothing written is an empty mapping.
+    pub fn entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
+        match &node.value {
+            Value::Mapping(entries) => entries,
+            Value::Scalar(scalar) if scalar.is_null() => &[],
+            _ => {
+                let message = format!("{what} are a mapping, but here is {}", node.kind());
+                self.error(node.span.clone(), message, "write `name: …` for each".to_owned());
+                &[]
+            }
+        }
+    }
+
+    /// A mapping with the keys of `G`; `at` is where to say that one is missing.
+    pub fn fields<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<Fields<'n>> {
+        let entries: &[Entry] = match &node.value {
+            Value::Mapping(entries) => entries,
+            Value::Scalar(scalar) if scalar.is_null() => &[],
+            _ => {
+                let message = format!("{} is a mapping, but here is {}", G::WHAT, node.kind());
+                let help = format!("its keys are {}", suggest::list(G::KEYS));
+                self.error(node.span.clone(), message, help);
+                return None;
+            }
+        };
+        for entry in entries.iter().filter(|entry| !G::KEYS.contains(&entry.key.as_str())) {
+            let message = format!("{} has no `{}`", G::WHAT, clip(&entry.key));
+            let help = suggest::help(&entry.key, "keys", G::KEYS.iter().copied());
+            self.error(entry.key_span.clone(), message, help);
+        }
+        let entries = entries.iter().map(|entry| (entry.key.as_str(), entry)).collect();
+        Some(Fields { at, what: G::WHAT, keys: G::KEYS, entries })
+    }
+
+    /// The value of a key that must be there.
+    pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
+        let found = fields.get(key);
+        if found.is_none() {
+            self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
+        }
+        found
+    }
+
+    /// The only entry of a mapping that chooses a kind: `{ torque: … }`.
+    pub fn only<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<&'n Entry> {
+        let kinds = || suggest::list(G::KEYS);
+        match &node.value {
+            Value::Mapping(entries) => match entries.as_slice() {
+                [entry] if G::KEYS.contains(&entry.key.as_str()) => Some(entry),
+                [entry] => {
+                    let message = format!("`{}` is not a kind of {}", clip(&entry.key), bare(G::WHAT));
+                    let help = suggest::help(&entry.key, "kinds", G::KEYS.iter().copied());
+                    self.error(entry.key_span.clone(), message, help);
+                    None
+                }
+                [] => {
+                    self.error(at, format!("{} needs a kind", G::WHAT), format!("the kinds are {}", kinds()));
+                    None
+                }
+                [_, second, ..] => {
+                    let message = format!("{} has one kind, but `{}` is a second key", G::WHAT, clip(&second.key));
+                    let help = format!("write `name: {{ kind: … }}`, with one of {}", kinds());
+                    self.error(second.key_span.clone(), message, help);
+                    None
+                }
+            },
+            _ => {
+                let message = format!("{} is a mapping of its kind, but here is {}", G::WHAT, node.kind());
+                let help = format!("write `{{ kind: … }}`; the kinds are {}", kinds());
+                self.error(if node.is_null() { at } else { node.span.clone() }, message, help);
+                None
+            }
+        }
+    }
+
+    /// Whether the key can be a name; says so where it cannot.
+    pub fn name(&mut self, entry: &Entry, what: &str) -> bool {
+        let name = entry.key.as_str();
+        let mut letters = name.chars();
+        let well_formed = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_')
+            && letters.all(|c| c.is_alphanumeric() || c == '_');
+        if !well_formed {
+            let message = format!("`{}` cannot be the name of {what}", clip(name));
+            self.error(
+                entry.key_span.clone(),
+                message,
+                "a name is made of letters, digits and `_`, a letter first".to_owned(),
+            );
+        } else if names::is_reserved(name) {
+            let message = format!("`{name}` cannot be the name of {what}: it has a meaning of its own in formulas");
+            self.error(entry.key_span.clone(), message, None);
+            return false;
+        }
+        well_formed
+    }
+
+    /// A piece of text that is there.
+    pub fn scalar<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n Scalar> {
+        match node.scalar() {
+            Some(scalar) if !scalar.is_null() => Some(scalar),
+            _ => {
+                self.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
+                None
+            }
+        }
+    }
+
+    /// A list of two.
+    pub fn two<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<[&'n Node; 2]> {
+        let found = match &node.value {
+            Value::Sequence(items) => match items.as_slice() {
+                [first, second] => return Some([first, second]),
+                items => format!("a list of {}", items.len()),
+            },
+            _ => node.kind().to_owned(),
+        };
+        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
+        None
+    }
+
+    /// One of a few words.
+    pub fn choice<T: Copy>(&mut self, node: &Node, choices: &[(&str, T)]) -> Option<T> {
+        let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
+        let scalar = self.scalar(node, &format!("one of {}", suggest::list(&words)))?;
+        let found = choices.iter().find(|(word, _)| *word == scalar.text);
+        if found.is_none() {
+            let message = format!("`{}` is not one of {}", clip(&scalar.text), suggest::list(&words));
+            let help = suggest::nearest(&scalar.text, words).map(|near| format!("did you mean `{near}`?"));
+            self.error(node.span.clone(), message, help);
+        }
+        found.map(|(_, value)| *value)
+    }
+
+    /// A whole number in a range.
+    pub fn count(&mut self, node: &Node, least: usize, most: usize) -> Option<usize> {
+        let wanted = format!("a whole number from {least} to {most}");
+        let scalar = self.scalar(node, &wanted)?;
+        let number = scalar.text.parse::<usize>().ok().filter(|number| (least..=most).contains(number));
+        if number.is_none() {
+            self.error(node.span.clone(), format!("`{}` is not {wanted}", clip(&scalar.text)), None);
+        }
+        number
+    }
+
+    /// What stands in a field, its names not yet looked at.
+    pub fn written(&mut self, node: &Node) -> Option<Written> {
+        let scalar = self.scalar(node, "a number or a formula")?;
+        if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
+            if unit == "%" {
+                let help = "write the number itself: 1% is 0.01".to_owned();
+                self.error(node.span.clone(), "`%` can stand only in a tolerance", help);
+                return None;
+            }
+            return match Unit::parse(unit) {
+                Ok(unit) => Some(Written::Quantity { value, unit }),
+                Err(error) => {
+                    let part = start + error.span.start..start + error.span.end;
+                    self.error(scalar.place(&node.span, part), error.message, error.help);
+                    None
+                }
+            };
+        }
+        self.parse(node, scalar, 0..scalar.text.len()).map(Written::Formula)
+    }
+
+    /// The formula in a part of a scalar.
+    pub fn parse(&mut self, node: &Node, scalar: &Scalar, part: Span) -> Option<Formula> {
+        let text = &scalar.text[part.clone()];
+        let infinite = text.trim().trim_start_matches(['+', '-']).to_lowercase();
+        if matches!(infinite.as_str(), ".inf" | ".nan") {
+            self.error(node.span.clone(), format!("`{}` is not a finite number", text.trim()), None);
+            return None;
+        }
+        match Formula::parse(text) {
+            Ok(formula) if formula.terms().len() > MAX_TERMS => {
+                let message = format!("the formula has more than {MAX_TERMS} operations");
+                self.error(node.span.clone(), message, "split it into parameters".to_owned());
+                None
+            }
+            Ok(formula) => Some(formula),
+            Err(error) => {
+                let span = part.start + error.span.start..part.start + error.span.end;
+                self.error(scalar.place(&node.span, span), error.message, error.help);
+                None
+            }
+        }
+    }
+
+    /// Whether every name of the formula may stand in the context; `offset` is where the formula begins in the scalar.
+    pub fn check_names(&mut self, node: &Node, formula: &Formula, offset: usize, context: Context) -> bool {
+        let mut all_known = true;
+        for (name, span) in formula.names() {
+            match self.model.resolve(name, context) {
+                Ok(Referent::Parameter(index)) => {
+                    if let Some(used) = self.used.get_mut(index) {
+                        *used = true;
+                    }
+                }
+                Ok(_) => {}
+                Err(error) => {
+                    all_known = false;
+                    let start = offset + span.start;
+                    let part = start + error.part.start..start + error.part.end;
+                    let place =
+                        node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+                    self.diagnostics.push(Diagnostic::error(place, error.message).help(error.help));
+                }
+            }
+        }
+        all_known
+    }
+
+    /// The formula's dimension; what does not go together in it is reported.
+    pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
+        let mut mismatches = Vec::new();
+        let name =
+            |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+        let kind = dimension::analyse(formula, name, &mut mismatches);
+        for mismatch in mismatches {
+            let part = offset + mismatch.span.start..offset + mismatch.span.end;
+            let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+            self.error(place, mismatch.message, None);
+        }
+        kind
+    }
+
+    /// Reports where something stands that does not belong there.
+    pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
+        let fits = found.fits(wanted);
+        if !fits {
+            self.error(span.clone(), format!("{found} stands where {wanted} belongs"), None);
+        }
+        fits
+    }
+
+    /// A formula or a number with its unit, of a dimension.
+    pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
+        let formula = match self.written(node)? {
+            Written::Quantity { value, unit } => {
+                self.check_fits(&node.span, unit.dimension, wanted).then(|| Formula::number(unit.to_si(value)))?
+            }
+            Written::Formula(formula) => {
+                if !self.check_names(node, &formula, 0, context) {
+                    return None;
+                }
+                if let Some(found) = self.kind(node, &formula, 0).dimension() {
+                    self.check_fits(&node.span, found, wanted);
+                }
+                formula
+            }
+        };
+        self.require(node, &formula, |_| true, "");
+        Some(formula)
+    }
+
+    /// Like [`Self::formula`], with a requirement on its values: `must be positive`.
+    pub fn formula_that(
+        &mut self,
+        node: &Node,
+        context: Context,
+        wanted: Dimension,
+        holds: impl Fn(f64) -> bool,
+        requirement: &str,
+    ) -> Option<Formula> {
+        let formula = self.formula(node, context, wanted)?;
+        self.require(node, &formula, holds, requirement);
+        Some(formula)
+    }
+
+    /// Checks a formula of parameters at all their corners; a formula with other names is not checked.
+    pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
+        let varies = self.is_uncertain(formula);
+        let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
+        for corner in 0..corners {
+            let Some(value) = self.evaluate(formula, corner) else { return };
+            let problem = if !value.is_finite() {
+                "is not a finite number"
+            } else if !holds(value) {
+                requirement
+            } else {
+                continue;
+            };
+            let text = node.scalar().map_or("", |scalar| scalar.text.as_str());
+            let label = &self.corners[corner].label;
+            let message = if formula.as_number().is_some() || !value.is_finite() {
+                format!("`{}` {problem}{label}", clip(text))
+            } else {
+                format!("`{}` {problem}, but is {value}{label}", clip(text))
+            };
+            // A requirement is checked only where the number is one: the other error was reported before.
+            if !(value.is_nan() && !requirement.is_empty() || value.is_infinite() && !requirement.is_empty()) {
+                self.error(node.span.clone(), message, None);
+            }
+            return;
+        }
+    }
+
+    /// The formula's value at a corner; `None` where it is made of more than parameters.
+    pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
+        let corner = self.corners.get(corner)?;
+        evaluate(formula, |name| match self.model.referent(name) {
+            Some(Referent::Parameter(index)) => corner.values.get(index).copied(),
+            _ => None,
+        })
+    }
+
+    /// Whether an uncertain parameter stands behind a name of the formula.
+    pub fn is_uncertain(&self, formula: &Formula) -> bool {
+        formula.names().any(|(name, _)| match self.model.referent(name) {
+            Some(Referent::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
+            _ => false,
+        })
+    }
+
+    /// A number that is the same for every sample.
+    pub fn number(&mut self, node: &Node, wanted: Dimension) -> Option<f64> {
+        let formula = self.formula(node, Context::Constant, wanted)?;
+        if self.is_uncertain(&formula) {
+            let message = "this number is one for all samples, so it cannot depend on an uncertain parameter";
+            self.error(node.span.clone(), message, None);
+            return None;
+        }
+        self.evaluate(&formula, 0).filter(|value| value.is_finite())
+    }
+
+    /// Two formulas of a dimension: components.
+    pub fn pair(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 2]> {
+        let [x, y] = self.two(node, "a list of two numbers")?;
+        let x = self.formula(x, context, wanted);
+        let y = self.formula(y, context, wanted);
+        Some([x?, y?])
+    }
+
+    /// `x`, `y` or components of any length but zero.
+    pub fn direction(&mut self, node: &Node) -> Option<[Formula; 2]> {
+        match node.scalar().map(|scalar| scalar.text.as_str()) {
+            Some("x") => return Some([Formula::number(1.0), Formula::number(0.0)]),
+            Some("y") => return Some([Formula::number(0.0), Formula::number(1.0)]),
+            _ => {}
+        }
+        let [first, second] = self.two(node, "`x`, `y` or a list of two numbers")?;
+        let mut component = |node: &Node| match self.written(node)? {
+            Written::Quantity { value, unit } => Some(Formula::number(unit.to_si(value))),
+            Written::Formula(formula) => self.check_names(node, &formula, 0, Context::Constant).then(|| {
+                self.kind(node, &formula, 0);
+                self.require(node, &formula, |_| true, "");
+                formula
+            }),
+        };
+        let x = component(first);
+        let y = component(second);
+        let axis = [x?, y?];
+        for corner in 0..self.corners.len() {
+            let zero = |formula| self.evaluate(formula, corner) == Some(0.0);
+            if zero(&axis[0]) && zero(&axis[1]) {
+                let label = &self.corners[corner].label;
+                let message = format!("a direction of length zero points nowhere{label}");
+                self.error(node.span.clone(), message, None);
+                break;
+            }
+        }
+        Some(axis)
+    }
+}
+
+/// The formula's value, each name's given by `name`.
+pub fn evaluate(formula: &Formula, name: impl Fn(&str) -> Option<f64>) -> Option<f64> {
+    let mut graph = Graph::new();
+    let built =
+        formula.build(&mut graph, |graph, text| name(text).map(|value| graph.constant(value)).ok_or(())).ok()?;
+    graph.as_constant(built)
+}
+
+/// `a joint` → `joint`.
+fn bare(what: &str) -> &str {
+    what.strip_prefix("a ").or_else(|| what.strip_prefix("an ")).unwrap_or(what)
+}

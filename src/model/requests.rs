@@ -1,0 +1,215 @@
+//! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
+
+use super::description::{Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder};
+use super::diagnostic::Diagnostic;
+use super::dimension::Kind;
+use super::file;
+use super::names::{Context, motion_dimension, motion_name};
+use super::quantity::Dimension;
+use super::reader::{Fields, Reader, Written};
+use super::suggest::clip;
+use super::yaml::{Entry, Node};
+
+/// Steps of a simulation, beyond which the step must be a slip.
+const MOST_STEPS: f64 = 1e9;
+
+/// Rows of output, beyond which the output step must be a slip.
+const MOST_ROWS: f64 = 1e7;
+
+/// Reads `initial:` (with velocities) or `guess:` (without).
+pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) -> Vec<StartValue> {
+    entries.iter().filter_map(|entry| start_value(reader, entry, velocities)).collect()
+}
+
+fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<StartValue> {
+    let name = entry.key.as_str();
+    let referent = match reader.model.resolve(name, Context::Output) {
+        Ok(referent) => referent,
+        Err(error) => {
+            let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
+            let verbatim = entry.key_span.len() == name.len();
+            reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
+            return None;
+        }
+    };
+    let Referent::Coordinate { body, coordinate, order } = referent else {
+        let message = format!("`{}` is not a coordinate of a body", clip(name));
+        let help = "name coordinates of bodies here, such as `crank.angle` or `slider.vx`".to_owned();
+        reader.error(entry.key_span.clone(), message, help);
+        return None;
+    };
+    if !reader.model.bodies[body].coordinates.contains(&coordinate) {
+        let owner = reader.model.bodies[body].name.clone();
+        let coordinate_name = motion_name(coordinate, TimeOrder::Position);
+        let message = format!("body `{owner}` has no coordinate `{coordinate_name}`");
+        let help = format!("add it to `coordinates` of `{owner}`, or give its constant value in `held`");
+        reader.error(entry.key_span.clone(), message, help);
+    }
+    let refusal = match order {
+        TimeOrder::Position => None,
+        TimeOrder::Velocity if velocities => None,
+        TimeOrder::Velocity => Some("only positions are guessed: velocities follow from them"),
+        TimeOrder::Acceleration => Some("an acceleration cannot be chosen: it follows from the forces"),
+    };
+    if let Some(refusal) = refusal {
+        reader.error(entry.key_span.clone(), refusal, None);
+        return None;
+    }
+    let value = reader.formula(&entry.value, Context::Constant, motion_dimension(coordinate, order))?;
+    Some(StartValue { body, coordinate, order, value })
+}
+
+/// Reads `outputs:`.
+pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
+    for entry in entries {
+        reader.name_of_output(entry);
+        if let Some(output) = output(reader, entry) {
+            reader.model.outputs.push(output);
+        }
+    }
+}
+
+fn output(reader: &mut Reader, entry: &Entry) -> Option<Output> {
+    let node = &entry.value;
+    let (formula, unit) = match reader.written(node)? {
+        Written::Quantity { value, unit } => (symdiff::Formula::number(unit.to_si(value)), unit.dimension.unit()),
+        Written::Formula(formula) => {
+            reader.check_names(node, &formula, 0, Context::Output).then_some(())?;
+            let unit = match (reader.kind(node, &formula, 0), natural_unit(reader, &formula)) {
+                (_, Some(unit)) => unit,
+                (Kind::Known { dimension, .. }, None) => dimension.unit(),
+                _ => String::new(),
+            };
+            (formula, unit)
+        }
+    };
+    if formula.names().next().is_none() {
+        reader.error(node.span.clone(), "this output is the same always: no name stands in it", None);
+    }
+    Some(Output { name: entry.key.clone(), formula, unit })
+}
+
+/// The unit of a formula that is just a name, where its dimension alone does not say it.
+fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
+    let [(symdiff::formula::Term::Name(name), _)] = formula.terms() else { return None };
+    match reader.model.referent(name)? {
+        Referent::Energy(_) => Some("J".to_owned()),
+        Referent::Reaction { component: ReactionComponent::Torque, .. } => Some("N*m".to_owned()),
+        Referent::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
+        _ => None,
+    }
+}
+
+impl Reader<'_> {
+    /// An output may be called like what it shows (`energy: energy`), but needs a plain name for files.
+    fn name_of_output(&mut self, entry: &Entry) {
+        if !super::names::is_reserved(&entry.key) {
+            self.name(entry, "an output");
+        }
+    }
+}
+
+/// Reads `simulation:`.
+pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
+    let positive = |reader: &mut Reader, key: &str| {
+        let node = fields.get(key)?;
+        let dimension = if key == "tolerance" { Dimension::NUMBER } else { Dimension::TIME };
+        let value = reader.number(node, dimension)?;
+        if value <= 0.0 {
+            reader.error(node.span.clone(), format!("`{key}` must be positive, but is {value}"), None);
+            return None;
+        }
+        Some((value, node))
+    };
+    reader.required(fields, "duration");
+    let duration = positive(reader, "duration");
+    let step = positive(reader, "step");
+    let tolerance = positive(reader, "tolerance");
+    let output_step = positive(reader, "output_step");
+    let alpha = match fields.get("alpha") {
+        Some(node) => alpha(reader, node),
+        None => Some(-0.1),
+    };
+    if fields.get("step").is_some() && fields.get("tolerance").is_some() {
+        let place = fields.key_span("tolerance");
+        let diagnostic = Diagnostic::error(place, "`step` and `tolerance` exclude each other");
+        let help = "with a tolerance the steps are chosen as they are needed; leave one out".to_owned();
+        reader.diagnostics.push(diagnostic.also(fields.key_span("step"), "the step").help(help));
+    }
+    let (duration, _) = duration?;
+    let stepping = match (step, tolerance) {
+        (_, Some((tolerance, _))) => Stepping::Tolerance(tolerance),
+        (Some((step, node)), None) => {
+            if step > duration {
+                let message = format!("the step ({step} s) is longer than the duration ({duration} s)");
+                reader.error(node.span.clone(), message, None);
+            } else if duration / step > MOST_STEPS {
+                let message = format!("{:.0e} steps are too many", duration / step);
+                reader.error(node.span.clone(), message, format!("a step of {:e} s makes 10000", duration / 1e4));
+            }
+            Stepping::Fixed(step)
+        }
+        (None, None) => Stepping::Fixed(1e-3_f64.min(duration / 10.0)),
+    };
+    let output_step = match output_step {
+        Some((output_step, node)) => {
+            check_output_step(reader, node, output_step, duration, stepping);
+            output_step
+        }
+        None => match stepping {
+            Stepping::Fixed(step) => step * (duration / 200.0 / step).round().max(1.0),
+            Stepping::Tolerance(_) => duration / 200.0,
+        },
+    };
+    Some(Simulation { duration, stepping, alpha: alpha?, output_step })
+}
+
+fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {
+    let alpha = reader.number(node, Dimension::NUMBER)?;
+    // The end of the range is a third, which no decimal is exactly.
+    let allowed = (-1.0 / 3.0 - 1e-9..0.0).contains(&alpha);
+    if !allowed {
+        let help = if alpha == 0.0 {
+            "α = 0 is unstable for index-3 equations at every step; the default is -0.1"
+        } else {
+            "the default is -0.1; nearer to 0 dissipates less, but 0 itself is unstable for index-3 equations"
+        };
+        reader.error(node.span.clone(), format!("α = {alpha} is outside [-1/3, 0)"), help.to_owned());
+        return None;
+    }
+    Some(alpha.max(-1.0 / 3.0))
+}
+
+fn check_output_step(reader: &mut Reader, node: &Node, output_step: f64, duration: f64, stepping: Stepping) {
+    if output_step > duration * (1.0 + 1e-9) {
+        let message = format!("the output step ({output_step} s) is longer than the duration ({duration} s)");
+        reader.error(node.span.clone(), message, None);
+    } else if duration / output_step > MOST_ROWS {
+        reader.error(node.span.clone(), format!("{:.0e} rows of output are too many", duration / output_step), None);
+    } else if let Stepping::Fixed(step) = stepping {
+        let steps = output_step / step;
+        if steps < 1.0 - 1e-9 {
+            let message = format!("the output step ({output_step} s) is shorter than the step ({step} s)");
+            reader.error(node.span.clone(), message, None);
+        } else if (steps - steps.round()).abs() > 1e-9 * steps {
+            let message = format!("the output step ({output_step} s) is not a whole multiple of the step ({step} s)");
+            let help =
+                format!("the nearest multiples are {} and {}", tidy(step * steps.floor()), tidy(step * steps.ceil()));
+            reader.error(node.span.clone(), message, help);
+        }
+    }
+}
+
+/// A number without the last digits' rounding.
+fn tidy(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+/// Reads the whole section.
+pub fn simulation_section(reader: &mut Reader, node: &Node, at: super::source::Span) {
+    if let Some(fields) = reader.fields::<file::Simulation>(node, at)
+        && let Some(simulation) = simulation(reader, &fields)
+    {
+        reader.model.simulation = simulation;
+    }
+}
