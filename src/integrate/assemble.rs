@@ -85,7 +85,11 @@ impl<'p> Assembly<'p> {
             self.tile.run(self.program.given());
             match self.descend() {
                 Ok(()) => return self.complete(),
-                Err(gap) if best.as_ref().is_none_or(|best| !(best.amount.abs() <= gap.amount.abs())) => {
+                Err(gap)
+                    if best
+                        .as_ref()
+                        .is_none_or(|best| gap.amount.abs() < best.amount.abs() || best.amount.is_nan()) =>
+                {
                     best = Some(gap)
                 }
                 Err(_) => {}
@@ -99,7 +103,7 @@ impl<'p> Assembly<'p> {
     /// # Errors
     /// The first lane that cannot be assembled.
     pub fn assemble_from(&mut self, nominal: &[f64]) -> Result<(), Gap> {
-        for slot in self.program.layout.q.start..self.program.layout.lambda.end {
+        for slot in self.program.layout.state() {
             self.tile.lane_mut(slot).fill(nominal[slot]);
         }
         self.tile.run(self.program.given());
@@ -212,11 +216,11 @@ impl<'p> Assembly<'p> {
                     size[lane] = size[lane].max((correction / scale).abs());
                 }
             }
-            for lane in 0..width {
-                let round_off = size[lane] <= STALLED && size[lane] >= 0.5 * last[lane];
-                pending[lane] &= size[lane] > SETTLED && !round_off;
-                last[lane] = size[lane];
+            for ((pending, size), last) in pending.iter_mut().zip(&size).zip(&last) {
+                let round_off = *size <= STALLED && *size >= 0.5 * last;
+                *pending &= *size > SETTLED && !round_off;
             }
+            last = size;
             if !pending.contains(&true) {
                 return;
             }
@@ -229,10 +233,12 @@ impl<'p> Assembly<'p> {
         for lane in 0..self.tile.width() {
             let gaps = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
             let worst = gaps.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
-            if let Some((constraint, amount)) = worst
-                && !(amount.abs() <= GAP * scale)
-            {
-                return Err(Gap { lane, constraint, amount, of_velocities });
+            if let Some((constraint, amount)) = worst {
+                // Not a number is a gap too.
+                let closed = amount.abs() <= GAP * scale;
+                if !closed {
+                    return Err(Gap { lane, constraint, amount, of_velocities });
+                }
             }
         }
         Ok(())

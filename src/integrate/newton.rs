@@ -133,8 +133,7 @@ impl Newton {
     fn watch(&mut self, program: &Program, tile: &Tile) {
         for watched in &program.watched {
             for (dense, inverse) in self.dense.iter_mut().zip(tile.lane(watched.slot)) {
-                // Not a number is not trusted either.
-                *dense |= !(inverse.abs() <= watched.largest_inverse);
+                *dense |= inverse.is_nan() || inverse.abs() > watched.largest_inverse;
             }
         }
     }

@@ -220,7 +220,8 @@ fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility 
                 }
             }
             tile.run(start.position());
-            if start.constraint.iter().any(|&slot| !(tile.lane(slot)[0].abs() < 1e-9)) {
+            let assembled = start.constraint.iter().all(|&slot| tile.lane(slot)[0].abs() < 1e-9);
+            if !assembled {
                 return None;
             }
         }

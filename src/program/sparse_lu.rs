@@ -168,15 +168,16 @@ impl Active<'_> {
     }
 
     fn best_of(&self, searched: usize, threshold: f64) -> Option<(usize, usize)> {
-        let mut best: Option<((usize, bool, usize, usize), (usize, usize))> = None;
+        // (cost, off the diagonal, row, column): the least is the best, and ties are decided alike everywhere.
+        let mut best: Option<(usize, bool, usize, usize)> = None;
         for (row, column) in self.candidates(searched) {
             let merit = (self.cost(row, column), row != column, row, column);
-            let better = best.is_none_or(|(least, _)| merit < least);
+            let better = best.is_none_or(|least| merit < least);
             if better && self.size_against_column(row, column, self.pivoting.smallest()) >= threshold {
-                best = Some((merit, (row, column)));
+                best = Some(merit);
             }
         }
-        best.map(|(_, place)| place)
+        best.map(|(_, _, row, column)| (row, column))
     }
 
     /// Entries in the sparsest columns and rows.

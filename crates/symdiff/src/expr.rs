@@ -305,7 +305,7 @@ impl Graph {
 
     fn pow_nodes(&mut self, a: Expr, b: Expr) -> Expr {
         match self.as_constant(b) {
-            Some(exponent) if exponent == 0.5 => self.sqrt(a),
+            Some(0.5) => self.sqrt(a),
             Some(exponent) if exponent.fract() == 0.0 && exponent.abs() <= 32.0 => self.powi(a, exponent as i32),
             _ => self.intern(Node::Binary(Binary::Pow, a, b)),
         }

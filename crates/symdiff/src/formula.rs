@@ -286,7 +286,7 @@ impl Parser<'_> {
 
     fn number(&mut self) -> Result<usize, SyntaxError> {
         let start = self.position;
-        let rest = self.text[start..].as_bytes();
+        let rest = &self.text.as_bytes()[start..];
         let digits = |from: usize| from + rest[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
         let mut end = digits(0);
         if rest.get(end) == Some(&b'.') {

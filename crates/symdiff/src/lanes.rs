@@ -228,9 +228,9 @@ unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[Operands], memory:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Expr, Graph, Input, lower};
+    use crate::{Expr, Graph, Input, Outputs, lower};
 
-    fn sample() -> (Graph, Vec<Input>, Vec<(Expr, Option<u32>)>) {
+    fn sample() -> (Graph, Vec<Input>, Outputs) {
         let mut g = Graph::new();
         let (x, y) = (g.symbol("x"), g.symbol("y"));
         let (s, c) = (g.sin(x), g.cos(x));
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn every_width_and_instruction_set_gives_the_bits_of_direct_evaluation() {
         let (g, inputs, outputs) = sample();
-        let lowered = lower(&g, &inputs, 0, 2, &[outputs.clone()]);
+        let lowered = lower(&g, &inputs, 0, 2, std::slice::from_ref(&outputs));
         let roots: Vec<Expr> = outputs.iter().map(|&(expr, _)| expr).collect();
         let mut sets = vec![InstructionSet::Baseline, InstructionSet::detect()];
         #[cfg(target_arch = "x86_64")]

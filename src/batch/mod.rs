@@ -1,0 +1,69 @@
+//! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
+//!
+//! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
+//! shards and blocks of output rows, so that memory never grows with samples × steps, and reduces a block to bounds before
+//! the next is run.
+
+mod methods;
+mod study;
+
+use crate::bounds::{Bounds, Method};
+use crate::integrate::{SimulationError, Simulator};
+use crate::mechanics::{self, BuildError};
+use crate::model::{Description, Stepping};
+use crate::report::Summary;
+
+use study::Study;
+
+/// How to run.
+pub struct Options<'a> {
+    /// Instead of the methods that the model asks for.
+    pub methods: Option<Vec<Method>>,
+    /// Threads; all cores where absent.
+    pub threads: Option<usize>,
+    /// Told now and then which fraction is done.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+}
+
+/// Why nothing could be run at all.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum RunError {
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error("the threads could not be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Runs every method asked for. A sample that stops early ends the bounds there: what was reached is returned, and the
+/// summary's `failure` says what happened.
+///
+/// # Errors
+/// Where the mechanism cannot be built, assembled or stepped at all.
+pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    pool.install(|| {
+        let system = mechanics::build(description)?;
+        let study = Study::new(description, system, &options)?;
+        Ok(study.run()?)
+    })
+}
+
+/// A compiled model for checking it: what `run` would start from.
+///
+/// # Errors
+/// As for [`run`].
+pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
+    let system = mechanics::build(description)?;
+    Ok(Simulator::new(system, description.simulation.alpha, first_step(description))?)
+}
+
+/// Step size for what is computed before the first step.
+fn first_step(description: &Description) -> f64 {
+    match description.simulation.stepping {
+        Stepping::Fixed(step) => step,
+        Stepping::Tolerance(_) => 1e-2 * description.simulation.output_step,
+    }
+}

@@ -1,0 +1,205 @@
+//! One model's study: the schedule that all samples share, the methods, and their results put together.
+
+use std::sync::atomic::AtomicUsize;
+
+use super::methods::{Outcome, Run, TAYLOR_WORK};
+use super::{Options, first_step};
+use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
+use crate::integrate::{Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
+use crate::mechanics::{self, System};
+use crate::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest, Stepping};
+use crate::report::{ParameterSummary, Summary};
+
+/// Corners of the box that join the nominal sample as pilots of step-size control.
+const PILOT_CORNERS: usize = 15;
+
+/// How often samples that turn out to need smaller steps may be added to the pilots.
+const PILOT_ROUNDS: usize = 8;
+
+/// A model compiled, with what is asked of it.
+pub(super) struct Study<'a> {
+    description: &'a Description,
+    pub(super) simulator: Simulator,
+    pub(super) domain: ParameterBox,
+    request: BoundsRequest,
+    pub(super) progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl<'a> Study<'a> {
+    /// Builds, assembles and compiles.
+    pub(super) fn new(
+        description: &'a Description,
+        system: System,
+        options: &Options<'a>,
+    ) -> Result<Self, SimulationError> {
+        let collect = |pick: fn(&mechanics::UncertainParameter) -> f64| system.parameters.iter().map(pick).collect();
+        let domain = ParameterBox {
+            nominal: collect(|parameter| parameter.nominal),
+            lower: collect(|parameter| parameter.lower),
+            upper: collect(|parameter| parameter.upper),
+        };
+        let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension());
+        let simulator = Simulator::new(system, description.simulation.alpha, first_step(description))?;
+        Ok(Self { description, simulator, domain, request, progress: options.progress })
+    }
+
+    /// Runs every method.
+    pub(super) fn run(&self) -> Result<(Bounds, Summary), SimulationError> {
+        let simulation = &self.description.simulation;
+        match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
+                let outcomes = self.methods(&schedule, None)?;
+                Ok(self.conclude(&schedule, outcomes, None))
+            }
+            Stepping::Tolerance(tolerance) => self.run_controlled(tolerance),
+        }
+    }
+
+    /// The pilots' schedule is tried on all samples; one that needs smaller steps becomes a pilot, and all run again.
+    fn run_controlled(&self, tolerance: f64) -> Result<(Bounds, Summary), SimulationError> {
+        let simulation = &self.description.simulation;
+        let mut pilots = self.pilots();
+        let mut round = 1;
+        loop {
+            let (duration, output_step) = (simulation.duration, simulation.output_step);
+            let schedule = schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
+            let outcomes = self.methods(&schedule, Some(tolerance))?;
+            let strained = outcomes.iter().filter_map(|outcome| outcome.strained.clone());
+            match strained.filter(|(_, strain)| *strain > 1.0).reduce(|a, b| if b.1 > a.1 { b } else { a }) {
+                None => return Ok(self.conclude(&schedule, outcomes, None)),
+                Some((_, strain)) if round == PILOT_ROUNDS => {
+                    let note = format!("a sample's local error is {strain:.2} times the tolerance in the worst step");
+                    return Ok(self.conclude(&schedule, outcomes, Some(note)));
+                }
+                Some((sample, _)) => pilots.push(sample),
+            }
+            round += 1;
+        }
+    }
+
+    /// The nominal sample and corners of the box.
+    fn pilots(&self) -> Vec<Vec<f64>> {
+        let k = self.domain.dimension();
+        let corners = (1_usize << k.min(PILOT_CORNERS.ilog2() as usize + 1)).min(PILOT_CORNERS);
+        let corner = |index: usize| {
+            let mut values = vec![0.0; k];
+            let xi: Vec<f64> = (0..k).map(|axis| if index >> axis & 1 == 0 { -1.0 } else { 1.0 }).collect();
+            self.domain.map(&xi, &mut values);
+            values
+        };
+        let corners = (0..if k == 0 { 0 } else { corners }).map(corner);
+        std::iter::once(self.domain.nominal.clone()).chain(corners).collect()
+    }
+
+    /// Nominal first, then every method asked for.
+    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Vec<Outcome>, SimulationError> {
+        let run = Run { study: self, schedule, tolerance, done: AtomicUsize::new(0), total: self.total_work(schedule) };
+        let mut outcomes = vec![run.nominal()?];
+        if let Some(request) = &self.request.chebyshev {
+            outcomes.push(run.chebyshev(request)?);
+        }
+        if let Some(request) = &self.request.taylor {
+            outcomes.push(run.taylor(request)?);
+        }
+        if let Some(request) = &self.request.scan {
+            outcomes.push(run.scan(request)?);
+        }
+        Ok(outcomes)
+    }
+
+    /// Samples × rows of all methods; a jet counts as its coefficients.
+    fn total_work(&self, schedule: &Schedule) -> usize {
+        let chebyshev = self.request.chebyshev.as_ref().map_or(0, |request| request.nodes.iter().product());
+        let taylor = self.request.taylor.as_ref().map_or(0, |request| TAYLOR_WORK * (request.order + 1));
+        let scan = self.request.scan.as_ref().map_or(0, |request| request.points.iter().product());
+        (1 + chebyshev + taylor + scan) * schedule.rows
+    }
+
+    /// Bounds up to the first row that a sample did not reach, and the summary.
+    fn conclude(&self, schedule: &Schedule, outcomes: Vec<Outcome>, note: Option<String>) -> (Bounds, Summary) {
+        let stop =
+            outcomes.iter().filter_map(|outcome| outcome.stop.as_ref()).min_by_key(|(stop, _)| (stop.row, stop.sample));
+        let rows = stop.map_or(schedule.rows, |(stop, _)| stop.row);
+        let times: Vec<f64> = (0..rows).map(|row| schedule.time(row)).collect();
+        let methods = self.requested_methods();
+        let mut outputs: Vec<OutputBounds> = Vec::new();
+        for (place, output) in self.simulator.system.outputs.iter().enumerate() {
+            let line =
+                |outcome: &Outcome, end: fn(&Range) -> f64| outcome.bands[place][..rows].iter().map(end).collect();
+            let bands = methods.iter().zip(&outcomes[1..]).map(|(&method, outcome)| Band {
+                method,
+                lower: line(outcome, |range| range.lower),
+                upper: line(outcome, |range| range.upper),
+            });
+            outputs.push(OutputBounds {
+                name: output.name.clone(),
+                unit: output.unit.clone(),
+                nominal: line(&outcomes[0], |range| range.lower),
+                bands: bands.collect(),
+            });
+        }
+        let failure = stop.map(|(stop, sample)| self.failure(stop, sample)).or(note);
+        (Bounds { times, outputs }, self.summary(outcomes, failure))
+    }
+
+    fn requested_methods(&self) -> Vec<Method> {
+        let asked = [self.request.chebyshev.is_some(), self.request.taylor.is_some(), self.request.scan.is_some()];
+        Method::ALL.into_iter().zip(asked).filter(|(_, asked)| *asked).map(|(method, _)| method).collect()
+    }
+
+    fn failure(&self, stop: &Stop, sample: &[f64]) -> String {
+        let names = self.simulator.system.parameters.iter().map(|parameter| parameter.name.clone());
+        let stuck = SimulationError::Stuck {
+            sample: stop.sample,
+            time: stop.time,
+            equation: self.simulator.equation_name(stop.equation),
+            parameters: names.zip(sample.iter().copied()).collect(),
+        };
+        format!(
+            "{stuck}; results up to that time are kept. Try a smaller step, or see whether the mechanism locks there"
+        )
+    }
+
+    fn summary(&self, outcomes: Vec<Outcome>, failure: Option<String>) -> Summary {
+        let system = &self.simulator.system;
+        let mobility = &self.simulator.mobility;
+        Summary {
+            model: self.description.name.clone(),
+            mbint: env!("CARGO_PKG_VERSION").to_owned(),
+            coordinates: system.q.len(),
+            constraints: system.lambda.len(),
+            degrees_of_freedom: mobility.degrees_of_freedom,
+            redundant_constraints: mobility.redundant.iter().map(|&k| system.constraints[k].name.clone()).collect(),
+            alpha: self.description.simulation.alpha,
+            duration: self.description.simulation.duration,
+            parameters: system
+                .parameters
+                .iter()
+                .map(|parameter| ParameterSummary {
+                    name: parameter.name.clone(),
+                    unit: parameter.unit.clone(),
+                    nominal: parameter.nominal,
+                    lower: parameter.lower,
+                    upper: parameter.upper,
+                })
+                .collect(),
+            methods: outcomes.into_iter().map(|outcome| outcome.summary).collect(),
+            failure,
+        }
+    }
+}
+
+/// What is run: the model's requests, or defaults for methods named on the command line.
+fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> BoundsRequest {
+    let Some(methods) = methods else { return model.clone() };
+    let asked = |method: Method| methods.contains(&method);
+    let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::of_order(5, k));
+    let taylor = || model.taylor.clone().unwrap_or_default();
+    let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(30, k));
+    BoundsRequest {
+        chebyshev: asked(Method::Chebyshev).then(chebyshev),
+        taylor: asked(Method::Taylor).then(taylor),
+        scan: asked(Method::Scan).then(scan),
+    }
+}
