@@ -119,7 +119,7 @@ fn per_parameter(
     let mut complete = true;
     for entry in entries {
         let count = reader.count(&entry.value, least, most);
-        if uncertain.iter().any(|name| *name == entry.key) {
+        if uncertain.contains(&entry.key) {
             complete &= count.is_some();
             counts.insert(&entry.key, count.unwrap_or(default));
         } else {
