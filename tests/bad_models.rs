@@ -91,14 +91,14 @@ fn an_error_looks_like_rustc() {
     let diagnostics = model::load_str("models/x.yaml", &text, &[]).unwrap_err();
     let expected = "\
 error: unknown body `crnk`
-  --> models/x.yaml:19:22
+  --> models/x.yaml:19:23
    |
 19 |   pin:   { revolute: [crnk.B, rod.B] }
    |                       ^^^^
    |
    = help: did you mean `crank`?
 ";
-    assert_eq!(diagnostics.render(false), expected.replace(":22", ":23"));
+    assert_eq!(diagnostics.render(false), expected);
 }
 
 #[test]
@@ -150,7 +150,12 @@ fn files_that_are_no_models_are_refused_quickly() {
     for (this, last) in ('b'..='i').zip('a'..) {
         bomb += &format!("{this}: &{this} [{}]\n", vec![format!("*{last}"); 9].join(","));
     }
-    assert_eq!(error_of(&file("bomb.yaml", bomb.as_bytes())), "anchors are not supported");
+    let start = Instant::now();
+    let records = model::load_str("bomb.yaml", &bomb, &[]).unwrap_err().records();
+    for message in ["anchors are not supported", "aliases are not supported"] {
+        assert!(records.iter().any(|record| record.message == message));
+    }
+    assert!(start.elapsed() < Duration::from_secs(2));
     for (name, open) in [("flow.yaml", "["), ("block.yaml", "- "), ("maps.yaml", "{a: ")] {
         let message = error_of(&file(name, open.repeat(100_000).as_bytes()));
         assert_eq!(message, "mappings and lists nest deeper than 40 levels");

@@ -5,7 +5,8 @@
 #![allow(dead_code)] // the fields are there for their names and types
 
 use indexmap::IndexMap;
-use schemars::JsonSchema;
+use schemars::transform::{RecursiveTransform, Transform};
+use schemars::{JsonSchema, Schema};
 
 /// A mapping of the file whose keys are fixed.
 pub trait Grammar {
@@ -17,7 +18,7 @@ pub trait Grammar {
 
 /// A number, a formula, or a number with its unit.
 #[derive(JsonSchema)]
-#[schemars(untagged, inline)]
+#[schemars(untagged)]
 enum Number {
     /// A number in SI units.
     Plain(f64),
@@ -100,7 +101,7 @@ macro_rules! grammar {
     )*) => {$(
         $(#[doc = $doc])*
         #[derive(JsonSchema)]
-        #[schemars(deny_unknown_fields, inline $(, extend($extension = $value))*)]
+        #[schemars(deny_unknown_fields $(, extend($extension = $value))*)]
         pub(super) struct $name {
             $($(#[doc = $field_doc])* $field: $type,)*
         }
@@ -174,7 +175,7 @@ grammar! {
     }
 
     /// Values of coordinates that cannot change.
-    Held is "held coordinates" {
+    Held is "`held`" {
         /// m
         x: Option<Number>,
         /// m
@@ -266,7 +267,7 @@ grammar! {
     }
 
     /// Gravity.
-    Gravity is "gravity" {
+    Gravity is "`gravity`" {
         /// m/s^2, e.g. [0, -9.81].
         acceleration: [Number; 2],
     }
@@ -292,7 +293,7 @@ grammar! {
     }
 
     /// A spring and damper.
-    SpringDamper is "a spring_damper" {
+    SpringDamper is "`spring_damper`" {
         /// Two points, each `body.point` or `body`.
         between: [String; 2],
         /// Direction in the ground's frame; by default the line between the points.
@@ -306,7 +307,7 @@ grammar! {
     }
 
     /// A torsional spring and damper.
-    TorsionalSpringDamper is "a torsional_spring_damper" {
+    TorsionalSpringDamper is "`torsional_spring_damper`" {
         /// Two bodies.
         between: [String; 2],
         /// N*m/rad; by default 0.
@@ -318,7 +319,7 @@ grammar! {
     }
 
     /// How time is stepped.
-    Simulation is "a simulation" {
+    Simulation is "`simulation`" {
         /// s
         duration: Number,
         /// Length of every step, s; by default 1e-3.
@@ -332,7 +333,7 @@ grammar! {
     }
 
     /// Which bounds to compute; a method that is not named is not run.
-    Bounds is "bounds" {
+    Bounds is "`bounds`" {
         /// A Chebyshev polynomial in the parameters.
         chebyshev: Option<Chebyshev>,
         /// A Taylor polynomial in the parameters.
@@ -342,7 +343,7 @@ grammar! {
     }
 
     /// Chebyshev bounds.
-    Chebyshev is "chebyshev bounds" {
+    Chebyshev is "`chebyshev`" {
         /// Degree, for all parameters or by parameter; by default 5.
         order: Option<PerParameter>,
         /// Nodes, more than the degree; by default one more.
@@ -352,7 +353,7 @@ grammar! {
     }
 
     /// Taylor bounds.
-    Taylor is "taylor bounds" {
+    Taylor is "`taylor`" {
         /// Total degree; by default 2.
         order: Option<u32>,
         /// By default tight.
@@ -360,7 +361,7 @@ grammar! {
     }
 
     /// Scanning bounds.
-    Scan is "a scan" {
+    Scan is "`scan`" {
         /// Points, for all parameters or by parameter, both ends included; by default 30.
         points: Option<PerParameter>,
     }
@@ -370,8 +371,63 @@ grammar! {
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(File);
     schema.insert("title".to_owned(), "mbint model".into());
+    RecursiveTransform(without_null).transform(&mut schema);
     // A schema is a tree of JSON values: writing it out cannot fail.
     let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     text.push('\n');
     text
+}
+
+/// A key may be left out, but a value that is given is one: only a mapping may be written as nothing (`taylor:`).
+fn without_null(schema: &mut Schema) {
+    let null = serde_json::json!({ "type": "null" });
+    if let Some(serde_json::Value::Array(choices)) = schema.get_mut("anyOf") {
+        let mapping = |choice: &serde_json::Value| {
+            let target = choice.get("$ref").and_then(serde_json::Value::as_str);
+            target.is_some_and(|target| !target.ends_with("/Number"))
+        };
+        if !choices.iter().any(mapping) {
+            choices.retain(|choice| *choice != null);
+        }
+    }
+    if let Some(serde_json::Value::Array(types)) = schema.get("type")
+        && let [only, serde_json::Value::String(second)] = types.as_slice()
+        && second == "null"
+        && only != "object"
+    {
+        let only = only.clone();
+        schema.insert("type".to_owned(), only);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn same_keys<G: Grammar + JsonSchema>() {
+        let schema = schemars::schema_for!(G);
+        let properties = schema.get("properties").and_then(|properties| properties.as_object()).unwrap();
+        let mut known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let mut read = G::KEYS.to_vec();
+        known.sort_unstable();
+        read.sort_unstable();
+        assert_eq!(known, read, "{}", G::WHAT);
+        let described = |property: &serde_json::Value| property.get("description").is_some();
+        assert!(properties.values().all(described), "{}", G::WHAT);
+    }
+
+    #[test]
+    fn the_reader_and_the_schema_know_the_same_keys() {
+        same_keys::<File>();
+        same_keys::<Parameter>();
+        same_keys::<Body>();
+        same_keys::<Held>();
+        same_keys::<Joint>();
+        same_keys::<Prismatic>();
+        same_keys::<Effect>();
+        same_keys::<SpringDamper>();
+        same_keys::<Simulation>();
+        same_keys::<Bounds>();
+        same_keys::<Chebyshev>();
+    }
 }

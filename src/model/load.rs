@@ -51,29 +51,29 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
         Ok(text) => read_str(&name, &text, overrides),
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");
-            diagnostics.push(error);
+            diagnostics.push(*error);
             Reading { description: None, diagnostics }
         }
     }
 }
 
-fn read_text(path: &Path) -> Result<String, Diagnostic> {
+fn read_text(path: &Path) -> Result<String, Box<Diagnostic>> {
     let cannot = |error: std::io::Error| {
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
             std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
             _ => error.to_string(),
         };
-        Diagnostic::of_file(format!("the file cannot be read: {reason}"))
+        Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))
     };
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
-        return Err(Diagnostic::of_file("this is a directory, not a model file"));
+        return Err(Box::new(Diagnostic::of_file("this is a directory, not a model file")));
     }
     let too_large = |length: u64| {
         let megabytes = length as f64 / 1e6;
         let limit = MAX_BYTES / 1_000_000;
-        Err(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB")))
+        Err(Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB"))))
     };
     if metadata.len() > MAX_BYTES {
         return too_large(metadata.len());
@@ -88,7 +88,7 @@ fn read_text(path: &Path) -> Result<String, Diagnostic> {
         let offset = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..offset].iter().filter(|byte| **byte == b'\n').count() + 1;
         let message = format!("the file is not UTF-8 text: byte {} in line {line}", offset + 1);
-        Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned())
+        Box::new(Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned()))
     })
 }
 
@@ -132,8 +132,15 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         simulation: Simulation { duration: 1.0, stepping: Stepping::Fixed(1e-3), alpha: -0.1, output_step: 0.01 },
         bounds: BoundsRequest::default(),
     };
-    let mut reader =
-        Reader { diagnostics, model, kinds: Vec::new(), corners: Vec::new(), varies: Vec::new(), used: Vec::new() };
+    let mut reader = Reader {
+        diagnostics,
+        model,
+        kinds: Vec::new(),
+        corners: Vec::new(),
+        varies: Vec::new(),
+        broken: false,
+        used: Vec::new(),
+    };
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return reader.model };
     if let Some(node) = fields.get("model") {

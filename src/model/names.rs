@@ -154,7 +154,8 @@ impl Description {
         }
     }
 
-    fn unknown(&self, name: &str, context: Context) -> NameError {
+    /// Why a name stands for nothing.
+    pub(super) fn unknown(&self, name: &str, context: Context) -> NameError {
         let shown = suggest::clip(name);
         match name.split_once('.') {
             None => self.unknown_word(name, &shown, context),
@@ -177,12 +178,11 @@ impl Description {
             return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
         }
         let parameters = self.parameters.iter().map(|parameter| parameter.name.as_str());
-        let more: &[&str] = match context {
-            Context::Constant => &[],
-            Context::Output => &["t", "energy", "kinetic_energy", "potential_energy"],
-            Context::Effect | Context::Equation => &["t"],
+        let energies = ENERGIES.iter().map(|(energy, _)| *energy).filter(|_| context == Context::Output);
+        let help = match suggest::nearest(name, parameters.clone().chain(energies)) {
+            Some(near) => Some(format!("did you mean `{near}`?")),
+            None => suggest::help(name, "parameters", parameters),
         };
-        let help = suggest::help(name, "parameters", parameters.chain(more.iter().copied()).chain(["pi"]));
         let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
         let message =
             if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };

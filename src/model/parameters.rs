@@ -52,7 +52,8 @@ pub fn read(reader: &mut Reader, node: Option<&Node>, overrides: &[(Override, Sp
     let replaced = find_overrides(reader, entries, overrides);
     for entry in entries {
         reader.name(entry, "a parameter");
-        let value = ParameterValue::Formula(Formula::number(0.0));
+        // Not a number until it is known: no file can write that.
+        let value = ParameterValue::Formula(Formula::number(f64::NAN));
         reader.model.parameters.push(Parameter { name: entry.key.clone(), unit: String::new(), value });
     }
     reader.used = vec![false; entries.len()];
@@ -65,8 +66,8 @@ pub fn read(reader: &mut Reader, node: Option<&Node>, overrides: &[(Override, Sp
         finish(reader, &drafts[index], index, &mut values);
     }
     sort(reader, &order);
-    let lengths: Vec<Span> = order.iter().map(|&index| drafts[index].name_span.clone()).collect();
-    corners(reader, &lengths);
+    let places: Vec<Span> = order.iter().map(|&index| drafts[index].name_span.clone()).collect();
+    corners(reader, &places);
 }
 
 fn find_overrides<'o>(
@@ -335,12 +336,15 @@ fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut K
         }
         return Some([nominal, lower, upper]);
     }
-    if value.is_none() {
-        reader.error(draft.name_span.clone(), "a tolerance needs a `value` that it is of", None);
-        return None;
-    }
-    let above = deviation(reader, draft, tolerance.or(*plus), nominal, kind);
-    let below = deviation(reader, draft, tolerance.or(*minus), nominal, kind);
+    // Without a value there is nothing to deviate from; that was reported.
+    value.as_ref()?;
+    let (above, below) = match tolerance {
+        Some(node) => {
+            let either = deviation(reader, draft, Some(node), nominal, kind);
+            (either, either)
+        }
+        None => (deviation(reader, draft, *plus, nominal, kind), deviation(reader, draft, *minus, nominal, kind)),
+    };
     let (nominal, above, below) = (nominal?, above?, below?);
     Some([nominal, nominal - below, nominal + above])
 }
@@ -364,11 +368,7 @@ fn deviation(
     };
     let negative = percent.map_or(deviation, |(percent, ..)| percent) < 0.0;
     if negative {
-        // A tolerance is read once for either side, and reported once.
-        let message = "a tolerance cannot be negative";
-        if !reader.diagnostics.iter().any(|known| known.span.as_ref() == Some(&node.span) && known.message == message) {
-            reader.error(node.span.clone(), message, None);
-        }
+        reader.error(node.span.clone(), "a tolerance cannot be negative", None);
         return None;
     }
     Some(deviation)
@@ -396,7 +396,8 @@ fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind)
             }
             let own_unit = matches!(draft.value, Some(Written::Quantity { .. })) && draft.unit.is_none();
             if own_unit {
-                let help = format!("write its unit, as the value has one: `{} …`", text(node));
+                let unit = draft.spec.value.and_then(Node::scalar).and_then(|scalar| number_and_unit(&scalar.text));
+                let help = format!("e.g. `{} {}`", text(node), unit.map_or("m", |(_, unit, _)| unit));
                 reader.error(node.span.clone(), "this number has no unit, but the value has", help);
                 return None;
             }
@@ -482,6 +483,7 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
             let corner = corners.iter().find(|corner| !corner.values[index].is_finite())?;
             // What uses a parameter without a value has none either: the first is to blame.
             let blames_another = match &parameters[index].value {
+                ParameterValue::Formula(formula) if formula.as_number().is_some_and(f64::is_nan) => true,
                 ParameterValue::Formula(formula) => formula.names().any(|(name, _)| {
                     positions.get(name).is_none_or(|&used| used >= index || !corner.values[used].is_finite())
                 }),
@@ -491,21 +493,12 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
         })
         .collect();
     for (index, label) in infinite {
-        let message = format!("`{}` is not a finite number{label}", parameters_name(reader, index));
+        let message = format!("`{}` is not a finite number{label}", reader.model.parameters[index].name);
         reader.error(name_spans[index].clone(), message, None);
     }
-    // After an error here, values stand for nothing: nothing more is checked with them.
-    reader.corners =
-        if reader.diagnostics.has_errors() && corners.iter().any(|c| c.values.iter().any(|v| !v.is_finite())) {
-            Vec::new()
-        } else {
-            corners
-        };
+    reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
+    reader.corners = corners;
     reader.varies = varies;
-}
-
-fn parameters_name(reader: &Reader, index: usize) -> String {
-    reader.model.parameters[index].name.clone()
 }
 
 /// Warns of parameters that nothing uses.

@@ -31,6 +31,8 @@ pub struct Reader<'d> {
     pub corners: Vec<Corner>,
     /// Whether the parameter's value is uncertain.
     pub varies: Vec<bool>,
+    /// Whether a parameter has no value because of an error that was reported.
+    pub broken: bool,
     /// Names that formulas used, for the warning about the others.
     pub used: Vec<bool>,
 }
@@ -104,7 +106,11 @@ impl Reader<'_> {
         };
         for entry in entries.iter().filter(|entry| !G::KEYS.contains(&entry.key.as_str())) {
             let message = format!("{} has no `{}`", G::WHAT, clip(&entry.key));
-            let help = suggest::help(&entry.key, "keys", G::KEYS.iter().copied());
+            let help = if entry.key.contains(':') {
+                Some("a space belongs behind the `:`".to_owned())
+            } else {
+                suggest::help(&entry.key, "keys", G::KEYS.iter().copied())
+            };
             self.error(entry.key_span.clone(), message, help);
         }
         let entries = entries.iter().map(|entry| (entry.key.as_str(), entry)).collect();
@@ -352,7 +358,14 @@ impl Reader<'_> {
         let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
         for corner in 0..corners {
             let Some(value) = self.evaluate(formula, corner) else { return };
+            if self.broken && !value.is_finite() {
+                return;
+            }
             let problem = if !value.is_finite() {
+                // Reported where every formula is checked to be finite.
+                if !requirement.is_empty() {
+                    return;
+                }
                 "is not a finite number"
             } else if !holds(value) {
                 requirement
@@ -366,10 +379,7 @@ impl Reader<'_> {
             } else {
                 format!("`{}` {problem}, but is {value}{label}", clip(text))
             };
-            // A requirement is checked only where the number is one: the other error was reported before.
-            if !(value.is_nan() && !requirement.is_empty() || value.is_infinite() && !requirement.is_empty()) {
-                self.error(node.span.clone(), message, None);
-            }
+            self.error(node.span.clone(), message, None);
             return;
         }
     }

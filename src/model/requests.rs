@@ -23,7 +23,7 @@ pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) ->
 
 fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<StartValue> {
     let name = entry.key.as_str();
-    let referent = match reader.model.resolve(name, Context::Output) {
+    let referent = match reader.model.referent(name).ok_or_else(|| reader.model.unknown(name, Context::Equation)) {
         Ok(referent) => referent,
         Err(error) => {
             let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;

@@ -1,5 +1,8 @@
 //! "Did you mean": what to say of a name that is not known.
 
+/// Known names that are looked at.
+const MOST_KNOWN: usize = 1000;
+
 /// Longest name that is compared or quoted in full.
 const LONGEST: usize = 60;
 
@@ -14,6 +17,7 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
     let limit = if length < 2 { 0 } else { (length / 3).max(1) };
     known
         .into_iter()
+        .take(MOST_KNOWN)
         .filter(|candidate| candidate.len() <= 4 * LONGEST)
         .filter_map(|candidate| {
             let distance = if candidate.to_lowercase() == lower {
@@ -32,12 +36,13 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
 
 /// Help for an unknown name: the nearest known one, or all where they are few. `kind` is their plural: `bodies`.
 pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>) -> Option<String> {
-    let known: Vec<&str> = known.into_iter().collect();
+    let known: Vec<&str> = known.into_iter().take(MOST_KNOWN).collect();
     if let Some(near) = nearest(name, known.iter().copied()) {
         return Some(format!("did you mean `{near}`?"));
     }
     match known.as_slice() {
         [] => Some(format!("there are no {kind}")),
+        [one] if one.len() <= LONGEST => Some(format!("there is only `{one}`")),
         few if few.len() <= 16 && few.iter().all(|name| name.len() <= LONGEST) => {
             Some(format!("the {kind} are {}", list(few)))
         }

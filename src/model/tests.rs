@@ -167,7 +167,7 @@ fn every_kind_of_joint_and_effect_can_be_read() {
   d: { spring_damper: { between: [ground, bar], stiffness: 5 N/mm } }
   e: { spring_damper: { between: [ground, bar], along: [1, 1], damping: 3*bar.x^2, free_length: l } }
   f: { torsional_spring_damper: { between: [ground, bar], stiffness: 2 N*m/rad, damping: 2, free_angle: 45° } }
-initial: { bar.x: 1 cm, bar.vx: 2*l }
+initial: { bar.x: 1 cm, bar.vx: 2*1 }
 guess: { bar.y: 2 }"#,
         )
         .replace("bodies:\n", "bodies:\n  ground: { points: { O: [0, 1] } }\n  arm: { inertia: 1, coordinates: [angle], held: { x: 1 } }\n");
