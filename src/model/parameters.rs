@@ -259,7 +259,9 @@ fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -
             if let Some(declared) = declared {
                 reader.check_fits(&node.span, unit.dimension, declared.dimension);
             }
-            Some((Formula::number(unit.to_si(*value)), Kind::parameter(unit.dimension)))
+            // The declared one is what users of the parameter count on.
+            let dimension = declared.map_or(unit.dimension, |declared| declared.dimension);
+            Some((Formula::number(unit.to_si(*value)), Kind::parameter(dimension)))
         }
         (Written::Formula(formula), Some(unit)) => {
             if let Some(number) = formula.as_number() {

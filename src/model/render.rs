@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
-use super::source::Source;
+use super::source::{Place, Source};
 
 /// Diagnostics shown; the others are counted.
 const MOST_SHOWN: usize = 50;
@@ -13,7 +13,7 @@ const MOST_SHOWN: usize = 50;
 /// Places at most this many lines apart are shown in one piece.
 const LINES_TOGETHER: usize = 6;
 
-/// Characters of a line shown on either side of the marker when the line is longer than three times this.
+/// Characters of a line on either side of the markers that are rendered at most.
 const LONG_LINE: usize = 400;
 
 impl Diagnostics {
@@ -22,7 +22,12 @@ impl Diagnostics {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();
         for diagnostic in self.iter().take(MOST_SHOWN) {
-            text += &renderer.render(&self.report(diagnostic));
+            let (report, moved) = self.report(diagnostic);
+            let mut rendered = renderer.render(&report);
+            for (shown, meant) in moved {
+                rendered = rendered.replacen(&shown, &meant, 1);
+            }
+            text += &rendered;
             text += "\n\n";
         }
         let hidden = self.iter().count().saturating_sub(MOST_SHOWN);
@@ -36,21 +41,29 @@ impl Diagnostics {
         text
     }
 
-    fn report<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Group<'d>> {
+    /// What to render, and the places in it to write anew: columns count from where a long line was cut.
+    fn report<'d>(&'d self, diagnostic: &'d Diagnostic) -> (Vec<Group<'d>>, Vec<(String, String)>) {
         let level = match diagnostic.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
         let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()));
-        for element in self.places(diagnostic) {
-            group = group.element(element);
+        let excerpts = self.excerpts(diagnostic);
+        if excerpts.is_empty() {
+            group = group.elements(self.sources.first().map(|source| Origin::path(source.name.as_str())));
+        }
+        let mut moved = Vec::new();
+        for excerpt in excerpts {
+            let (snippet, places) = excerpt.snippet();
+            group = group.element(snippet);
+            moved.extend(places);
         }
         let help = diagnostic.help.as_deref().map(|help| Level::HELP.message(help));
-        vec![group.elements(help)]
+        (vec![group.elements(help)], moved)
     }
 
-    /// The lines with their markers; only the path where no line is meant.
-    fn places<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Element<'d>> {
+    /// The lines with their markers; none where the file as a whole is meant.
+    fn excerpts<'d>(&'d self, diagnostic: &'d Diagnostic) -> Vec<Excerpt<'d>> {
         let primary = diagnostic.span.as_ref().map(|span| (span, diagnostic.label.as_deref(), AnnotationKind::Primary));
         let secondary =
             diagnostic.secondary.iter().map(|(span, label)| (span, Some(label.as_str()), AnnotationKind::Context));
@@ -63,10 +76,7 @@ impl Diagnostics {
                 None => excerpts.push(Excerpt { source, marks: vec![mark] }),
             }
         }
-        if excerpts.is_empty() {
-            return self.sources.first().map(|source| Origin::path(source.name.as_str()).into()).into_iter().collect();
-        }
-        excerpts.into_iter().flat_map(Excerpt::elements).collect()
+        excerpts
     }
 }
 
@@ -92,15 +102,21 @@ impl<'d> Excerpt<'d> {
         std::ptr::eq(self.source, source) && self.marks.iter().all(near)
     }
 
-    fn elements(self) -> Vec<Element<'d>> {
+    /// The lines, and the place as it is shown and as it is meant where the two differ.
+    fn snippet(self) -> (Snippet<'d, Annotation<'d>>, Option<(String, String)>) {
         let text = self.source.text.as_str();
         let first = self.marks.iter().map(|mark| mark.span.start).min().unwrap_or(0);
         let last = self.marks.iter().map(|mark| mark.span.end).max().unwrap_or(0);
-        let place = self.source.place(self.marks.first().map_or(0, |mark| mark.span.start));
+        let name = self.source.name.as_str();
+        let mark = self.marks.first().map_or(0, |mark| mark.span.start);
+        let Place { line, column } = self.source.place(mark);
         let start = text[..first].rfind('\n').map_or(0, |newline| newline + 1);
         let end = text[last..].find('\n').map_or(text.len(), |newline| last + newline);
-        // What is shown of very long lines begins and ends near the marks; the place stands above it all the same.
-        let cut_start = nearby(text, start, first, |text, from| text[..from].char_indices().rev().nth(LONG_LINE - 1));
+        // What is rendered of very long lines begins and ends near the marks.
+        let cut_start = match text[start..first].char_indices().rev().nth(LONG_LINE - 1) {
+            Some((offset, _)) => start + offset,
+            None => start,
+        };
         let cut_end = match text[last..end].char_indices().nth(LONG_LINE) {
             Some((offset, _)) => last + offset,
             None => end,
@@ -112,21 +128,14 @@ impl<'d> Excerpt<'d> {
         let annotations: Vec<Annotation> = annotations.collect();
         let snippet = Snippet::source(&text[cut_start..cut_end])
             .line_start(self.source.place(cut_start).line)
+            .path(name)
             .annotations(annotations);
-        if cut_start == start {
-            vec![snippet.path(self.source.name.as_str()).into()]
-        } else {
-            let origin = Origin::path(self.source.name.as_str()).line(place.line).char_column(place.column);
-            vec![origin.into(), snippet.into()]
-        }
-    }
-}
-
-/// `start`, or a character not far before `mark` when that is nearer.
-fn nearby(text: &str, start: usize, mark: usize, back: impl Fn(&str, usize) -> Option<(usize, char)>) -> usize {
-    match back(text, mark) {
-        Some((offset, _)) if offset > start => offset,
-        _ => start,
+        let moved = (cut_start != start).then(|| {
+            let shown = text[cut_start..mark].chars().count() + 1;
+            let place = |column| format!("{name}:{line}:{column}");
+            (place(shown), place(column))
+        });
+        (snippet, moved)
     }
 }
 
