@@ -9,6 +9,8 @@ use super::{Failure, Status};
 
 /// A model that runs, with its name to be replaced.
 const TEMPLATE: &str = include_str!("../../models/template.yaml");
+/// Where the project's own models find the schema; a new model looks beside itself.
+const SCHEMA: &str = "../schemas/mbint.schema.json";
 /// Its name line.
 const NAME_LINE: &str = "model: template\n";
 
@@ -22,7 +24,7 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
         return wrong(format!("`{name}` cannot name a model: {rule}"));
     }
     let path = format!("{stem}.yaml");
-    let text = TEMPLATE.replacen(NAME_LINE, &format!("model: {name}\n"), 1);
+    let text = TEMPLATE.replacen(NAME_LINE, &format!("model: {name}\n"), 1).replacen(SCHEMA, "mbint.schema.json", 1);
     let created = OpenOptions::new().write(true).create_new(true).open(&path);
     match created.and_then(|mut file| file.write_all(text.as_bytes())) {
         Ok(()) => {}
@@ -31,7 +33,8 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
         }
         Err(error) => return wrong(format!("cannot write {path}: {error}")),
     }
-    console.print(&format!("{path}\nnext: mbint run {path}\n"))?;
+    let editor = "for completion in an editor, beside the model: mbint schema > mbint.schema.json";
+    console.print(&format!("{path}\nnext: mbint run {path}\n{editor}\n"))?;
     Ok(Status::Done)
 }
 
@@ -48,6 +51,7 @@ mod tests {
     #[test]
     fn the_template_has_its_name_once() {
         assert_eq!(TEMPLATE.matches(NAME_LINE).count(), 1);
+        assert_eq!(TEMPLATE.matches(SCHEMA).count(), 1);
     }
 
     #[test]
