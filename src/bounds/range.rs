@@ -271,31 +271,6 @@ mod tests {
         assert!((with.lower - without.lower).abs() < 1e-14 && (with.upper - without.upper).abs() < 1e-14);
     }
 
-    /// Seconds a range, for the documentation: `cargo test --release --lib cost_of -- --ignored --nocapture`.
-    #[test]
-    #[ignore = "a measurement"]
-    fn cost_of_a_range() {
-        for (dimension, order) in
-            [(1, 5), (2, 2), (2, 5), (2, 10), (3, 2), (3, 5), (4, 2), (4, 5), (5, 3), (6, 2), (6, 5)]
-        {
-            let orders = vec![order; dimension];
-            let nodes = vec![order + 1; dimension];
-            let basis = ChebyshevBasis::new(&orders, &nodes);
-            let grid = basis.grid();
-            let respond = |x: Vec<f64>| x.iter().enumerate().map(|(i, x)| (i as f64 + 0.5) * x).sum::<f64>().sin();
-            let values: Vec<f64> = (0..grid.len()).map(|index| respond(grid.sample(index))).collect();
-            let mut work = Work::default();
-            let start = std::time::Instant::now();
-            let c = basis.coefficients(&values, &mut work);
-            let transform = start.elapsed();
-            let mut tight = PolynomialRange::new(&orders, RangeKind::Tight);
-            tight.range(c);
-            let start = std::time::Instant::now();
-            let found = tight.range(c);
-            println!("k = {dimension}, n = {order}: transform {transform:?}, range {:?}, {found:?}", start.elapsed());
-        }
-    }
-
     #[test]
     fn smooth_responses_are_bounded_within_a_thousandth() {
         let basis = ChebyshevBasis::new(&[5, 5], &[6, 6]);

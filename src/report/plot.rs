@@ -377,38 +377,4 @@ mod tests {
         assert!(svg.contains("Taylor (beyond the plot)") && !svg.contains("Scan (beyond"));
         assert!(svg.contains("x3 [m]"), "an axis for the others");
     }
-
-    /// Writes plots to look at: `MBINT_PLOTS=/tmp/plots cargo test --lib plots_to_look_at -- --ignored`.
-    #[test]
-    #[ignore = "for the eye"]
-    fn plots_to_look_at() {
-        let dir = std::path::PathBuf::from(std::env::var("MBINT_PLOTS").unwrap());
-        let (times, output) = sample(201);
-        let mut gaps = output.clone();
-        gaps.nominal[60..80].fill(f64::NAN);
-        gaps.bands[0].upper[120..130].fill(f64::NAN);
-        gaps.name = "a_rather_long_name_of_an_output_that_does_not_fit".into();
-        let mut wide = output.clone();
-        for (i, band) in wide.bands.iter_mut().enumerate() {
-            let far = [60.0, 40.0, 30.0][i] * 1e5;
-            let spread = |x: &mut f64, mid: f64| *x = (*x - mid) * far + mid * 1e5;
-            band.lower.iter_mut().zip(&wide.nominal).for_each(|(x, &n)| spread(x, n));
-            band.upper.iter_mut().zip(&wide.nominal).for_each(|(x, &n)| spread(x, n));
-        }
-        wide.nominal.iter_mut().for_each(|x| *x *= 1e5);
-        wide.unit = "N*m".into();
-        let constant = OutputBounds { nominal: vec![5.0; 201], bands: vec![], ..output.clone() };
-        let (long_times, long) = sample(20_001);
-        let mut exploding = output.clone();
-        for (i, t) in times.iter().enumerate() {
-            exploding.bands[1].upper[i] += 1e-4 * (8.0 * t).exp();
-            exploding.bands[1].lower[i] -= 1e-4 * (8.0 * t).exp();
-        }
-        let plots =
-            [("exploding", &exploding), ("x3", &output), ("gaps", &gaps), ("wide", &wide), ("constant", &constant)];
-        for (name, output) in plots {
-            std::fs::write(dir.join(name).with_extension("svg"), plot_svg(&times, output).unwrap()).unwrap();
-        }
-        std::fs::write(dir.join("long.svg"), plot_svg(&long_times, &long).unwrap()).unwrap();
-    }
 }

@@ -172,13 +172,3 @@ fn a_chain_of_loops_grows_linearly() {
     let [small, large] = [50, 100].map(|loops| chain(loops).build().graph.len() as f64);
     assert!(large / small < 2.05, "{small} and {large} nodes");
 }
-
-/// Not run by default: it is about time. `cargo test --lib mechanics -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn a_chain_of_a_thousand_loops_builds_in_well_under_a_second() {
-    let model = chain(1000);
-    let start = std::time::Instant::now();
-    let system = model.build();
-    println!("{} nodes in {:?}", system.graph.len(), start.elapsed());
-}
