@@ -81,11 +81,19 @@ impl Run<'_> {
         })
     }
 
-    fn method_summary(&self, method: &str, solves: usize, counters: Counters, begun: Instant) -> MethodSummary {
+    fn method_summary(
+        &self,
+        method: &str,
+        solves: usize,
+        counters: Counters,
+        stop: Option<&Stop>,
+        begun: Instant,
+    ) -> MethodSummary {
+        let rows = stop.map_or(self.schedule.rows, |stop| stop.row);
         MethodSummary {
             method: method.to_owned(),
             solves,
-            steps: self.schedule.steps_before(self.schedule.rows - 1),
+            steps: self.schedule.steps_before(rows.saturating_sub(1)),
             newton_iterations: counters.iterations,
             rank_revealing_solves: counters.rank_revealing,
             seconds: Some(begun.elapsed().as_secs_f64()),
@@ -103,7 +111,7 @@ impl Run<'_> {
                 }
             }
         })?;
-        let summary = self.method_summary("nominal", 1, done.counters, begun);
+        let summary = self.method_summary("nominal", 1, done.counters, done.stop_place(), begun);
         Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
     }
 
@@ -124,7 +132,8 @@ impl Run<'_> {
                 .collect();
             scatter(&mut bands, rows, &ranges, outputs);
         })?;
-        let summary = self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, begun);
+        let summary =
+            self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
         Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
     }
 
@@ -152,7 +161,7 @@ impl Run<'_> {
                 *range = bounds.range(row, output);
             }
         }
-        let summary = self.method_summary(Method::Scan.name(), grid.len(), total.counters, begun);
+        let summary = self.method_summary(Method::Scan.name(), grid.len(), total.counters, total.stop_place(), begun);
         Ok(Outcome { bands, stop: total.stop, summary, strained: total.strained })
     }
 
@@ -181,7 +190,7 @@ impl Run<'_> {
             self.advance_progress(TAYLOR_WORK * (request.order + 1) * rows.len());
             next = rows.end;
         }
-        let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), begun);
+        let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), stop.as_ref(), begun);
         Ok(Outcome { bands, stop: stop.map(|stop| (stop, center)), summary, strained: None })
     }
 
@@ -204,6 +213,10 @@ struct FleetRun {
 }
 
 impl FleetRun {
+    fn stop_place(&self) -> Option<&Stop> {
+        self.stop.as_ref().map(|(stop, _)| stop)
+    }
+
     /// Takes in a shard whose first sample is `first`.
     fn add(&mut self, first: usize, shard: Self) {
         self.counters.iterations += shard.counters.iterations;

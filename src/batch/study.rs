@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicUsize;
 use super::methods::{Outcome, Run, TAYLOR_WORK};
 use super::{Options, first_step};
 use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
-use crate::integrate::{Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
+use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
 use crate::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest, Stepping};
 use crate::report::{ParameterSummary, Summary};
@@ -63,11 +63,13 @@ impl<'a> Study<'a> {
         let mut round = 1;
         loop {
             let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let schedule = schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
+            let Piloted { schedule, failure } =
+                schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
+            let failure = failure.map(|failure| format!("{failure}; results up to that time are kept"));
             let outcomes = self.methods(&schedule, Some(tolerance))?;
             let strained = outcomes.iter().filter_map(|outcome| outcome.strained.clone());
             match strained.filter(|(_, strain)| *strain > 1.0).reduce(|a, b| if b.1 > a.1 { b } else { a }) {
-                None => return Ok(self.conclude(&schedule, outcomes, None)),
+                None => return Ok(self.conclude(&schedule, outcomes, failure)),
                 Some((_, strain)) if round == PILOT_ROUNDS => {
                     let note = format!("a sample's local error is {strain:.2} times the tolerance in the worst step");
                     return Ok(self.conclude(&schedule, outcomes, Some(note)));
@@ -150,6 +152,10 @@ impl<'a> Study<'a> {
 
     fn failure(&self, stop: &Stop, sample: &[f64]) -> String {
         let names = self.simulator.system.parameters.iter().map(|parameter| parameter.name.clone());
+        if stop.singular {
+            let singular = SimulationError::SingularJet { time: stop.time };
+            return format!("{singular}; results up to that time are kept. Leave the Taylor method out to go on");
+        }
         let stuck = SimulationError::Stuck {
             sample: stop.sample,
             time: stop.time,

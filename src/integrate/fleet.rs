@@ -38,8 +38,10 @@ pub struct Stop {
     pub row: usize,
     /// s
     pub time: f64,
-    /// Of n + m.
+    /// Of n + m, the one that resists most.
     pub equation: usize,
+    /// Whether it would go on, but not with an invertible Newton matrix, which jets need.
+    pub singular: bool,
 }
 
 /// How `samples` are cut into tiles for `threads`: (first, count, width). The results do not depend on it.
@@ -157,6 +159,7 @@ impl Member<'_> {
                     row,
                     time,
                     equation,
+                    singular: false,
                 }));
                 if let (Some(tolerance), Some(before)) = (tolerance, before) {
                     for (strain, error) in self.strain.iter_mut().zip(self.stepper.local_error(&before, h)) {

@@ -198,7 +198,7 @@ impl<'p> Stepper<'p> {
     }
 
     /// The equation with the largest residual at the iterate, each against its scale.
-    fn worst_equation(&mut self) -> usize {
+    pub(super) fn worst_equation(&mut self) -> usize {
         self.tile.run(self.program.matrix());
         let sizes = self.program.residual.iter().zip(&self.program.equilibration);
         let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[0] * scale).abs());

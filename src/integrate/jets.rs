@@ -65,8 +65,9 @@ impl<'s> JetRun<'s> {
         into.clear();
         for row in rows {
             for (h, end) in schedule.steps_to(row) {
-                if !self.step(h, end) {
-                    return Some(Stop { sample: 0, row, time: end, equation: 0 });
+                if let Err(singular) = self.step(h, end) {
+                    let equation = self.center.worst_equation();
+                    return Some(Stop { sample: 0, row, time: end, equation, singular });
                 }
             }
             self.memory.run(self.simulator.program.observe());
@@ -82,9 +83,9 @@ impl<'s> JetRun<'s> {
         self.center.counters()
     }
 
-    /// One step; `false` where the centre does not converge, or only with the rank-revealing solve, whose matrix has no
-    /// inverse for the sweeps.
-    fn step(&mut self, h: f64, end: f64) -> bool {
+    /// One step. Fails where the centre does not converge, or (`true`) only with the rank-revealing solve, whose matrix has
+    /// no inverse for the sweeps.
+    fn step(&mut self, h: f64, end: f64) -> Result<(), bool> {
         let program = &self.simulator.program;
         let layout = &program.layout;
         self.set_step_size(h);
@@ -92,8 +93,11 @@ impl<'s> JetRun<'s> {
         self.memory.run(program.step());
 
         let dense_before = self.center.counters().rank_revealing;
-        if !self.center.solve(h, end)[0] || self.center.counters().rank_revealing != dense_before {
-            return false;
+        if !self.center.solve(h, end)[0] {
+            return Err(false);
+        }
+        if self.center.counters().rank_revealing != dense_before {
+            return Err(true);
         }
         self.center.tile_mut().run(program.factor());
         for &slot in program.factor_slots() {
@@ -117,7 +121,7 @@ impl<'s> JetRun<'s> {
         }
         self.memory.run(program.advance());
         self.center.finish();
-        true
+        Ok(())
     }
 
     /// As for a tile: see [`Stepper`].

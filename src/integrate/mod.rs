@@ -14,6 +14,6 @@ pub use fleet::{Fleet, Stop};
 pub use hht::{Stepper, Stuck};
 pub use jets::JetRun;
 pub use newton::Counters;
-pub use pilot::schedule as schedule_for_tolerance;
+pub use pilot::{Piloted, schedule as schedule_for_tolerance};
 pub use simulator::{Mobility, SimulationError, Simulator};
 pub use steps::{Controller, Schedule};

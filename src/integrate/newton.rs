@@ -26,6 +26,10 @@ const FIRST_CONTRACTION: f64 = 0.1;
 /// Corrections below this (relative positions) are round-off, whatever their contraction.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
+/// A constraint gapes no more than this, relative to the smallest coordinate scale, after a dense solve: least squares also
+/// settle where the constraints cannot be fulfilled.
+const GAP: f64 = 1e-9;
+
 /// What the iteration did; counters of the whole life of the solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -76,6 +80,9 @@ impl Newton {
             self.dense.copy_from_slice(&self.pending);
             self.predict(program, tile);
             self.iterate(program, tile, h);
+        }
+        if self.dense.contains(&true) {
+            self.reject_gaps(program, tile, h);
         }
         self.restore_multipliers(program, tile);
         for ((alive, pending), dense) in alive.iter_mut().zip(&self.pending).zip(&self.dense) {
@@ -151,6 +158,19 @@ impl Newton {
             let solution = smallest_solution(&matrix, &right, &program.equilibration);
             for (place, slot) in program.layout.correction.clone().enumerate() {
                 tile.lane_mut(slot)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
+            }
+        }
+    }
+
+    /// Lanes whose dense solve has settled without fulfilling the constraints have not converged.
+    fn reject_gaps(&mut self, program: &Program, tile: &mut Tile, h: f64) {
+        tile.run(program.matrix());
+        let gain = program.coefficients.position_gain(h);
+        let smallest = program.scale.iter().copied().fold(1.0, f64::min);
+        for &slot in &program.residual[program.scale.len()..] {
+            for (lane, residual) in tile.lane(slot).iter().enumerate() {
+                let closed = (gain * residual).abs() <= GAP * smallest;
+                self.pending[lane] |= self.dense[lane] && !closed;
             }
         }
     }

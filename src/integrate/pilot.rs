@@ -10,18 +10,29 @@ const FIRST: f64 = 1e-2;
 /// Steps longer than this share of what is left up to a row are cut to halve it, so that no sliver remains.
 const HALVE: f64 = 0.55;
 
+/// A schedule, and what ended it before the duration did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piloted {
+    /// Up to the last row that was reached.
+    pub schedule: Schedule,
+    /// Why no further.
+    pub failure: Option<SimulationError>,
+}
+
 /// The schedule at which every pilot keeps its local position error below `tolerance`: rows at whole multiples of
 /// `output_step`, a step taken again where the worst pilot's error is too large or a pilot does not converge.
 ///
+/// Where no step is small enough, the schedule ends.
+///
 /// # Errors
-/// Where no step is small enough, or a pilot cannot be assembled.
+/// Where a pilot cannot be assembled.
 pub fn schedule(
     simulator: &Simulator,
     pilots: &[Vec<f64>],
     duration: f64,
     output_step: f64,
     tolerance: f64,
-) -> Result<Schedule, SimulationError> {
+) -> Result<Piloted, SimulationError> {
     let controller = Controller { tolerance };
     let width = symdiff::WIDTHS.into_iter().find(|&width| width >= pilots.len()).unwrap_or(pilots.len());
     let mut h = FIRST * output_step;
@@ -54,11 +65,12 @@ pub fn schedule(
                 stepper.rewind(&before, before_size);
                 h = step * factor.min(0.9);
                 if h < Controller::SMALLEST * duration {
-                    return Err(SimulationError::StepTooSmall { step: h, time });
+                    let failure = Some(SimulationError::StepTooSmall { step: h, time });
+                    return Ok(Piloted { schedule: Schedule::listed(output_step, ends), failure });
                 }
             }
         }
         ends.push(list);
     }
-    Ok(Schedule::listed(duration, output_step, ends))
+    Ok(Piloted { schedule: Schedule::listed(output_step, ends), failure: None })
 }

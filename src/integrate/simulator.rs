@@ -57,6 +57,10 @@ pub enum SimulationError {
     )]
     #[allow(missing_docs)]
     Stuck { sample: usize, time: f64, equation: String, parameters: Vec<(String, f64)> },
+    /// A jet met a Newton matrix without an inverse.
+    #[error("the Newton matrix is singular at t = {time} s, so the response has no Taylor coefficients there")]
+    #[allow(missing_docs)]
+    SingularJet { time: f64 },
     /// Step-size control asks for steps that make no headway.
     #[error("the step size fell below {step:.3e} s at t = {time} s without meeting the tolerance")]
     #[allow(missing_docs)]

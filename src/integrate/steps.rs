@@ -31,8 +31,8 @@ impl Schedule {
     }
 
     /// Steps that end at the listed times: one list for each row but the first.
-    pub fn listed(duration: f64, output_step: f64, ends: Vec<Vec<f64>>) -> Self {
-        Self { output_step, rows: rows(duration, output_step), steps: Steps::Listed(ends) }
+    pub fn listed(output_step: f64, ends: Vec<Vec<f64>>) -> Self {
+        Self { output_step, rows: ends.len() + 1, steps: Steps::Listed(ends) }
     }
 
     /// Number of rows for a schedule still to be made.
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn listed_steps_have_their_lengths() {
-        let schedule = Schedule::listed(0.2, 0.1, vec![vec![0.05, 0.1], vec![0.2]]);
+        let schedule = Schedule::listed(0.1, vec![vec![0.05, 0.1], vec![0.2]]);
         let steps: Vec<(f64, f64)> = schedule.steps_to(1).chain(schedule.steps_to(2)).collect();
         assert_eq!(steps, [(0.05, 0.05), (0.05, 0.1), (0.1, 0.2)]);
     }
