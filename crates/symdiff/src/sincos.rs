@@ -1,6 +1,6 @@
 //! Sine and cosine at once, without branches, so that a loop over lanes becomes vector instructions.
 //!
-//! Below [`LARGE`] the argument is reduced by the nearest multiple of π/2, which is taken off in three parts (Cody and
+//! Below `LARGE` the argument is reduced by the nearest multiple of π/2, which is taken off in three parts (Cody and
 //! Waite), and both kernels of fdlibm are evaluated; the quadrant then chooses and signs them by bit operations. Above
 //! it, and where the argument is not finite, `libm` does the work: a mechanism that turned so often is rare.
 //!
