@@ -1,0 +1,62 @@
+//! The car axis of the test set for IVP solvers against a solution in minimal coordinates (Radau, 1e-13).
+//!
+//! Its springs oscillate with 1/s-frequencies of √(k/m) = 45 rad/s, so steps of 1e-3 s resolve a period with 140 steps.
+
+use mbint::model::Description;
+
+use super::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
+
+/// t, xl, yl, xr, yr: `ivp/car_axis.csv`.
+const STATES: [[f64; 5]; 6] = [
+    [0.5, 0.0478878180617, 0.497089687181, 1.04357714998, 0.404338653155],
+    [1.0, 0.0271820954401, 0.498911552629, 1.02454879597, 0.426388006981],
+    [1.5, -0.0324929726285, 0.498613008425, 0.963531453617, 0.587693546832],
+    [2.0, -0.0456044836429, 0.497445343219, 0.951740760593, 0.570263361597],
+    [2.5, 0.00661519488556, 0.499775444142, 1.00657630196, 0.508594987559],
+    [3.0, 0.0493455784275, 0.49698946023, 1.04174252489, 0.373911027265],
+];
+
+const NAMES: [&str; 4] = ["left.x", "left.y", "right.x", "right.y"];
+
+fn states() -> Vec<[f64; 5]> {
+    let Some(rows) = reference("ivp/car_axis.csv") else { return STATES.to_vec() };
+    rows.iter().map(|row| std::array::from_fn(|place| row[place])).collect()
+}
+
+fn car_axis() -> Description {
+    model("car_axis").observing(&NAMES)
+}
+
+fn error(curves: [&[f64]; 4], row_of: impl Fn(f64) -> usize) -> f64 {
+    let states = states();
+    let errors = states
+        .iter()
+        .flat_map(|state| (0..4).map(move |place| (state[0], place, state[place + 1])))
+        .map(|(t, place, exact)| curves[place][row_of(t)] - exact);
+    largest(errors)
+}
+
+#[test]
+fn motion_is_the_references() {
+    let steps = [1e-3, 5e-4, 2.5e-4];
+    let runs = steps.map(|h| nominal(&car_axis().step(h)));
+    let errors = runs.each_ref().map(|run| error(NAMES.map(|name| curve(run, name)), |t| row(run, t)));
+    println!("errors {errors:?}");
+    for (&coarse, &fine) in errors.iter().zip(&errors[1..]) {
+        let order = order(coarse, fine);
+        assert!((order - 2.0).abs() < 0.1, "order {order} from {errors:?}");
+    }
+    let limits = NAMES.map(|name| richardson(curve(&runs[1], name), curve(&runs[2], name)));
+    let left = error(limits.each_ref().map(Vec::as_slice), |t| row(&runs[2], t));
+    println!("extrapolated {left:.3e}");
+    assert!(left < errors[2] / 50.0, "{left} of {}", errors[2]);
+}
+
+#[test]
+fn the_road_is_where_it_is_prescribed() {
+    let bounds = nominal(&car_axis().observing(&["road.x - sqrt(1 - 0.01*sin(10*t)^2)", "road.y - 0.1*sin(10*t)"]));
+    for output in &bounds.outputs {
+        // Newton's tolerance.
+        assert!(largest(output.nominal.iter().copied()) < 1e-11, "{}", output.name);
+    }
+}

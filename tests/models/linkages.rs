@@ -1,0 +1,139 @@
+//! Linkages whose positions are trigonometry: the loops must close as the closed forms say, to Newton's tolerance, and the
+//! velocities follow to second order.
+
+use std::f64::consts::{PI, TAU};
+
+use super::common::{Vary, curve, distance_from, largest, model, nominal, order, read};
+
+/// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
+const CLOSED: f64 = 1e-10;
+
+#[test]
+fn the_yoke_is_where_the_pin_is() {
+    let bounds = nominal(&model("scotch_yoke").observing(&["yoke.x - radius*cos(wheel.angle)", "wheel.angle"]));
+    assert!(largest(bounds.outputs[0].nominal.iter().copied()) < 1e-12);
+    // Several turns were made, so that this says something.
+    assert!(bounds.outputs[1].nominal.last().unwrap() > &(2.0 * TAU));
+}
+
+/// Rocker angle of the four-bar `four_bar.yaml`, from Freudenstein's equation, in the branch above the base.
+fn freudenstein(crank: f64) -> f64 {
+    let (base, a, b, c) = (0.3, 0.1, 0.26, 0.22);
+    let (k1, k2) = (base / a, base / c);
+    let k3 = (a * a - b * b + c * c + base * base) / (2.0 * a * c);
+    // K1 cos ψ − K2 cos φ + K3 = cos(φ − ψ), as A sin ψ + B cos ψ = C.
+    let (sine, cosine, right) = (crank.sin(), crank.cos() - k1, k3 - k2 * crank.cos());
+    let middle = sine.atan2(cosine);
+    let half = (right / sine.hypot(cosine)).acos();
+    let [one, other] = [wrapped(middle + half), wrapped(middle - half)];
+    if (0.0..PI).contains(&one) { one } else { other }
+}
+
+#[test]
+fn the_rocker_obeys_freudenstein() {
+    let description = model("four_bar").observing(&["rocker.angle", "crank.angle", "rocker.angular_velocity"]);
+    let speeds = [1e-3, 5e-4].map(|h| {
+        let bounds = nominal(&description.clone().step(h));
+        let rocker = curve(&bounds, "rocker.angle");
+        let error = largest(bounds.times.iter().zip(rocker).map(|(&t, &angle)| wrapped(angle - freudenstein(TAU * t))));
+        assert!(error < CLOSED, "h = {h}: the rocker is off by {error:e}");
+        assert!(distance_from(&bounds.times, curve(&bounds, "crank.angle"), |t| TAU * t) < CLOSED);
+        let slope = |t: f64| wrapped(freudenstein(TAU * (t + 1e-5)) - freudenstein(TAU * (t - 1e-5))) / 2e-5;
+        distance_from(&bounds.times, curve(&bounds, "rocker.angular_velocity"), slope)
+    });
+    println!("rocker speed: errors {speeds:?}");
+    assert!((order(speeds[0], speeds[1]) - 2.0).abs() < 0.1, "{speeds:?}");
+}
+
+/// An angle in [−π, π).
+fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// Lever angle and ram position of `quick_return.yaml`.
+fn quick_return(crank: f64) -> (f64, f64) {
+    let (r, offset, lever, link, height): (f64, f64, f64, f64, f64) = (0.1, 0.25, 0.5, 0.2, 0.23);
+    let angle = (offset + r * crank.sin()).atan2(r * crank.cos());
+    let (x, y) = (lever * angle.cos(), lever * angle.sin() - offset);
+    (angle, x + (link * link - (height - y).powi(2)).sqrt())
+}
+
+#[test]
+fn the_quick_return_follows_its_geometry() {
+    let bounds = nominal(&model("quick_return").observing(&["lever.angle", "ram.x"]));
+    let lever = distance_from(&bounds.times, curve(&bounds, "lever.angle"), |t| quick_return(TAU * t).0);
+    let ram = distance_from(&bounds.times, curve(&bounds, "ram.x"), |t| quick_return(TAU * t).1);
+    println!("lever {lever:.3e}, ram {ram:.3e}");
+    assert!(lever < CLOSED && ram < CLOSED, "lever off by {lever:e}, ram by {ram:e}");
+}
+
+#[test]
+fn the_quick_return_has_its_time_ratio() {
+    // The lever turns back where the crank stands square to it.
+    let asin = (0.1_f64 / 0.25).asin();
+    let expected = (PI + 2.0 * asin) / (PI - 2.0 * asin);
+    let bounds = nominal(&model("quick_return").observing(&["lever.angular_velocity"]).rows_every(1e-3));
+    let speed = &bounds.outputs[0].nominal;
+    let turns: Vec<f64> = (1..speed.len())
+        .filter(|&row| speed[row - 1] * speed[row] < 0.0)
+        .map(|row| bounds.times[row] - 1e-3 * speed[row] / (speed[row] - speed[row - 1]))
+        .collect();
+    let (first, second) = (turns[1] - turns[0], turns[2] - turns[1]);
+    let ratio = first.max(second) / first.min(second);
+    println!("ratio {ratio}, expected {expected}");
+    // The zeros are found by linear interpolation, and speeds are good to O(h²), about 1e-5 of their size.
+    assert!((ratio - expected).abs() < 1e-4, "{ratio} instead of {expected}");
+    assert!((first + second - 1.0).abs() < 1e-4, "a turn takes {} s", first + second);
+}
+
+/// t, x, y of the first bar's end: `iftomm/four_bar_n2.csv` (Taylor series, 30 digits).
+const FOUR_BAR_N2: [(f64, f64, f64); 5] = [
+    (1.0, -0.195020301949435, -0.980799205662174),
+    (2.5, 0.807237360483819, 0.590226942657752),
+    (5.0, -0.811310461005107, -0.584615545348976),
+    (7.5, -0.304162824231605, 0.952620058761862),
+    (10.0, 0.328458111540815, 0.944518538178601),
+];
+
+#[test]
+fn two_loops_pass_their_singular_position() {
+    // Problem A02 of the IFToMM library: where all bars lie on a line the mechanism gains degrees of freedom for a moment.
+    let bar = |name: &str, low: &str, high: &str| {
+        format!("  {name}: {{ mass: 1, inertia: 1/12, points: {{ {low}: [-0.5, 0], {high}: [0.5, 0] }} }}\n")
+    };
+    let mut text = "bodies:\n  ground: { points: { P0: [0, 0], P1: [1, 0], P2: [2, 0] } }\n".to_owned();
+    for name in ["bar0", "bar1", "bar2"] {
+        text += &bar(name, "foot", "end");
+    }
+    for name in ["coupler0", "coupler1"] {
+        text += &bar(name, "left", "right");
+    }
+    text += "joints:\n";
+    for place in 0..3 {
+        text += &format!("  foot{place}: {{ revolute: [ground.P{place}, bar{place}.foot] }}\n");
+    }
+    for place in 0..2 {
+        text += &format!("  left{place}: {{ revolute: [bar{place}.end, coupler{place}.left] }}\n");
+        text += &format!("  right{place}: {{ revolute: [coupler{place}.right, bar{}.end] }}\n", place + 1);
+    }
+    text += "
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { bar0.angle: 90 deg, bar0.angular_velocity: -1 }
+guess: { bar1.angle: 90 deg, bar2.angle: 90 deg, coupler0.angle: 0, coupler1.angle: 0 }
+outputs: { x: bar0.end.x, y: bar0.end.y, energy: energy }
+simulation: { duration: 10, step: 1e-3, output_step: 0.01 }
+";
+    let rows = super::common::reference("iftomm/four_bar_n2.csv")
+        .map_or(FOUR_BAR_N2.to_vec(), |rows| rows.iter().map(|row| (row[0], row[1], row[2])).collect());
+    let errors = [5e-4, 2.5e-4].map(|h| {
+        let bounds = nominal(&read(&text).step(h));
+        largest(rows.iter().flat_map(|&(t, x, y)| {
+            let row = super::common::row(&bounds, t);
+            [bounds.outputs[0].nominal[row] - x, bounds.outputs[1].nominal[row] - y]
+        }))
+    });
+    println!("errors {errors:?}");
+    assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1, "{errors:?}");
+    // Measured: 2.9e-4, 6.7e-5, 1.6e-5 and 3.9e-6 m for h = 1e-3 and its halves.
+    assert!(errors[0] < 1e-4, "{errors:?}");
+}

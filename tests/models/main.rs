@@ -1,0 +1,19 @@
+//! The models of `models/`, and smaller mechanisms, held against what mbint did not compute: closed forms, invariants,
+//! published problems, and the laws that bounds obey.
+//!
+//! One binary for all of them, so that the library is linked once. Every tolerance says where it comes from: rounding and
+//! Newton's tolerance (1e-11 of a position), the scheme's order (2), or a measurement that is written beside it.
+
+mod assembly;
+mod bounds_laws;
+mod car_axis;
+mod closed_forms;
+mod common;
+mod convergence;
+mod invariants;
+mod linkages;
+mod reproducibility;
+mod run_all;
+mod slider_crank;
+mod snapshots;
+mod step_control;

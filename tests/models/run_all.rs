@@ -1,0 +1,42 @@
+//! Every file of `models/` is one that a user can run.
+
+use mbint::bounds::Method;
+use mbint::model;
+
+use super::common::{load, model_files, run_methods};
+
+#[test]
+fn every_model_runs() {
+    for path in model_files() {
+        let reading = model::read(&path, &[]);
+        assert!(reading.diagnostics.records().is_empty(), "{}", reading.diagnostics);
+        let description = load(&path);
+        assert_eq!(path.file_stem().unwrap().to_string_lossy(), description.name, "a model has the name of its file");
+        let (bounds, summary) = run_methods(&description, None);
+        assert!(summary.redundant_constraints.is_empty(), "{}: {:?}", description.name, summary.redundant_constraints);
+        assert!(!summary.parameters.is_empty(), "{} has no uncertain parameter", description.name);
+        let rows = (description.simulation.duration / description.simulation.output_step).round() as usize + 1;
+        assert_eq!(bounds.times.len(), rows, "{}", description.name);
+        assert_eq!(bounds.outputs.len(), description.outputs.len());
+        for output in &bounds.outputs {
+            let what = format!("{}: {}", description.name, output.name);
+            assert_eq!(output.bands.len(), Method::ALL.len(), "{what} is not bounded by every method");
+            for band in &output.bands {
+                for row in 0..rows {
+                    // Not a number is in no order.
+                    assert!(band.lower[row] <= band.upper[row], "{what}: {:?} in row {row}", band.method);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_model_names_its_schema() {
+    for path in model_files() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let first = text.lines().next().unwrap_or_default();
+        let named = first == "# yaml-language-server: $schema=../schemas/mbint.schema.json";
+        assert!(named, "{} begins with `{first}`", path.display());
+    }
+}
