@@ -7,10 +7,11 @@ use std::time::Instant;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
+use super::compose::Composition;
 use super::study::Study;
 use crate::bounds::{ChebyshevBasis, Method, PolynomialRange, Range, ScanBounds, TaylorRange, TensorGrid, Work};
-use crate::integrate::{Counters, Fleet, JetRun, Schedule, SimulationError, Stop};
-use crate::model::{ChebyshevRequest, ScanRequest, TaylorRequest};
+use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
+use crate::model::{ChebyshevRequest, Expand, ScanRequest, TaylorRequest};
 use crate::report::MethodSummary;
 
 /// Values (rows × outputs × samples) that one block holds.
@@ -59,16 +60,17 @@ impl Run<'_> {
     fn fleet(
         &self,
         samples: &[Vec<f64>],
+        observed: Observed,
         mut reduce: impl FnMut(Rows<usize>, &[f64]),
     ) -> Result<FleetRun, SimulationError> {
         let mut fleet = Fleet::start(&self.study.simulator, samples, self.schedule.first_step())?;
-        let rows_a_block = (BLOCK / (self.outputs() * samples.len()).max(1)).clamp(1, 64);
+        let rows_a_block = (BLOCK / (observed.count(&self.study.simulator) * samples.len()).max(1)).clamp(1, 64);
         let mut values = Vec::new();
         let mut stop: Option<Stop> = None;
         let mut next = 0;
         while next < self.schedule.rows && stop.is_none() {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
-            let stops = fleet.advance(self.schedule, rows.clone(), self.tolerance, &mut values);
+            let stops = fleet.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
             stop = stops.into_iter().min_by_key(|stop| (stop.row, stop.sample));
             reduce(rows.clone(), &values);
             self.advance_progress(samples.len() * rows.len());
@@ -104,13 +106,14 @@ impl Run<'_> {
         let begun = Instant::now();
         let mut bands = self.bands();
         let outputs = self.outputs();
-        let done = self.fleet(std::slice::from_ref(&self.study.domain.nominal), |rows, values| {
-            for (row, values) in rows.zip(values.chunks_exact(outputs)) {
-                for (band, &value) in bands.iter_mut().zip(values) {
-                    band[row] = Range { lower: value, upper: value };
+        let done =
+            self.fleet(std::slice::from_ref(&self.study.domain.nominal), Observed::Outputs, |rows, values| {
+                for (row, values) in rows.zip(values.chunks_exact(outputs)) {
+                    for (band, &value) in bands.iter_mut().zip(values) {
+                        band[row] = Range { lower: value, upper: value };
+                    }
                 }
-            }
-        })?;
+            })?;
         let summary = self.method_summary("nominal", 1, done.counters, done.stop_place(), begun);
         Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
     }
@@ -119,19 +122,39 @@ impl Run<'_> {
         let begun = Instant::now();
         let basis = ChebyshevBasis::new(&request.order, &request.nodes);
         let samples = self.samples(&basis.grid());
-        let range = PolynomialRange::new(&request.order, request.range);
         let mut bands = self.bands();
         let outputs = self.outputs();
-        let done = self.fleet(&samples, |rows, values| {
-            let ranges: Vec<Range> = values
-                .par_chunks_exact(samples.len())
-                .map_init(
-                    || (range.clone(), Work::default()),
-                    |(range, work), responses| range.range(basis.coefficients(responses, work)),
-                )
-                .collect();
-            scatter(&mut bands, rows, &ranges, outputs);
-        })?;
+        let composition = match request.expand {
+            Expand::Coordinates => Composition::new(&self.study.simulator, &self.study.domain, &basis),
+            Expand::Output => None,
+        };
+        let done = match composition {
+            Some(mut composition) => {
+                let lines = Observed::State.count(&self.study.simulator);
+                let mut failure = None;
+                let done = self.fleet(&samples, Observed::State, |rows, values| {
+                    let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
+                    match composition.ranges(&times, values, lines * samples.len()) {
+                        Ok(ranges) => scatter(&mut bands, rows, &ranges, outputs),
+                        Err(error) => failure = Some(error),
+                    }
+                })?;
+                failure.map_or(Ok(done), Err)?
+            }
+            None => {
+                let range = PolynomialRange::new(&request.order, request.range);
+                self.fleet(&samples, Observed::Outputs, |rows, values| {
+                    let ranges: Vec<Range> = values
+                        .par_chunks_exact(samples.len())
+                        .map_init(
+                            || (range.clone(), Work::default()),
+                            |(range, work), responses| range.range(basis.coefficients(responses, work)),
+                        )
+                        .collect();
+                    scatter(&mut bands, rows, &ranges, outputs);
+                })?
+            }
+        };
         let summary =
             self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
         Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
@@ -146,7 +169,7 @@ impl Run<'_> {
         for first in (0..grid.len()).step_by(SHARD) {
             let shard: Vec<Vec<f64>> =
                 (first..(first + SHARD).min(grid.len())).map(|index| self.sample(&grid, index)).collect();
-            let done = self.fleet(&shard, |rows, values| {
+            let done = self.fleet(&shard, Observed::Outputs, |rows, values| {
                 for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
                     for (output, values) in values.chunks_exact(shard.len()).enumerate() {
                         bounds.observe_all(row, output, values);

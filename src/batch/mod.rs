@@ -4,6 +4,7 @@
 //! shards and blocks of output rows, so that memory never grows with samples × steps, and reduces a block to bounds before
 //! the next is run.
 
+mod compose;
 mod methods;
 mod study;
 

@@ -63,6 +63,11 @@ impl<'p> Assembly<'p> {
         Self { program, scale, tile }
     }
 
+    /// The memory, to set what is to be assembled.
+    pub(super) fn tile_mut(&mut self) -> &mut Tile {
+        &mut self.tile
+    }
+
     /// The assembled states, slot by slot as in the program's layout.
     pub fn tile(&self) -> &Tile {
         &self.tile
@@ -198,7 +203,7 @@ impl<'p> Assembly<'p> {
     }
 
     /// Full corrections of the values from slot `start` on, until every lane has settled (or cannot).
-    fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
+    pub(super) fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
         let layout = &self.program.layout;
         let width = self.tile.width();
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };

@@ -29,6 +29,25 @@ struct Member<'s> {
     strain: Vec<f64>,
 }
 
+/// What is looked at in each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observed {
+    /// The model's outputs.
+    Outputs,
+    /// Positions, then velocities: 2n.
+    State,
+}
+
+impl Observed {
+    /// Number of values a row and sample.
+    pub fn count(self, simulator: &Simulator) -> usize {
+        match self {
+            Self::Outputs => simulator.program.outputs.len(),
+            Self::State => 2 * simulator.program.scale.len(),
+        }
+    }
+}
+
 /// A sample that stopped, and in which row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
@@ -91,20 +110,21 @@ impl<'s> Fleet<'s> {
         self.samples == 0
     }
 
-    /// Outputs at `rows`, which follow those asked for last (row 0 is the start): row by row, output by output, sample by
-    /// sample. With a tolerance, local errors are watched. Returns which samples stopped.
+    /// What is `observed` at `rows`, which follow those asked for last (row 0 is the start): row by row, value by value,
+    /// sample by sample. With a tolerance, local errors are watched. Returns which samples stopped.
     pub fn advance(
         &mut self,
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
         tolerance: Option<f64>,
+        observed: Observed,
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
-        let outputs = self.simulator.program.outputs.len();
+        let outputs = observed.count(self.simulator);
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
             .tiles
             .par_iter_mut()
-            .map(|member| member.advance(schedule, rows.clone(), tolerance, outputs))
+            .map(|member| member.advance(schedule, rows.clone(), tolerance, (observed, outputs)))
             .collect();
         into.clear();
         into.resize(rows.len() * outputs * self.samples, 0.0);
@@ -145,7 +165,7 @@ impl Member<'_> {
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
         tolerance: Option<f64>,
-        outputs: usize,
+        (observed, outputs): (Observed, usize),
     ) -> (Vec<f64>, Vec<Stop>) {
         let width = self.stepper.tile().width();
         let mut values = vec![0.0; rows.len() * outputs * width];
@@ -167,7 +187,11 @@ impl Member<'_> {
                     }
                 }
             }
-            self.stepper.observe(&mut values[place * outputs * width..][..outputs * width]);
+            let values = &mut values[place * outputs * width..][..outputs * width];
+            match observed {
+                Observed::Outputs => self.stepper.observe(values),
+                Observed::State => self.stepper.copy_motion(values),
+            }
         }
         (values, stops)
     }

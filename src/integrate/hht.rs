@@ -228,14 +228,19 @@ impl<'p> Stepper<'p> {
     /// Values of the outputs now: output by output, lane by lane; not a number for lanes that no longer run.
     pub fn observe(&mut self, into: &mut [f64]) {
         self.tile.run(self.program.observe());
-        let width = self.tile.width();
-        for (row, &slot) in into.chunks_exact_mut(width).zip(&self.program.outputs) {
+        self.copy(self.program.outputs.iter().copied(), into);
+    }
+
+    /// Positions and velocities now: coordinate by coordinate, lane by lane; not a number for lanes that no longer run.
+    pub fn copy_motion(&self, into: &mut [f64]) {
+        let layout = &self.program.layout;
+        self.copy(layout.q.clone().chain(layout.v.clone()), into);
+    }
+
+    fn copy(&self, slots: impl Iterator<Item = usize>, into: &mut [f64]) {
+        for (row, slot) in into.chunks_exact_mut(self.tile.width()).zip(slots) {
             row.copy_from_slice(self.tile.lane(slot));
-            for (value, alive) in row.iter_mut().zip(&self.alive) {
-                if !alive {
-                    *value = f64::NAN;
-                }
-            }
+            row.iter_mut().zip(&self.alive).filter(|(_, alive)| !**alive).for_each(|(value, _)| *value = f64::NAN);
         }
     }
 }

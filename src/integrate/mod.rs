@@ -1,6 +1,7 @@
 //! Program → trajectories: a consistent start, and HHT-I3 steps over tiles of samples.
 
 mod assemble;
+mod closure;
 mod fleet;
 mod hht;
 mod jets;
@@ -10,7 +11,8 @@ mod rank;
 mod simulator;
 mod steps;
 
-pub use fleet::{Fleet, Stop};
+pub use closure::{Closure, Points, choose_independent};
+pub use fleet::{Fleet, Observed, Stop};
 pub use hht::{Stepper, Stuck};
 pub use jets::JetRun;
 pub use newton::Counters;

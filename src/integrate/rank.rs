@@ -57,6 +57,37 @@ pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> 
     dependent
 }
 
+/// Columns of a matrix that its independent rows leave free, by elimination with complete pivoting; columns of large
+/// `weight` become pivots (dependent) first.
+pub fn free_columns(matrix: &DMatrix<f64>, weight: &[f64]) -> Vec<usize> {
+    let mut left = matrix.clone();
+    let mut free: Vec<usize> = (0..matrix.ncols()).collect();
+    let mut rows: Vec<usize> = (0..matrix.nrows()).collect();
+    let mut first = None;
+    while !rows.is_empty() && !free.is_empty() {
+        let entries = rows.iter().flat_map(|&row| free.iter().map(move |&column| (row, column)));
+        let size = |&(row, column): &(usize, usize)| left[(row, column)].abs() * weight[column];
+        let Some((row, column)) = entries.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
+        let pivot = left[(row, column)];
+        let largest = *first.get_or_insert(pivot.abs());
+        let negligible = pivot.abs() <= RANK_TOLERANCE * largest;
+        if negligible || !pivot.is_finite() {
+            break;
+        }
+        rows.retain(|&other| other != row);
+        free.retain(|&other| other != column);
+        for &other in &rows {
+            let factor = left[(other, column)] / pivot;
+            if factor != 0.0 {
+                for &right in &free {
+                    left[(other, right)] -= factor * left[(row, right)];
+                }
+            }
+        }
+    }
+    free
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -136,6 +136,11 @@ impl Simulator {
         Ok(assembly.tile().clone())
     }
 
+    /// What a singular matrix of this mechanism means.
+    pub(super) fn singular(&self, singular: &Singular) -> SimulationError {
+        SimulationError::Singular { equations: equation_names(&self.system, &singular.rows) }
+    }
+
     /// Coefficients of the scheme.
     pub fn coefficients(&self) -> Coefficients {
         self.program.coefficients

@@ -80,6 +80,7 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
     let coordinates = mechanism.coordinates.iter().map(|&(body, coordinate)| CoordinateInfo {
         name: mechanism.coordinate_name(body, coordinate),
         scale: if coordinate == Coordinate::Angle { 1.0 } else { length },
+        is_angle: coordinate == Coordinate::Angle,
     });
     let mut system = System {
         coordinates: coordinates.collect(),

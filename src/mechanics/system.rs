@@ -81,6 +81,8 @@ pub struct CoordinateInfo {
     pub name: String,
     /// Typical size: 1 for an angle, the model's length for a position. Newton's tolerance is relative to it.
     pub scale: f64,
+    /// Whether it is an angle rather than a position.
+    pub is_angle: bool,
 }
 
 /// A constraint's name and owner.

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::description::{BoundsRequest, ChebyshevRequest, ParameterValue, RangeKind, ScanRequest, TaylorRequest};
+use super::description::{
+    BoundsRequest, ChebyshevRequest, Expand, ParameterValue, RangeKind, ScanRequest, TaylorRequest,
+};
 use super::diagnostic::Diagnostic;
 use super::file;
 use super::reader::{Fields, Reader};
@@ -22,6 +24,8 @@ const MOST_POINTS: usize = 1_000_000;
 
 const RANGES: [(&str, RangeKind); 2] = [("tight", RangeKind::Tight), ("interval", RangeKind::Interval)];
 
+const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("output", Expand::Output)];
+
 /// Reads the section; without one, Chebyshev bounds of order 5.
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<BoundsRequest> {
     let uncertain: Vec<String> = reader
@@ -32,8 +36,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         .map(|parameter| parameter.name.clone())
         .collect();
     let Some((node, at)) = section else {
-        let (order, nodes) = (vec![5; uncertain.len()], vec![6; uncertain.len()]);
-        let chebyshev = ChebyshevRequest { order, nodes, range: RangeKind::Tight };
+        let chebyshev = ChebyshevRequest::of_order(5, uncertain.len());
         return Some(BoundsRequest { chebyshev: Some(chebyshev), taylor: None, scan: None });
     };
     let fields = reader.fields::<file::Bounds>(node, at.clone())?;
@@ -67,6 +70,14 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
         Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, 6),
         None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
     };
+    let expand = match fields.get("expand") {
+        Some(node) => reader.choice(node, &EXPAND),
+        None => Some(Expand::Output),
+    };
+    if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
+        let help = "leave it out, or expand the output".to_owned();
+        reader.error(node.span.clone(), "`range` is about an expanded output".to_owned(), help);
+    }
     let range = range(reader, fields);
     let (order, nodes) = (order?, nodes?);
     let few = order.iter().zip(&nodes).position(|(order, nodes)| nodes <= order);
@@ -76,7 +87,7 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
     }
     let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
     check_solves(reader, fields, key, &nodes);
-    Some(ChebyshevRequest { order, nodes, range: range? })
+    Some(ChebyshevRequest { order, nodes, expand: expand?, range: range? })
 }
 
 fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<TaylorRequest> {

@@ -372,6 +372,15 @@ pub enum RangeKind {
     Tight,
 }
 
+/// What a Chebyshev surrogate expands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expand {
+    /// The independent coordinates and their velocities; outputs follow from them.
+    Coordinates,
+    /// Each output (the paper's).
+    Output,
+}
+
 /// Which bounds are asked for; per-parameter vectors run over the uncertain parameters in file order.
 #[derive(Clone, Debug, Default)]
 pub struct BoundsRequest {
@@ -391,6 +400,8 @@ pub struct ChebyshevRequest {
     /// Nodes per parameter, more than the degree.
     pub nodes: Vec<usize>,
     #[allow(missing_docs)]
+    pub expand: Expand,
+    /// Of the outputs' polynomials, where those are expanded.
     pub range: RangeKind,
 }
 
@@ -413,7 +424,7 @@ pub struct ScanRequest {
 impl ChebyshevRequest {
     /// One degree for each of k parameters, one node more than the degree, the tight range.
     pub fn of_order(order: usize, k: usize) -> Self {
-        Self { order: vec![order; k], nodes: vec![order + 1; k], range: RangeKind::Tight }
+        Self { order: vec![order; k], nodes: vec![order + 1; k], expand: Expand::Output, range: RangeKind::Tight }
     }
 }
 

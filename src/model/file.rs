@@ -67,6 +67,15 @@ enum Range {
     Interval,
 }
 
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum Expand {
+    /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
+    Coordinates,
+    /// Each output, as in the paper.
+    Output,
+}
+
 /// Either the mapping or, where it needs nothing else, the list of what it is between.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -348,7 +357,9 @@ grammar! {
         order: Option<PerParameter>,
         /// Nodes, more than the degree; by default one more.
         nodes: Option<PerParameter>,
-        /// By default tight.
+        /// What is expanded; by default the output.
+        expand: Option<Expand>,
+        /// How the range of an output's polynomial is found; by default tight.
         range: Option<Range>,
     }
 

@@ -35,6 +35,8 @@ pub struct StartProgram {
     pub constraint: Vec<usize>,
     /// Slots of Φ̇, m, after [`StartProgram::velocity`].
     pub constraint_rate: Vec<usize>,
+    /// Slots of the outputs after [`StartProgram::observe`].
+    pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::slopes`].
     pub slope_entries: Vec<(usize, usize, usize)>,
     lowered: Lowered,
@@ -46,6 +48,7 @@ const POSITION: usize = 2;
 const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
 const SLOPES: usize = 5;
+const OBSERVE: usize = 6;
 
 impl StartProgram {
     /// Number of slots of a tile.
@@ -86,6 +89,11 @@ impl StartProgram {
     /// Correction of accelerations and multipliers.
     pub fn acceleration(&self) -> &Tape {
         &self.lowered.kernels[ACCELERATION]
+    }
+
+    /// Outputs of the state.
+    pub fn observe(&self) -> &Tape {
+        &self.lowered.kernels[OBSERVE]
     }
 
     /// Φ_q.
@@ -139,6 +147,7 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
         with(&velocity[..n], &rate),
         with(&acceleration, &[]),
         slopes.entries().map(|(_, _, value)| (value, None)).collect(),
+        system.outputs.iter().map(|output| (output.expr, None)).collect(),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
@@ -149,6 +158,7 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     Ok(StartProgram {
         constraint: tail(POSITION, n),
         constraint_rate: tail(VELOCITY, n),
+        outputs: tail(OBSERVE, 0),
         slope_entries,
         layout,
         lowered,

@@ -9,6 +9,7 @@ mod bounds_laws;
 mod car_axis;
 mod closed_forms;
 mod common;
+mod composition;
 mod convergence;
 mod invariants;
 mod linkages;
