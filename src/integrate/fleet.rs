@@ -11,6 +11,13 @@ use super::steps::Schedule;
 /// Widest tile in use: a wider one's memory would leave the first-level cache.
 const WIDEST: usize = 32;
 
+/// Memory that a tile should not exceed, so that a large mechanism's stays in the second-level cache; it is narrower then,
+/// down to [`NARROWEST`], where dispatch costs more than memory does.
+const TILE_MEMORY: usize = 2 << 20;
+
+/// See [`TILE_MEMORY`].
+const NARROWEST: usize = 8;
+
 /// A block of samples in step.
 #[derive(Debug)]
 pub struct Fleet<'s> {
@@ -63,9 +70,11 @@ pub struct Stop {
     pub singular: bool,
 }
 
-/// How `samples` are cut into tiles for `threads`: (first, count, width). The results do not depend on it.
-fn tiles(samples: usize, threads: usize) -> Vec<(usize, usize, usize)> {
-    let share = samples.div_ceil(threads).min(WIDEST);
+/// How `samples` with so many slots each are cut into tiles for `threads`: (first, count, width). The results do not depend
+/// on it.
+fn tiles(samples: usize, slots: usize, threads: usize) -> Vec<(usize, usize, usize)> {
+    let fits = TILE_MEMORY / (slots * size_of::<f64>()).max(1);
+    let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
     let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
     let mut tiles = Vec::new();
     let mut first = 0;
@@ -84,7 +93,7 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// The first sample that cannot be assembled.
     pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
-        let tiles = tiles(samples.len(), rayon::current_num_threads());
+        let tiles = tiles(samples.len(), simulator.program.slots(), rayon::current_num_threads());
         let assembled: Vec<Result<Member<'s>, SimulationError>> = tiles
             .into_par_iter()
             .map(|(first, count, width)| {
@@ -204,9 +213,9 @@ mod tests {
     #[test]
     fn tiles_cover_all_samples_once() {
         for samples in 1..200 {
-            for threads in [1, 2, 7] {
+            for (threads, slots) in [(1, 100), (2, 100), (7, 100), (2, 100_000)] {
                 let mut next = 0;
-                for (first, count, width) in tiles(samples, threads) {
+                for (first, count, width) in tiles(samples, slots, threads) {
                     assert_eq!(first, next);
                     assert!(count >= 1 && count <= width && WIDTHS.contains(&width));
                     next += count;

@@ -104,10 +104,10 @@ impl<'p> Stepper<'p> {
         stuck
     }
 
-    /// One step without rescue: which of the running lanes converged and advanced. The others keep their state.
+    /// One step without rescue: which of the running lanes converged and advanced. Those that did not keep their state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
         let converged = self.solve(h, end);
-        if converged.contains(&false) {
+        if converged != self.alive {
             let state = self.save();
             self.finish();
             self.restore_lanes(&state, |lane| !converged[lane]);

@@ -92,11 +92,11 @@ impl<'s> JetRun<'s> {
         self.memory.set_constant(layout.time, end);
         self.memory.run(program.step());
 
-        let dense_before = self.center.counters().rank_revealing;
+        let singular_before = self.center.counters().rank_revealing;
         if !self.center.solve(h, end)[0] {
             return Err(false);
         }
-        if self.center.counters().rank_revealing != dense_before {
+        if self.center.counters().rank_revealing != singular_before {
             return Err(true);
         }
         self.center.tile_mut().run(program.factor());

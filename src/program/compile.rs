@@ -111,7 +111,7 @@ impl Program {
         &self.lowered.kernels[OBSERVE]
     }
 
-    /// Newton matrix and residual at the iterate, for the dense solve.
+    /// Newton matrix and residual at the iterate, for the rank-revealing solve.
     pub fn matrix(&self) -> &Tape {
         &self.lowered.kernels[MATRIX]
     }

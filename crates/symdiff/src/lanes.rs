@@ -1,13 +1,13 @@
 //! The evaluator: a tape over a tile of samples, structure of arrays.
 //!
-//! One dispatch serves all instructions of a run and all lanes of the tile. The same source is compiled for the
-//! baseline and for AVX2 and AVX-512 and chosen at run time. Every lane sees the same IEEE operations in the same order
+//! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations in the same order
 //! whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our own.
 
 use crate::expr::{Binary, Unary};
 use crate::scalar;
 use crate::sincos;
 use crate::tape::{Op, Operands, Tape};
+use crate::vectorised::{InstructionSet, Vectorise};
 
 /// Widths that a tile can have.
 pub const WIDTHS: [usize; 6] = [1, 4, 8, 16, 32, 64];
@@ -25,32 +25,6 @@ pub struct Tile {
     lines: Vec<Line>,
 }
 
-/// The best instruction set that this machine has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum InstructionSet {
-    Baseline,
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-    #[cfg(target_arch = "x86_64")]
-    Avx512,
-}
-
-impl InstructionSet {
-    /// `is_x86_feature_detected` caches its answer.
-    fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") {
-                return Self::Avx512;
-            }
-            if is_x86_feature_detected!("avx2") {
-                return Self::Avx2;
-            }
-        }
-        Self::Baseline
-    }
-}
-
 impl Tile {
     /// Zeros, with `constants` set.
     ///
@@ -66,16 +40,19 @@ impl Tile {
     }
 
     /// Number of samples.
+    #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of slots.
+    #[inline]
     pub fn slots(&self) -> usize {
         self.slots
     }
 
     /// The memory, slot by slot.
+    #[inline]
     pub fn values(&self) -> &[f64] {
         // SAFETY: `Line` is `repr(C)` around `[f64; 8]`, so the lines are `8 · len` consecutive f64.
         let all = unsafe { std::slice::from_raw_parts(self.lines.as_ptr().cast::<f64>(), self.lines.len() * 8) };
@@ -83,6 +60,7 @@ impl Tile {
     }
 
     /// The memory, slot by slot.
+    #[inline]
     pub fn values_mut(&mut self) -> &mut [f64] {
         // SAFETY: as in `values`; the borrow is exclusive.
         let all =
@@ -91,11 +69,13 @@ impl Tile {
     }
 
     /// A slot's value in every sample.
+    #[inline]
     pub fn lane(&self, slot: usize) -> &[f64] {
         &self.values()[slot * self.width..][..self.width]
     }
 
     /// A slot's value in every sample.
+    #[inline]
     pub fn lane_mut(&mut self, slot: usize) -> &mut [f64] {
         let width = self.width;
         &mut self.values_mut()[slot * width..][..width]
@@ -112,46 +92,33 @@ impl Tile {
     fn run_with(&mut self, tape: &Tape, set: InstructionSet) {
         assert!(tape.slots() <= self.slots, "the tape belongs to a larger memory");
         let memory = self.lines.as_mut_ptr().cast::<f64>();
-        // SAFETY: the tape's slots are below `self.slots` (just asserted; `Tape::slots` is computed from the instructions),
-        // and `memory` has `slots · width` values. The instruction set was detected.
-        unsafe {
-            match self.width {
-                1 => dispatch::<1, 1>(tape, memory, set),
-                4 => dispatch::<4, 4>(tape, memory, set),
-                8 => dispatch::<8, 8>(tape, memory, set),
-                16 => dispatch::<16, 8>(tape, memory, set),
-                32 => dispatch::<32, 8>(tape, memory, set),
-                _ => dispatch::<64, 8>(tape, memory, set),
-            }
+        // The memory has `slots · width` values and the tape's slots are below `self.slots`: just asserted, and `Tape::slots`
+        // is computed from the instructions. `Interpretation` relies on it.
+        match self.width {
+            1 => set.run(Interpretation::<1, 1> { tape, memory }),
+            4 => set.run(Interpretation::<4, 4> { tape, memory }),
+            8 => set.run(Interpretation::<8, 8> { tape, memory }),
+            16 => set.run(Interpretation::<16, 8> { tape, memory }),
+            32 => set.run(Interpretation::<32, 8> { tape, memory }),
+            _ => set.run(Interpretation::<64, 8> { tape, memory }),
         }
     }
 }
 
-unsafe fn dispatch<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64, set: InstructionSet) {
-    // SAFETY: passed on.
-    unsafe {
-        match set {
-            InstructionSet::Baseline => interpret::<W, C>(tape, memory),
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => interpret_avx2::<W, C>(tape, memory),
-            #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => interpret_avx512::<W, C>(tape, memory),
-        }
+/// A tape to be run over `W` lanes in chunks of `C`.
+struct Interpretation<'t, const W: usize, const C: usize> {
+    tape: &'t Tape,
+    memory: *mut f64,
+}
+
+impl<const W: usize, const C: usize> Vectorise for Interpretation<'_, W, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        // SAFETY: whoever made this has seen to it that the memory has all slots of the tape.
+        unsafe { interpret::<W, C>(self.tape, self.memory) }
     }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe fn interpret_avx2<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
-    // SAFETY: passed on.
-    unsafe { interpret::<W, C>(tape, memory) }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-unsafe fn interpret_avx512<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
-    // SAFETY: passed on.
-    unsafe { interpret::<W, C>(tape, memory) }
 }
 
 /// `W` lanes in chunks of `C`. A chunk's operands are loaded before its result is stored, so that a result may replace

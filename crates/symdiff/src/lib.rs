@@ -13,6 +13,7 @@ mod scalar;
 mod schedule;
 pub mod sincos;
 mod tape;
+mod vectorised;
 
 pub use derivative::SparseMatrix;
 pub use expr::{Binary, Expr, Graph, Node, Unary};
@@ -21,3 +22,4 @@ pub use jet_memory::JetMemory;
 pub use lanes::{Tile, WIDTHS};
 pub use schedule::{Input, Lowered, Outputs, Stages, lower};
 pub use tape::{Op, Operands, Tape};
+pub use vectorised::{Vectorise, vectorised};

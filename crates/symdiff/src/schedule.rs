@@ -297,12 +297,12 @@ impl Lowering<'_> {
                     .expect("operands are computed before their use")
             };
             let [a, b, c] = instruction.reads.map(|read| slot(&place_of, read));
-            let mut ended: Vec<Expr> = instruction.read().filter(|read| last_use[read] == place).collect();
-            ended.dedup();
-            for read in ended {
+            let already_free = free.len();
+            for read in instruction.read().filter(|read| last_use[read] == place) {
+                // An operand may stand there twice.
                 if let Some(&old) = place_of.get(&read)
                     && old >= self.next
-                    && !free.contains(&old)
+                    && !free[already_free..].contains(&old)
                 {
                     free.push(old);
                 }

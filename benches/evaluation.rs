@@ -1,0 +1,44 @@
+//! The slider crank's tapes over tiles of every width. Divan's items are operations times samples, so that the reciprocal
+//! of the throughput is the time of an operation for a sample.
+
+mod models;
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, bench};
+use mbint::integrate::Simulator;
+use symdiff::{Tape, WIDTHS};
+
+fn main() {
+    divan::main();
+}
+
+fn evaluate(bencher: Bencher, width: usize, tape: fn(&Simulator) -> &Tape) {
+    let simulator = models::prepare(&models::slider_crank());
+    let mut tile = models::stepper(&simulator, width).tile().clone();
+    let tape = tape(&simulator);
+    bencher.counter(ItemsCount::new(tape.len() * width)).bench_local(|| tile.run(tape));
+}
+
+/// What is known when a step begins.
+#[bench(args = WIDTHS)]
+fn step(bencher: Bencher, width: usize) {
+    evaluate(bencher, width, |simulator| simulator.program.step());
+}
+
+/// Newton matrix and its factors.
+#[bench(args = WIDTHS)]
+fn factor(bencher: Bencher, width: usize) {
+    evaluate(bencher, width, |simulator| simulator.program.factor());
+}
+
+/// Residual and correction.
+#[bench(args = WIDTHS)]
+fn correct(bencher: Bencher, width: usize) {
+    evaluate(bencher, width, |simulator| simulator.program.correct());
+}
+
+/// The state at the step's end.
+#[bench(args = WIDTHS)]
+fn advance(bencher: Bencher, width: usize) {
+    evaluate(bencher, width, |simulator| simulator.program.advance());
+}

@@ -1,0 +1,70 @@
+//! One source, compiled for every instruction set and chosen at run time.
+
+/// Work worth compiling for wide vectors. Mark `run` `#[inline(always)]`: that is how it gets into functions that may use
+/// them. Rust contracts and reorders nothing, so the results are the same to the bit.
+pub trait Vectorise {
+    /// What it gives.
+    type Output;
+    /// Does it.
+    fn run(self) -> Self::Output;
+}
+
+/// Does the work with the best instruction set that this machine has.
+#[inline]
+pub fn vectorised<W: Vectorise>(work: W) -> W::Output {
+    InstructionSet::detect().run(work)
+}
+
+/// An instruction set that this machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum InstructionSet {
+    Baseline,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The best one; `is_x86_feature_detected` caches its answer.
+    #[inline]
+    pub(crate) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+            {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") {
+                return Self::Avx2;
+            }
+        }
+        Self::Baseline
+    }
+
+    #[inline]
+    pub(crate) fn run<W: Vectorise>(self, work: W) -> W::Output {
+        match self {
+            Self::Baseline => work.run(),
+            // SAFETY: a set is only made where the machine has it.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { with_avx2(work) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { with_avx512(work) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn with_avx2<W: Vectorise>(work: W) -> W::Output {
+    work.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+fn with_avx512<W: Vectorise>(work: W) -> W::Output {
+    work.run()
+}
