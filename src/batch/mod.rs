@@ -1,8 +1,8 @@
 //! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
 //!
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
-//! shards and blocks of output rows, so that memory never grows with samples × steps, and reduces a block to bounds before
-//! the next is run.
+//! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
+//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates.
 
 mod compose;
 mod methods;
@@ -34,6 +34,10 @@ pub enum RunError {
     Build(#[from] BuildError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    #[error(
+        "`{method}` of {parameters} uncertain parameters needs {solves:.2e} simulations: say in the model how many it shall take"
+    )]
+    TooMany { method: &'static str, solves: f64, parameters: usize },
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }

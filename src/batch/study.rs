@@ -3,15 +3,15 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::methods::{Outcome, Run, TAYLOR_WORK};
-use super::{Options, first_step};
+use super::{Options, RunError, first_step};
 use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
 use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
-use crate::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest, Stepping};
+use crate::model::{BoundsRequest, ChebyshevRequest, Description, MOST_SOLVES, ScanRequest, Stepping};
 use crate::report::{ParameterSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
-const PILOT_CORNERS: usize = 15;
+const PILOT_CORNERS: usize = 16;
 
 /// How often samples that turn out to need smaller steps may be added to the pilots.
 const PILOT_ROUNDS: usize = 8;
@@ -27,18 +27,14 @@ pub(super) struct Study<'a> {
 
 impl<'a> Study<'a> {
     /// Builds, assembles and compiles.
-    pub(super) fn new(
-        description: &'a Description,
-        system: System,
-        options: &Options<'a>,
-    ) -> Result<Self, SimulationError> {
+    pub(super) fn new(description: &'a Description, system: System, options: &Options<'a>) -> Result<Self, RunError> {
         let collect = |pick: fn(&mechanics::UncertainParameter) -> f64| system.parameters.iter().map(pick).collect();
         let domain = ParameterBox {
             nominal: collect(|parameter| parameter.nominal),
             lower: collect(|parameter| parameter.lower),
             upper: collect(|parameter| parameter.upper),
         };
-        let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension());
+        let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension())?;
         let simulator = Simulator::new(system, description.simulation.alpha, first_step(description))?;
         Ok(Self { description, simulator, domain, request, progress: options.progress })
     }
@@ -80,18 +76,25 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The nominal sample and corners of the box.
+    /// The nominal sample and corners of the box: all where they are few, else such that any two parameters meet at every
+    /// pair of their ends (the signs of Walsh functions).
     fn pilots(&self) -> Vec<Vec<f64>> {
         let k = self.domain.dimension();
-        let corners = (1_usize << k.min(PILOT_CORNERS.ilog2() as usize + 1)).min(PILOT_CORNERS);
         let corner = |index: usize| {
+            let mask = |axis: usize| if k <= 4 { 1 << axis } else { axis % (PILOT_CORNERS - 1) + 1 };
+            let sign = |axis: usize| (index & mask(axis)).count_ones() % 2 == 0;
+            let xi: Vec<f64> = (0..k).map(|axis| if sign(axis) { -1.0 } else { 1.0 }).collect();
             let mut values = vec![0.0; k];
-            let xi: Vec<f64> = (0..k).map(|axis| if index >> axis & 1 == 0 { -1.0 } else { 1.0 }).collect();
             self.domain.map(&xi, &mut values);
             values
         };
-        let corners = (0..if k == 0 { 0 } else { corners }).map(corner);
-        std::iter::once(self.domain.nominal.clone()).chain(corners).collect()
+        let mut pilots = vec![self.domain.nominal.clone()];
+        for corner in (0..if k == 0 { 0 } else { PILOT_CORNERS }).map(corner) {
+            if !pilots.contains(&corner) {
+                pilots.push(corner);
+            }
+        }
+        pilots
     }
 
     /// Nominal first, then every method asked for.
@@ -120,9 +123,14 @@ impl<'a> Study<'a> {
 
     /// Bounds up to the first row that a sample did not reach, and the summary.
     fn conclude(&self, schedule: &Schedule, outcomes: Vec<Outcome>, note: Option<String>) -> (Bounds, Summary) {
-        let stop =
-            outcomes.iter().filter_map(|outcome| outcome.stop.as_ref()).min_by_key(|(stop, _)| (stop.row, stop.sample));
-        let rows = stop.map_or(schedule.rows, |(stop, _)| stop.row);
+        let stops = || outcomes.iter().filter_map(|outcome| outcome.stop.as_ref());
+        let first = |stops: &mut dyn Iterator<Item = &'_ (Stop, Vec<f64>)>| {
+            stops.min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned()
+        };
+        let stop = first(&mut stops());
+        // Where only the jet cannot go on, its bounds are unknown from there on, and the others' are kept.
+        let end = first(&mut stops().filter(|(stop, _)| !stop.singular));
+        let rows = end.map_or(schedule.rows, |(stop, _)| stop.row);
         let times: Vec<f64> = (0..rows).map(|row| schedule.time(row)).collect();
         let methods = self.requested_methods();
         let mut outputs: Vec<OutputBounds> = Vec::new();
@@ -141,7 +149,7 @@ impl<'a> Study<'a> {
                 bands: bands.collect(),
             });
         }
-        let failure = stop.map(|(stop, sample)| self.failure(stop, sample)).or(note);
+        let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
         (Bounds { times, outputs }, self.summary(outcomes, failure))
     }
 
@@ -154,7 +162,7 @@ impl<'a> Study<'a> {
         let names = self.simulator.system.parameters.iter().map(|parameter| parameter.name.clone());
         if stop.singular {
             let singular = SimulationError::SingularJet { time: stop.time };
-            return format!("{singular}; results up to that time are kept. Leave the Taylor method out to go on");
+            return format!("{singular}: Taylor bounds are unknown from there on");
         }
         let stuck = SimulationError::Stuck {
             sample: stop.sample,
@@ -197,15 +205,30 @@ impl<'a> Study<'a> {
 }
 
 /// What is run: the model's requests, or defaults for methods named on the command line.
-fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> BoundsRequest {
-    let Some(methods) = methods else { return model.clone() };
+///
+/// # Errors
+/// Where a default would make too many samples (the model's own requests were checked when it was read).
+fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Result<BoundsRequest, RunError> {
+    let Some(methods) = methods else { return Ok(model.clone()) };
     let asked = |method: Method| methods.contains(&method);
-    let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::of_order(5, k));
+    let chebyshev =
+        || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::of_order(ChebyshevRequest::ORDER, k));
     let taylor = || model.taylor.clone().unwrap_or_default();
-    let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(30, k));
-    BoundsRequest {
+    let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(ScanRequest::POINTS, k));
+    let request = BoundsRequest {
         chebyshev: asked(Method::Chebyshev).then(chebyshev),
         taylor: asked(Method::Taylor).then(taylor),
         scan: asked(Method::Scan).then(scan),
+    };
+    let counts = [
+        (Method::Chebyshev, request.chebyshev.as_ref().map(|request| &request.nodes)),
+        (Method::Scan, request.scan.as_ref().map(|request| &request.points)),
+    ];
+    for (method, counts) in counts {
+        let solves: f64 = counts.into_iter().flatten().map(|&count| count as f64).product();
+        if solves > MOST_SOLVES {
+            return Err(RunError::TooMany { method: method.name(), solves, parameters: k });
+        }
     }
+    Ok(request)
 }

@@ -56,7 +56,7 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Only these of the model's methods: chebyshev, taylor, scan [default: all that the model asks for].
+    /// These methods instead of the model's: chebyshev, taylor, scan [default: all that the model asks for].
     #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
     #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,

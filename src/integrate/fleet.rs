@@ -181,6 +181,7 @@ impl Member<'_> {
         let mut stops = Vec::new();
         for (place, row) in rows.enumerate() {
             for (h, end) in schedule.steps_to(row) {
+                self.stepper.set_step_size(h);
                 let before = tolerance.map(|_| self.stepper.save());
                 let stuck = self.stepper.step(h, end);
                 stops.extend(stuck.into_iter().map(|Stuck { lane, time, equation }| Stop {

@@ -71,15 +71,10 @@ impl<'p> Stepper<'p> {
         self.alive[lanes].fill(false);
     }
 
-    /// The step size last used, s; not a number before the first step.
-    pub fn step_size(&self) -> f64 {
-        self.step_size
-    }
-
-    /// All lanes back to a state that was saved, with the step size that its a belongs to.
-    pub fn rewind(&mut self, saved: &[f64], step_size: f64) {
+    /// All lanes back to a state that was saved; its a belongs to steps of length h.
+    pub fn rewind(&mut self, saved: &[f64], h: f64) {
         self.restore_lanes(saved, |_| true);
-        self.step_size = step_size;
+        self.step_size = h;
     }
 
     /// What Newton's iteration took so far.
@@ -149,7 +144,7 @@ impl<'p> Stepper<'p> {
     }
 
     /// Runs the step-size stage where h differs, and moves a ≈ w(t + αh) to the new αh, along the line through a and w.
-    fn set_step_size(&mut self, h: f64) {
+    pub fn set_step_size(&mut self, h: f64) {
         let layout = &self.program.layout;
         if self.step_size.is_finite() && self.step_size != h {
             let ratio = h / self.step_size;
@@ -207,7 +202,8 @@ impl<'p> Stepper<'p> {
     }
 
     /// Largest local position error of each running lane in the step just taken, relative to max(1, |q|) and the
-    /// coordinate's scale: (β + α/2 − 1/6) h² (a₊ − a), with the accelerations a before the step given.
+    /// coordinate's scale: (β + α/2 − 1/6) h² (a₊ − a), with the state before the step given, saved after
+    /// [`set_step_size`](Self::set_step_size).
     pub fn local_error(&self, before: &[f64], h: f64) -> Vec<f64> {
         let layout = &self.program.layout;
         let width = self.tile.width();

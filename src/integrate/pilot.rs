@@ -50,8 +50,8 @@ pub fn schedule(
                 h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
                 h => (h, time + h),
             };
+            stepper.set_step_size(step);
             let before = stepper.save();
-            let before_size = stepper.step_size();
             let converged = stepper.try_step(step, end).iter().all(|&lane| lane);
             let errors = stepper.local_error(&before, step);
             let error = if converged { errors.into_iter().fold(0.0, f64::max) } else { f64::INFINITY };
@@ -62,7 +62,7 @@ pub fn schedule(
                 // A step cut short to meet a row says nothing against the longer one.
                 h = if step < h { h.max(step * factor) } else { step * factor };
             } else {
-                stepper.rewind(&before, before_size);
+                stepper.rewind(&before, step);
                 h = step * factor.min(0.9);
                 if h < Controller::SMALLEST * duration {
                     let failure = Some(SimulationError::StepTooSmall { step: h, time });

@@ -13,6 +13,9 @@ const DEPENDENT: f64 = 1e-8;
 /// How far the probes for pivots are moved from the nominal start, in coordinate scales.
 const PROBE_SPREAD: f64 = 0.7;
 
+/// How far a configuration in general position is from the start, in coordinate scales.
+const APART: f64 = 0.05;
+
 /// A mechanism that can be simulated.
 #[derive(Clone, Debug)]
 pub struct Simulator {
@@ -210,41 +213,51 @@ fn probes(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [Probe; 
     })
 }
 
-/// Rank of Φ_q at the nominal start and at a configuration in general position near it.
+/// Rank of Φ_q at the nominal start and, where it has dependent rows there, at a configuration in general position near
+/// it: what depends on others at the start only is no redundancy, but a singular start.
 fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility {
-    let dependent_at = |q_shift: f64| -> Option<Vec<usize>> {
-        let layout = &start.layout;
-        let mut tile = Tile::new(1, start.slots(), start.constants());
-        tile.values_mut()[..layout.slots()].copy_from_slice(nominal);
-        tile.run(start.sample());
-        let q = layout.q.clone();
-        for (place, slot) in q.clone().enumerate() {
-            tile.lane_mut(slot)[0] += q_shift * system.coordinates[place].scale * spread(7, place);
-        }
-        if q_shift != 0.0 {
-            for _ in 0..30 {
-                tile.run(start.position());
-                for (slot, correction) in q.clone().zip(layout.correction.clone()) {
-                    tile.lane_mut(slot)[0] += tile.lane(correction)[0];
-                }
-            }
-            tile.run(start.position());
-            let assembled = start.constraint.iter().all(|&slot| tile.lane(slot)[0].abs() < 1e-9);
-            if !assembled {
-                return None;
-            }
-        }
-        tile.run(start.slopes());
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); system.lambda.len()];
-        for &(row, column, slot) in &start.slope_entries {
-            rows[row].push((column, tile.lane(slot)[0] * system.coordinates[column].scale));
-        }
-        Some(dependent_rows(&rows, DEPENDENT))
+    let at_start = dependent_constraints(system, start, nominal);
+    let elsewhere = if at_start.is_empty() { None } else { move_apart(system, nominal) };
+    let redundant = match elsewhere.map(|state| dependent_constraints(system, start, &state)) {
+        Some(generic) if generic.len() <= at_start.len() => generic,
+        _ => at_start.clone(),
     };
-    let at_start = dependent_at(0.0).unwrap_or_default();
-    let redundant =
-        dependent_at(0.02).filter(|generic| generic.len() <= at_start.len()).unwrap_or_else(|| at_start.clone());
     let degrees_of_freedom = (system.q.len() + redundant.len()).saturating_sub(system.lambda.len());
     let singular_at_start = if at_start.len() > redundant.len() { at_start } else { Vec::new() };
     Mobility { degrees_of_freedom, redundant, singular_at_start }
+}
+
+/// Constraints that earlier ones imply at a state.
+fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -> Vec<usize> {
+    let mut tile = Tile::new(1, start.slots(), start.constants());
+    tile.values_mut()[..state.len()].copy_from_slice(state);
+    tile.run(start.sample());
+    tile.run(start.slopes());
+    let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); system.lambda.len()];
+    for &(row, column, slot) in &start.slope_entries {
+        rows[row].push((column, tile.lane(slot)[0] * system.coordinates[column].scale));
+    }
+    dependent_rows(&rows, DEPENDENT)
+}
+
+/// An assembled state in general position near another; nothing is kept but the constraints. `None` where there is none.
+fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
+    let mut free = system.clone();
+    free.start.position.fill(None);
+    let start = compile_start(&free, &[], state).ok()?;
+    let mut tile = Tile::new(1, start.slots(), start.constants());
+    tile.values_mut()[..state.len()].copy_from_slice(state);
+    tile.run(start.sample());
+    for (place, slot) in start.layout.q.clone().enumerate() {
+        tile.lane_mut(slot)[0] += APART * system.coordinates[place].scale * spread(7, place);
+    }
+    for _ in 0..30 {
+        tile.run(start.position());
+        for (slot, correction) in start.layout.q.clone().zip(start.layout.correction.clone()) {
+            tile.lane_mut(slot)[0] += tile.lane(correction)[0];
+        }
+    }
+    tile.run(start.position());
+    let assembled = start.constraint.iter().all(|&slot| tile.lane(slot)[0].abs() < 1e-9);
+    assembled.then(|| tile.values()[..state.len()].to_vec())
 }

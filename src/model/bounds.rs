@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::description::{
-    BoundsRequest, ChebyshevRequest, Expand, ParameterValue, RangeKind, ScanRequest, TaylorRequest,
+    BoundsRequest, ChebyshevRequest, Expand, MOST_SOLVES, ParameterValue, RangeKind, ScanRequest, TaylorRequest,
 };
 use super::diagnostic::Diagnostic;
 use super::file;
@@ -11,9 +11,6 @@ use super::reader::{Fields, Reader};
 use super::source::Span;
 use super::suggest::{self, clip};
 use super::yaml::{Node, Value};
-
-/// Simulations that one method may ask for.
-const MOST_SOLVES: f64 = 1e7;
 
 /// Coefficients of a Taylor polynomial.
 const MOST_COEFFICIENTS: f64 = 1e5;
@@ -36,7 +33,16 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         .map(|parameter| parameter.name.clone())
         .collect();
     let Some((node, at)) = section else {
-        let chebyshev = ChebyshevRequest::of_order(5, uncertain.len());
+        let chebyshev = ChebyshevRequest::of_order(ChebyshevRequest::ORDER, uncertain.len());
+        let solves: f64 = chebyshev.nodes.iter().map(|count| *count as f64).product();
+        if solves > MOST_SOLVES {
+            let message = format!(
+                "{} uncertain parameters make {solves:.2e} simulations of a Chebyshev surrogate",
+                uncertain.len()
+            );
+            let help = "ask for other `bounds`, such as `taylor: { order: 2 }`, or make fewer parameters uncertain";
+            reader.diagnostics.push(Diagnostic::of_file(message).help(help.to_owned()));
+        }
         return Some(BoundsRequest { chebyshev: Some(chebyshev), taylor: None, scan: None });
     };
     let fields = reader.fields::<file::Bounds>(node, at.clone())?;
@@ -65,9 +71,9 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
 }
 
 fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ChebyshevRequest> {
-    let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, 5);
+    let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, ChebyshevRequest::ORDER);
     let nodes = match fields.get("nodes") {
-        Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, 6),
+        Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, ChebyshevRequest::ORDER + 1),
         None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
     };
     let expand = match fields.get("expand") {
@@ -92,7 +98,7 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
 
 fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<TaylorRequest> {
     let range = range(reader, fields);
-    let order = fields.get("order").map_or(Some(2), |node| reader.count(node, 1, 50))?;
+    let order = fields.get("order").map_or(Some(TaylorRequest::ORDER), |node| reader.count(node, 1, 50))?;
     // Monomials of degree up to n in k variables: (n + k)! / (n! k!).
     let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
     if coefficients > MOST_COEFFICIENTS {
@@ -103,7 +109,7 @@ fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<Tayl
 }
 
 fn scan(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ScanRequest> {
-    let points = per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, 30)?;
+    let points = per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, ScanRequest::POINTS)?;
     check_solves(reader, fields, "points", &points);
     Some(ScanRequest { points })
 }

@@ -359,7 +359,7 @@ pub struct Simulation {
 pub enum Stepping {
     /// Every step this long, s.
     Fixed(f64),
-    /// Local position error kept below this, relative to max(1, |q|).
+    /// Local position error kept below this, relative to |q|, or to the model's size where that is larger.
     Tolerance(f64),
 }
 
@@ -421,21 +421,35 @@ pub struct ScanRequest {
     pub points: Vec<usize>,
 }
 
+/// Simulations that one method may ask for.
+pub const MOST_SOLVES: f64 = 1e7;
+
 impl ChebyshevRequest {
+    /// Degree where a model asks for none.
+    pub const ORDER: usize = 5;
+
     /// One degree for each of k parameters, one node more than the degree, the tight range.
     pub fn of_order(order: usize, k: usize) -> Self {
         Self { order: vec![order; k], nodes: vec![order + 1; k], expand: Expand::Output, range: RangeKind::Tight }
     }
 }
 
+impl TaylorRequest {
+    /// Degree where a model asks for none, the paper's.
+    pub const ORDER: usize = 2;
+}
+
 impl Default for TaylorRequest {
-    /// Second order as in the paper, the tight range.
+    /// The usual order, the tight range.
     fn default() -> Self {
-        Self { order: 2, range: RangeKind::Tight }
+        Self { order: Self::ORDER, range: RangeKind::Tight }
     }
 }
 
 impl ScanRequest {
+    /// Points a parameter where a model asks for none, the paper's.
+    pub const POINTS: usize = 30;
+
     /// One number of points for each of k parameters.
     pub fn of_points(points: usize, k: usize) -> Self {
         Self { points: vec![points; k] }

@@ -333,7 +333,7 @@ grammar! {
         duration: Number,
         /// Length of every step, s; by default 1e-3.
         step: Option<Number>,
-        /// Instead of `step`: local position error allowed, relative to max(1, |q|).
+        /// Instead of `step`: local position error allowed, relative to |q| or, where that is larger, to the model's size.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,

@@ -155,8 +155,14 @@ pub fn compile(
         numbers.insert(place + offset, [-weight; PROBES]);
     }
 
-    let stages = Stages::new(&inputs);
-    let factors = factorise(&mut graph, &regular, &numbers, &equilibration, stages, ITERATION, Pivoting::Any)?;
+    let plan = |graph: &mut Graph, numbers: &[Numbers]| {
+        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, Pivoting::Any)
+    };
+    // A start in a singular configuration has no pivots of its own: then states in general position decide.
+    let factors = plan(&mut graph, &numbers).or_else(|_| {
+        numbers.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
+        plan(&mut graph, &numbers)
+    })?;
     let mut stages = Stages::new(&inputs);
     stages.update(&graph);
 

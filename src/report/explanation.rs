@@ -108,7 +108,7 @@ pub struct InstructionCounts {
     pub step_size: usize,
     /// Once a step: prediction, and what depends on t.
     pub step: usize,
-    /// Once a Newton iteration: the matrix and its factors.
+    /// Once a step, and again where Newton's iteration needs it: the matrix and its factors.
     pub factor: usize,
     /// Once a Newton iteration: residual and substitution.
     pub correct: usize,
