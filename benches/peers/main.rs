@@ -126,8 +126,8 @@ fn four_bar(loops: usize, duration: f64, scalar_steps: usize) -> Value {
     let steps = duration / STEP;
     let complete = scalar_steps as f64 >= steps;
     json!({
-        "single": single, "batch": batch / BATCH as f64, "end": &values[2..],
-        "scalar": scalar * steps / scalar_steps as f64, "scalar_end": complete.then_some(end),
+        "single": single, "batch": batch / BATCH as f64, "values": &values[2..],
+        "scalar": scalar * steps / scalar_steps as f64, "scalar_values": complete.then_some(end),
     })
 }
 

@@ -82,7 +82,7 @@ impl<'a> Study<'a> {
         let k = self.domain.dimension();
         let corner = |index: usize| {
             let mask = |axis: usize| if k <= 4 { 1 << axis } else { axis % (PILOT_CORNERS - 1) + 1 };
-            let sign = |axis: usize| (index & mask(axis)).count_ones() % 2 == 0;
+            let sign = |axis: usize| (index & mask(axis)).count_ones().is_multiple_of(2);
             let xi: Vec<f64> = (0..k).map(|axis| if sign(axis) { -1.0 } else { 1.0 }).collect();
             let mut values = vec![0.0; k];
             self.domain.map(&xi, &mut values);
