@@ -1,7 +1,7 @@
 //! The evaluator over jets: the same tapes, with a truncated polynomial in every slot.
 
 use crate::jet::{JetScratch, JetSpace};
-use crate::tape::{Op, Tape};
+use crate::tape::{Op, Operands, Tape};
 
 /// Memory of a program for one sample whose values are polynomials in the uncertain parameters.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ impl<'s> JetMemory<'s> {
         let length = self.space.len();
         let Self { space, scratch, values, first, second } = self;
         for (op, operands) in tape.runs() {
-            for operand in operands {
+            for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
                 let jet = |slot: u32| &values[slot as usize * length..][..length];
                 let (a, b, c) = (jet(operand.a), jet(operand.b), jet(operand.c));
                 match op {

@@ -129,33 +129,33 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
         // SAFETY: the caller's.
         unsafe {
             match op {
-                Op::Copy => each::<W, C>(operands, memory, |a, _, _| a),
-                Op::MulAdd => each::<W, C>(operands, memory, |a, b, c| a * b + c),
-                Op::MulSub => each::<W, C>(operands, memory, |a, b, c| a * b - c),
-                Op::NegMulAdd => each::<W, C>(operands, memory, |a, b, c| c - a * b),
-                Op::Binary(Binary::Add) => each::<W, C>(operands, memory, |a, b, _| a + b),
-                Op::Binary(Binary::Sub) => each::<W, C>(operands, memory, |a, b, _| a - b),
-                Op::Binary(Binary::Mul) => each::<W, C>(operands, memory, |a, b, _| a * b),
-                Op::Binary(Binary::Div) => each::<W, C>(operands, memory, |a, b, _| a / b),
-                Op::Unary(Unary::Neg) => each::<W, C>(operands, memory, |a, _, _| -a),
-                Op::Unary(Unary::Abs) => each::<W, C>(operands, memory, |a, _, _| a.abs()),
-                Op::Unary(Unary::Sqrt) => each::<W, C>(operands, memory, |a, _, _| a.sqrt()),
-                Op::Unary(function) => each::<W, 1>(operands, memory, |a, _, _| scalar::unary(function, a)),
-                Op::Binary(function) => each::<W, 1>(operands, memory, |a, b, _| scalar::binary(function, a, b)),
+                Op::Copy => each::<W, C, 2>(operands, memory, |a, _, _| a),
+                Op::MulAdd => each::<W, C, 4>(operands, memory, |a, b, c| a * b + c),
+                Op::MulSub => each::<W, C, 4>(operands, memory, |a, b, c| a * b - c),
+                Op::NegMulAdd => each::<W, C, 4>(operands, memory, |a, b, c| c - a * b),
+                Op::Binary(Binary::Add) => each::<W, C, 3>(operands, memory, |a, b, _| a + b),
+                Op::Binary(Binary::Sub) => each::<W, C, 3>(operands, memory, |a, b, _| a - b),
+                Op::Binary(Binary::Mul) => each::<W, C, 3>(operands, memory, |a, b, _| a * b),
+                Op::Binary(Binary::Div) => each::<W, C, 3>(operands, memory, |a, b, _| a / b),
+                Op::Unary(Unary::Neg) => each::<W, C, 2>(operands, memory, |a, _, _| -a),
+                Op::Unary(Unary::Abs) => each::<W, C, 2>(operands, memory, |a, _, _| a.abs()),
+                Op::Unary(Unary::Sqrt) => each::<W, C, 2>(operands, memory, |a, _, _| a.sqrt()),
+                Op::Unary(function) => each::<W, 1, 2>(operands, memory, |a, _, _| scalar::unary(function, a)),
+                Op::Binary(function) => each::<W, 1, 3>(operands, memory, |a, b, _| scalar::binary(function, a, b)),
                 Op::SinCos => sin_cos::<W, C>(operands, memory),
             }
         }
     }
 }
 
-/// `d = function(a, b, c)` for each instruction and lane.
+/// `d = function(a, b, c)` for each instruction (of `A` slots) and lane.
 #[inline(always)]
-unsafe fn each<const W: usize, const C: usize>(
-    operands: &[Operands],
+unsafe fn each<const W: usize, const C: usize, const A: usize>(
+    operands: &[u32],
     memory: *mut f64,
     function: impl Fn(f64, f64, f64) -> f64,
 ) {
-    for operand in operands {
+    for operand in operands.chunks_exact(A).map(Operands::of) {
         let mut lane = 0;
         while lane < W {
             // SAFETY: slots are in range (the caller's promise) and `lane + C ≤ W`.
@@ -176,8 +176,8 @@ unsafe fn each<const W: usize, const C: usize>(
 
 /// `d = sin a`, `b = cos a` for each instruction and lane.
 #[inline(always)]
-unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[Operands], memory: *mut f64) {
-    for operand in operands {
+unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[u32], memory: *mut f64) {
+    for operand in operands.chunks_exact(Op::SinCos.arity()).map(Operands::of) {
         let mut lane = 0;
         while lane < W {
             // SAFETY: as in `each`.

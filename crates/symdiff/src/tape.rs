@@ -21,6 +21,17 @@ pub enum Op {
     SinCos,
 }
 
+impl Op {
+    /// Slots that an instruction of this operation names: d, then what it reads (and, for `SinCos`, also writes).
+    pub(crate) const fn arity(self) -> usize {
+        match self {
+            Self::Copy | Self::Unary(_) => 2,
+            Self::Binary(_) | Self::SinCos => 3,
+            Self::MulAdd | Self::MulSub | Self::NegMulAdd => 4,
+        }
+    }
+}
+
 /// Slots of one instruction; what an operation does not use repeats `a`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
@@ -31,19 +42,32 @@ pub struct Operands {
     pub d: u32,
 }
 
+impl Operands {
+    /// From what a tape holds of them: d, a, and then as many as the operation has.
+    #[inline(always)]
+    pub(crate) fn of(slots: &[u32]) -> Self {
+        let a = slots[1];
+        let or_a = |place: usize| slots.get(place).copied().unwrap_or(a);
+        Self { a, b: or_a(2), c: or_a(3), d: slots[0] }
+    }
+}
+
 /// Instructions of one operation that stand together: one dispatch serves them all.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Run {
-    pub(crate) op: Op,
-    pub(crate) start: usize,
-    pub(crate) end: usize,
+struct Run {
+    op: Op,
+    /// Range of the tape's operands.
+    start: usize,
+    end: usize,
 }
 
 /// A straight-line program. Every slot it names is below [`Tape::slots`], which is what the evaluators rely on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tape {
     runs: Vec<Run>,
-    operands: Vec<Operands>,
+    /// Slots of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
+    operands: Vec<u32>,
+    instructions: usize,
     slots: usize,
 }
 
@@ -51,27 +75,28 @@ impl Tape {
     /// A tape of these instructions in this order.
     pub fn new(instructions: impl IntoIterator<Item = (Op, Operands)>) -> Self {
         let mut tape = Self::default();
-        for (op, operands) in instructions {
-            let place = tape.operands.len();
+        for (op, Operands { a, b, c, d }) in instructions {
+            let start = tape.operands.len();
+            tape.operands.extend_from_slice(&[d, a, b, c][..op.arity()]);
+            tape.instructions += 1;
+            let end = tape.operands.len();
             match tape.runs.last_mut() {
-                Some(run) if run.op == op => run.end = place + 1,
-                _ => tape.runs.push(Run { op, start: place, end: place + 1 }),
+                Some(run) if run.op == op => run.end = end,
+                _ => tape.runs.push(Run { op, start, end }),
             }
-            let highest = operands.a.max(operands.b).max(operands.c).max(operands.d) as usize;
-            tape.slots = tape.slots.max(highest + 1);
-            tape.operands.push(operands);
+            tape.slots = tape.operands[start..].iter().fold(tape.slots, |slots, &slot| slots.max(slot as usize + 1));
         }
         tape
     }
 
     /// Number of instructions.
     pub fn len(&self) -> usize {
-        self.operands.len()
+        self.instructions
     }
 
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
-        self.operands.is_empty()
+        self.instructions == 0
     }
 
     /// Number of dispatches: runs of equal operations.
@@ -84,8 +109,8 @@ impl Tape {
         self.slots
     }
 
-    /// The instructions, grouped.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (Op, &[Operands])> {
+    /// The instructions, grouped: slots of all of a run, [`Op::arity`] each.
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (Op, &[u32])> {
         self.runs.iter().map(|run| (run.op, &self.operands[run.start..run.end]))
     }
 }
