@@ -91,6 +91,11 @@ impl Dimension {
         Self { angle: 0, ..self } == Self { angle: 0, ..other }
     }
 
+    /// Of the generalised force on a coordinate of this dimension: what does work on it, N on a length, N m on an angle.
+    pub fn conjugate(self) -> Self {
+        Self::TORQUE.per(Self { angle: 0, ..self })
+    }
+
     /// Of a product.
     pub fn times(self, other: Self) -> Self {
         self.zip(other, i32::saturating_add)

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use symdiff::{Formula, Graph};
 
-use super::description::{Description, Referent};
+use super::description::{Description, JointKind, ReactionComponent, Referent};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::dimension::{self, Kind};
 use super::file::Grammar;
@@ -298,8 +298,7 @@ impl Reader<'_> {
     /// The formula's dimension; what does not go together in it is reported.
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
-        let name =
-            |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+        let name = |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent));
         let kind = dimension::analyse(formula, name, &mut mismatches);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
@@ -307,6 +306,19 @@ impl Reader<'_> {
             self.error(place, mismatch.message, None);
         }
         kind
+    }
+
+    /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
+    fn kind_of(&self, referent: Referent) -> Kind {
+        if let Referent::Reaction { joint, component: ReactionComponent::Force } = referent
+            && let JointKind::Equation { left, .. } = &self.model.joints[joint].kind
+        {
+            let name =
+                |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+            let equated = dimension::analyse(left, name, &mut Vec::new()).dimension();
+            return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
+        }
+        names::kind(referent, &self.kinds)
     }
 
     /// Reports where something stands that does not belong there.
