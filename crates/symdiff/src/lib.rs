@@ -12,6 +12,7 @@ mod lanes;
 mod scalar;
 mod schedule;
 pub mod sincos;
+mod stages;
 mod tape;
 mod vectorised;
 
@@ -20,6 +21,7 @@ pub use expr::{Binary, Expr, Graph, Node, Unary};
 pub use formula::{Formula, SyntaxError};
 pub use jet_memory::JetMemory;
 pub use lanes::{Tile, WIDTHS};
-pub use schedule::{Input, Lowered, Outputs, Stages, lower};
+pub use schedule::{Lowered, Outputs, lower};
+pub use stages::{Input, Stages};
 pub use tape::{Op, Operands, Tape};
 pub use vectorised::{Vectorise, vectorised};

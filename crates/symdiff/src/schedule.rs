@@ -7,22 +7,12 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::expr::{Binary, Expr, Graph, Node, Unary};
+use crate::stages::{Input, Stages, UNKNOWN};
 use crate::tape::{Op, Operands, Tape};
 
 /// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit keeps what
 /// is alive within the first-level cache.
 const WINDOW: usize = 256;
-
-/// A symbol's place and the stage at which its value changes.
-#[derive(Clone, Copy, Debug)]
-pub struct Input {
-    /// A symbol of the graph.
-    pub symbol: Expr,
-    /// 0 changes least often.
-    pub stage: usize,
-    /// Where its value stands. Two symbols may share a slot.
-    pub slot: u32,
-}
 
 /// What a kernel computes: expressions, each with the slot that it must end up in or `None` for any.
 pub type Outputs = Vec<(Expr, Option<u32>)>;
@@ -40,40 +30,6 @@ pub struct Lowered {
     pub constants: Vec<(u32, f64)>,
     /// Number of slots of the memory.
     pub slots: usize,
-}
-
-/// At which stage each node of a graph changes; grows with the graph.
-#[derive(Clone, Debug)]
-pub struct Stages {
-    given: FxHashMap<Expr, usize>,
-    /// By node index; [`UNKNOWN`] below a symbol that is no input.
-    of: Vec<Option<usize>>,
-}
-
-/// Stage of what depends on a symbol that is no input: beyond every stage.
-const UNKNOWN: usize = usize::MAX;
-
-impl Stages {
-    /// For a graph whose symbols are `inputs`; others are allowed where nobody asks for them.
-    pub fn new(inputs: &[Input]) -> Self {
-        Self { given: inputs.iter().map(|input| (input.symbol, input.stage)).collect(), of: Vec::new() }
-    }
-
-    /// Takes in the nodes that are new since the last call.
-    pub fn update(&mut self, graph: &Graph) {
-        for expr in graph.exprs_after(self.of.len()) {
-            let stage = match graph.node(expr) {
-                Node::Symbol(_) => Some(self.given.get(&expr).copied().unwrap_or(UNKNOWN)),
-                node => node.children().filter_map(|child| self.of[child.index()]).max(),
-            };
-            self.of.push(stage);
-        }
-    }
-
-    /// The highest stage among the inputs below a node that has been taken in; `None` for what is constant.
-    pub fn of(&self, expr: Expr) -> Option<usize> {
-        self.of[expr.index()]
-    }
 }
 
 /// Lowers `kernels` with `shared` lower stages; slots below `reserved` belong to the caller.
