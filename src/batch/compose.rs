@@ -107,7 +107,8 @@ impl<'r, 'a> Row<'r, 'a> {
         let k = self.composition.domain.dimension();
         let points = self.resolution();
         let grid = TensorGrid::full_factorial(&vec![points; k]);
-        let motion = |line: usize| self.composition.basis.evaluate_on(&self.coefficients[line], &grid);
+        let on_grid = self.composition.basis.on(&grid);
+        let motion = |line: usize| on_grid.values(&self.coefficients[line]);
         let mut values = Vec::new();
         self.closure.outputs(self.time, &self.points(&grid, motion), &mut values);
         let found: Vec<(Range, [usize; 2])> = values.chunks_exact(grid.len()).map(extremes).collect();

@@ -64,8 +64,8 @@ impl ChebyshevBasis {
         values[0]
     }
 
-    /// Values of the polynomial at all samples of a grid, in its order.
-    pub fn evaluate_on(&self, coefficients: &[f64], grid: &TensorGrid) -> Vec<f64> {
+    /// What evaluates polynomials of this basis at all samples of a grid.
+    pub fn on(&self, grid: &TensorGrid) -> OnGrid {
         let axis = |(axis, n): (usize, &usize)| {
             let points = grid.axis(axis);
             let mut entries = Vec::with_capacity(points.len() * (n + 1));
@@ -78,8 +78,18 @@ impl ChebyshevBasis {
             }
             Matrix { rows: points.len(), columns: n + 1, entries }
         };
-        let operator = Separable::new(self.orders.iter().enumerate().map(axis).collect());
-        std::mem::take(operator.apply(coefficients, &mut Work::default()))
+        OnGrid(Separable::new(self.orders.iter().enumerate().map(axis).collect()))
+    }
+}
+
+/// Evaluation of polynomials of one basis at all samples of one grid; made once for any number of them.
+#[derive(Clone, Debug)]
+pub struct OnGrid(Separable);
+
+impl OnGrid {
+    /// Values of the polynomial, in the grid's order.
+    pub fn values(&self, coefficients: &[f64]) -> Vec<f64> {
+        std::mem::take(self.0.apply(coefficients, &mut Work::default()))
     }
 }
 
@@ -154,7 +164,7 @@ mod tests {
                 prop_assert!((found - c).abs() < 1e-14);
             }
             let grid = TensorGrid::new(xi.iter().map(|&x| vec![0.5, x]).collect());
-            let value = basis.evaluate_on(&c, &grid)[7];
+            let value = basis.on(&grid).values(&c)[7];
             prop_assert!((value - basis.evaluate(&c, &xi)).abs() < 1e-14);
         }
     }

@@ -220,7 +220,7 @@ mod tests {
     fn dense(orders: &[usize], points: usize, coefficients: &[f64]) -> Range {
         let nodes: Vec<usize> = orders.iter().map(|n| n + 1).collect();
         let grid = TensorGrid::full_factorial(&vec![points; orders.len()]);
-        let values = ChebyshevBasis::new(orders, &nodes).evaluate_on(coefficients, &grid);
+        let values = ChebyshevBasis::new(orders, &nodes).on(&grid).values(coefficients);
         let fold = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap();
         Range { lower: fold(f64::min), upper: fold(f64::max) }
     }

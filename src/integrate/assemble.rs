@@ -14,7 +14,7 @@ const MAX_NOMINAL_CORRECTIONS: usize = 200;
 /// Guesses that are tried for the nominal start: the model's own, then ever wider around it.
 const GUESSES: usize = 60;
 
-/// A start is assembled when no constraint gapes by more than this, relative to its own scale.
+/// Constraints hold when none gapes by more than this, relative to the smallest coordinate scale (at most 1).
 const GAP: f64 = 1e-9;
 
 /// Corrections (relative to the coordinates' scales) that end the iteration.
@@ -22,6 +22,11 @@ const SETTLED: f64 = 1e-14;
 
 /// Corrections below this that no longer shrink are round-off.
 const STALLED: f64 = 1e-8;
+
+/// How far a constraint may gape for it to hold, given the coordinates' scales.
+pub(super) fn allowed_gap(scale: &[f64]) -> f64 {
+    GAP * scale.iter().copied().fold(1.0, f64::min)
+}
 
 /// A start that cannot be.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,13 +239,13 @@ impl<'p> Assembly<'p> {
 
     /// The first lane with a constraint that is not fulfilled.
     fn check(&self, slots: &[usize], of_velocities: bool) -> Result<(), Gap> {
-        let scale = self.scale.iter().copied().fold(f64::INFINITY, f64::min).min(1.0);
+        let allowed = allowed_gap(&self.scale);
         for lane in 0..self.tile.width() {
             let gaps = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
             let worst = gaps.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
             if let Some((constraint, amount)) = worst {
                 // Not a number is a gap too.
-                let closed = amount.abs() <= GAP * scale;
+                let closed = amount.abs() <= allowed;
                 if !closed {
                     return Err(Gap { lane, constraint, amount, of_velocities });
                 }

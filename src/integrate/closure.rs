@@ -6,7 +6,7 @@
 use nalgebra::DMatrix;
 use symdiff::Tile;
 
-use super::assemble::Assembly;
+use super::assemble::{Assembly, allowed_gap};
 use super::rank::free_columns;
 use super::simulator::{SimulationError, Simulator};
 use crate::mechanics::System;
@@ -17,9 +17,6 @@ const ANGLES_STAY: f64 = 0.3;
 
 /// Lanes evaluated at once.
 const WIDTH: usize = 32;
-
-/// A constraint gapes no more than this, relative to the smallest coordinate scale.
-const GAP: f64 = 1e-9;
 
 /// The closure of a mechanism over one choice of independent coordinates.
 #[derive(Clone, Debug)]
@@ -113,7 +110,7 @@ impl<'s> Closure<'s> {
             };
             set(layout.parameters.clone(), &points.parameters);
             set(layout.q.start..layout.v.end, &points.motion);
-            set(layout.w.start..layout.lambda.end, &vec![0.0; (layout.lambda.end - layout.w.start) * points.count]);
+            (layout.w.start..layout.lambda.end).for_each(|slot| tile.lane_mut(slot).fill(0.0));
             tile.lane_mut(layout.time).fill(time);
             tile.run(self.program.sample());
             self.close(&mut assembly);
@@ -142,11 +139,11 @@ impl<'s> Closure<'s> {
     }
 
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
-        let smallest = self.simulator.program.scale.iter().copied().fold(1.0, f64::min);
+        let allowed = allowed_gap(&self.simulator.program.scale);
         let mut closed = vec![true; WIDTH];
         for &slot in &self.program.constraint {
             for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(slot)) {
-                *closed &= gap.abs() <= GAP * smallest;
+                *closed &= gap.abs() <= allowed;
             }
         }
         closed

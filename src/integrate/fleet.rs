@@ -109,16 +109,6 @@ impl<'s> Fleet<'s> {
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
 
-    /// Number of samples.
-    pub fn len(&self) -> usize {
-        self.samples
-    }
-
-    /// Whether there are no samples.
-    pub fn is_empty(&self) -> bool {
-        self.samples == 0
-    }
-
     /// What is `observed` at `rows`, which follow those asked for last (row 0 is the start): row by row, value by value,
     /// sample by sample. With a tolerance, local errors are watched. Returns which samples stopped.
     pub fn advance(

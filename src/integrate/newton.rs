@@ -7,6 +7,7 @@
 
 use symdiff::{Tile, Vectorise, vectorised};
 
+use super::assemble::allowed_gap;
 use super::rank::solve_whatever_rank;
 use crate::program::{Program, WatchedPivot};
 
@@ -37,10 +38,6 @@ const STEPS_BETWEEN_LOOKS: u64 = 16;
 
 /// Corrections below this (relative positions) are round-off, whatever their contraction.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
-/// A constraint gapes no more than this, relative to the smallest coordinate scale, after a rank-revealing solve: least
-/// squares also settle where the constraints cannot be fulfilled.
-const GAP: f64 = 1e-9;
 
 /// What the iteration did; counters of the whole life of the solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -201,14 +198,15 @@ impl Newton {
         }
     }
 
-    /// Lanes whose rank-revealing solve has settled without fulfilling the constraints have not converged.
+    /// Lanes whose rank-revealing solve has settled without fulfilling the constraints have not converged: least squares
+    /// also settle where they cannot be fulfilled.
     fn reject_gaps(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.position_gain(h);
-        let smallest = program.scale.iter().copied().fold(1.0, f64::min);
+        let allowed = allowed_gap(&program.scale);
         for &slot in &program.residual[program.scale.len()..] {
             for (lane, residual) in tile.lane(slot).iter().enumerate() {
-                let closed = (gain * residual).abs() <= GAP * smallest;
+                let closed = (gain * residual).abs() <= allowed;
                 self.pending[lane] |= self.singular[lane] && !closed;
             }
         }

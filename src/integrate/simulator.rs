@@ -5,7 +5,7 @@ use symdiff::Tile;
 use super::assemble::{Assembly, Gap};
 use super::rank::dependent_rows;
 use crate::mechanics::System;
-use crate::program::{Coefficients, Layout, PROBES, Probe, Program, Singular, StartProgram, compile, compile_start};
+use crate::program::{Layout, PROBES, Probe, Program, Singular, StartProgram, compile, compile_start};
 
 /// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
 const DEPENDENT: f64 = 1e-8;
@@ -142,11 +142,6 @@ impl Simulator {
     /// What a singular matrix of this mechanism means.
     pub(super) fn singular(&self, singular: &Singular) -> SimulationError {
         SimulationError::Singular { equations: equation_names(&self.system, &singular.rows) }
-    }
-
-    /// Coefficients of the scheme.
-    pub fn coefficients(&self) -> Coefficients {
-        self.program.coefficients
     }
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.

@@ -99,11 +99,6 @@ impl Tape {
         self.instructions == 0
     }
 
-    /// Number of dispatches: runs of equal operations.
-    pub fn dispatches(&self) -> usize {
-        self.runs.len()
-    }
-
     /// One more than the highest slot named.
     pub fn slots(&self) -> usize {
         self.slots
