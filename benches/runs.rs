@@ -13,7 +13,7 @@ fn main() {
 fn study(bencher: Bencher, methods: Vec<Method>, threads: Option<usize>) {
     let description = models::slider_crank();
     bencher.bench_local(|| {
-        let options = Options { methods: Some(methods.clone()), threads, progress: &|_| {} };
+        let options = Options { methods: Some(methods.clone()), threads, ..Options::default() };
         run(&description, options).expect("the model runs")
     });
 }

@@ -154,7 +154,7 @@ fn a_run_writes_its_files_and_tells_where() {
     assert!(!summary().contains("taylor"), "{}", summary());
     let table = fs::read_to_string(place.path().join("results/crank/bounds.csv")).unwrap();
     let heading = table.lines().next().unwrap();
-    let expected = "t,angle.nominal,angle.chebyshev.lower,angle.chebyshev.upper,angle.scan.lower,angle.scan.upper";
+    let expected = "t,angle.nominal,angle.chebyshev.lower,angle.chebyshev.upper,angle.chebyshev.error,angle.scan.lower";
     assert!(heading.starts_with(expected), "{heading}");
 }
 

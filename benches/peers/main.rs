@@ -155,8 +155,11 @@ fn scan() -> Value {
     let description = models::slider_crank();
     let with = |threads: usize| {
         let (seconds, bounds) = best(5, || {
-            let options =
-                batch::Options { methods: Some(vec![Method::Scan]), threads: Some(threads), progress: &|_| {} };
+            let options = batch::Options {
+                methods: Some(vec![Method::Scan]),
+                threads: Some(threads),
+                ..batch::Options::default()
+            };
             batch::run(&description, options).expect("the model runs").0
         });
         let ends = |bounds: &mbint::bounds::Bounds| {

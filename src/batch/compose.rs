@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use crate::bounds::{ChebyshevBasis, ParameterBox, Range, TensorGrid, Work};
+use crate::bounds::{ChebyshevBasis, ParameterBox, Peak, Range, TensorGrid, Work};
 use crate::integrate::{Closure, Points, SimulationError, Simulator, choose_independent};
 
 /// More parameters than this make too large a grid; then the outputs themselves are expanded.
@@ -24,35 +24,50 @@ pub(super) struct Composition<'a> {
     simulator: &'a Simulator,
     domain: &'a ParameterBox,
     basis: &'a ChebyshevBasis,
+    /// ξ at which the outputs are wanted besides.
+    probes: &'a [Vec<f64>],
     /// Those used so far.
     closures: Vec<Closure<'a>>,
 }
 
+/// What is found in one row.
+pub(super) struct Composed {
+    /// Of every output.
+    pub ranges: Vec<Range>,
+    /// How far the search for each range's ends may have missed them.
+    pub gaps: Vec<f64>,
+    /// Every output's values at the probes.
+    pub at_probes: Vec<Vec<f64>>,
+}
+
 impl<'a> Composition<'a> {
     /// `None` where there are too many parameters or coordinates for it, or nothing is uncertain.
-    pub fn new(simulator: &'a Simulator, domain: &'a ParameterBox, basis: &'a ChebyshevBasis) -> Option<Self> {
+    pub fn new(
+        simulator: &'a Simulator,
+        domain: &'a ParameterBox,
+        basis: &'a ChebyshevBasis,
+        probes: &'a [Vec<f64>],
+    ) -> Option<Self> {
         let fits = (1..=MOST_PARAMETERS).contains(&domain.dimension()) && simulator.system.q.len() <= MOST_COORDINATES;
-        fits.then(|| Self { simulator, domain, basis, closures: Vec::new() })
+        fits.then(|| Self { simulator, domain, basis, probes, closures: Vec::new() })
     }
 
-    /// Ranges of the outputs, row by row, output by output, from the samples' motions (`stride` values a row: 2n lines of
-    /// samples).
+    /// Each row's findings, from the samples' motions (`stride` values a row, the first 2n lines of samples).
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
-    pub fn ranges(&mut self, times: &[f64], motions: &[f64], stride: usize) -> Result<Vec<Range>, SimulationError> {
+    pub fn rows(&mut self, times: &[f64], motions: &[f64], stride: usize) -> Result<Vec<Composed>, SimulationError> {
+        let lines = 2 * self.simulator.system.q.len() * self.basis.grid().len();
         let mut chosen = Vec::with_capacity(times.len());
         for (&time, motion) in times.iter().zip(motions.chunks_exact(stride)) {
-            chosen.push(self.choose(time, motion)?);
+            chosen.push(self.choose(time, &motion[..lines])?);
         }
         let this = &*self;
-        let rows: Vec<Vec<Range>> = times
-            .par_iter()
-            .zip(motions.par_chunks_exact(stride))
-            .zip(&chosen)
-            .map(|((&time, motion), &closure)| Row::new(this, &this.closures[closure], time, motion).ranges())
-            .collect();
-        Ok(rows.concat())
+        let rows = times.par_iter().zip(motions.par_chunks_exact(stride)).zip(&chosen);
+        let find = |((&time, motion), &closure): ((&f64, &[f64]), &usize)| {
+            Row::new(this, &this.closures[closure], time, &motion[..lines]).find()
+        };
+        Ok(rows.map(find).collect())
     }
 
     /// The closure over the coordinates that are best taken as independent at the middle sample's motion.
@@ -103,7 +118,7 @@ impl<'r, 'a> Row<'r, 'a> {
         if wanted.is_finite() { (least + wanted as usize).min(most) } else { least }
     }
 
-    fn ranges(&self) -> Vec<Range> {
+    fn find(&self) -> Composed {
         let k = self.composition.domain.dimension();
         let points = self.resolution();
         let grid = TensorGrid::full_factorial(&vec![points; k]);
@@ -111,22 +126,44 @@ impl<'r, 'a> Row<'r, 'a> {
         let motion = |line: usize| on_grid.values(&self.coefficients[line]);
         let mut values = Vec::new();
         self.closure.outputs(self.time, &self.points(&grid, motion), &mut values);
-        let found: Vec<(Range, [usize; 2])> = values.chunks_exact(grid.len()).map(extremes).collect();
-
-        // Around each extreme of the grid a parabola along every axis says where the true one is.
-        let sharper: Vec<Vec<Vec<f64>>> = values
+        let mut ends: Vec<End> = values
             .chunks_exact(grid.len())
-            .zip(&found)
-            .map(|(line, (_, places))| places.iter().map(|&place| vertex(line, place, &grid)).collect())
+            .flat_map(|line| SIGNS.map(|sign| End::on_grid(line, &grid, sign)))
             .collect();
-        let axes: Vec<&Vec<f64>> = sharper.iter().flatten().collect();
+
+        for _ in 0..ROUNDS {
+            let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
+            let points: Vec<Vec<f64>> = searched.iter().flat_map(|&end| ends[end].points()).collect();
+            if points.is_empty() {
+                break;
+            }
+            let values = self.evaluate(&points);
+            let mut first = 0;
+            for end in searched {
+                let count = ends[end].points().len();
+                let width = ends[end | 1].best - ends[end & !1].best;
+                ends[end].refine(&values[end / 2 * points.len() + first..][..count], width);
+                first += count;
+            }
+        }
+        let probes = self.composition.probes;
+        let ends = ends.chunks_exact(2);
+        Composed {
+            ranges: ends.clone().map(|ends| Range { lower: ends[0].best, upper: ends[1].best }).collect(),
+            gaps: ends.map(|ends| if ends[0].gap > ends[1].gap { ends[0].gap } else { ends[1].gap }).collect(),
+            at_probes: self.evaluate(probes).chunks_exact(probes.len()).map(<[f64]>::to_vec).collect(),
+        }
+    }
+
+    /// Every output at some ξ, output by output.
+    fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        let at: Vec<&Vec<f64>> = points.iter().collect();
         let motion = |line: usize| -> Vec<f64> {
-            axes.iter().map(|xi| self.composition.basis.evaluate(&self.coefficients[line], xi)).collect()
+            at.iter().map(|xi| self.composition.basis.evaluate(&self.coefficients[line], xi)).collect()
         };
-        let points = self.scattered(&axes, motion);
-        self.closure.outputs(self.time, &points, &mut values);
-        let lines = values.chunks_exact(axes.len()).enumerate();
-        lines.zip(found).map(|((output, line), (range, _))| widen(range, &line[2 * output..2 * output + 2])).collect()
+        let mut values = Vec::new();
+        self.closure.outputs(self.time, &self.scattered(&at, motion), &mut values);
+        values
     }
 
     fn points(&self, grid: &TensorGrid, motion: impl Fn(usize) -> Vec<f64>) -> Points {
@@ -153,44 +190,68 @@ impl<'r, 'a> Row<'r, 'a> {
     }
 }
 
-/// Range of values and where its ends are; not a number anywhere makes it unknown.
-fn extremes(values: &[f64]) -> (Range, [usize; 2]) {
-    if values.iter().any(|value| value.is_nan()) {
-        return (Range::UNKNOWN, [0, 0]);
-    }
-    let mut places = [0, 0];
-    for (place, value) in values.iter().enumerate() {
-        if *value < values[places[0]] {
-            places[0] = place;
-        }
-        if *value > values[places[1]] {
-            places[1] = place;
-        }
-    }
-    (Range { lower: values[places[0]], upper: values[places[1]] }, places)
+/// The least and the largest value are sought.
+const SIGNS: [f64; 2] = [-1.0, 1.0];
+
+/// Most steps of the search for an end.
+const ROUNDS: usize = 10;
+
+/// An end is found when a step changes less than this share of the range's width.
+const SETTLED: f64 = 1e-6;
+
+/// One end of an output's range, as it is found.
+struct End {
+    sign: f64,
+    /// Where the peak is looked for, and where it is believed to be.
+    around: Peak,
+    xi: Vec<f64>,
+    /// The best value seen, and where; not a number where one was not.
+    best: f64,
+    best_xi: Vec<f64>,
+    /// What the last step of the search changed.
+    gap: f64,
+    found: bool,
 }
 
-/// ξ of the vertex of the parabolas through a point of the grid and its neighbours along each axis.
-fn vertex(values: &[f64], place: usize, grid: &TensorGrid) -> Vec<f64> {
-    let mut xi = grid.sample(place);
-    let mut stride = 1;
-    for axis in (0..grid.dimension()).rev() {
-        let points = grid.axis(axis);
-        let index = place / stride % points.len();
-        if index > 0 && index + 1 < points.len() {
-            let (before, here, after) = (values[place - stride], values[place], values[place + stride]);
-            let bend = before - 2.0 * here + after;
-            let shift = 0.5 * (before - after) / bend;
-            if shift.abs() < 1.0 {
-                xi[axis] += shift * (points[index + 1] - points[index]);
-            }
-        }
-        stride *= points.len();
-    }
-    xi
-}
+impl End {
+    /// The best of the values on a grid, and the peak that its neighbours tell.
+    fn on_grid(values: &[f64], grid: &TensorGrid, sign: f64) -> Self {
+        let better = |a: usize, b: usize| if sign * values[b] > sign * values[a] { b } else { a };
+        let place = (0..values.len()).fold(0, better);
+        let unknown = values.iter().any(|value| value.is_nan());
+        let best = if unknown { f64::NAN } else { values[place] };
 
-fn widen(range: Range, further: &[f64]) -> Range {
-    let finite = || further.iter().copied().filter(|value| value.is_finite());
-    Range { lower: finite().fold(range.lower, f64::min), upper: finite().fold(range.upper, f64::max) }
+        let peak = Peak::new(grid.sample(place), grid.spacing());
+        let middle = grid.inner(place);
+        let stencil: Vec<f64> = peak.stencil().iter().map(|offsets| values[grid.beside(middle, offsets)]).collect();
+        let xi = peak.vertex(&stencil, sign);
+        Self { sign, around: peak.next(&xi), xi, best, best_xi: grid.sample(place), gap: 0.0, found: unknown }
+    }
+
+    /// Where the function is needed for the next step: around the peak, and on it.
+    fn points(&self) -> Vec<Vec<f64>> {
+        let stencil = self.around.stencil();
+        stencil.iter().map(|offsets| self.around.neighbour(offsets)).chain([self.xi.clone()]).collect()
+    }
+
+    /// Takes in the values there. `width` is that of the range so far.
+    fn refine(&mut self, values: &[f64], width: f64) {
+        let best = (0..values.len()).fold(0, |a, b| if self.sign * values[b] > self.sign * values[a] { b } else { a });
+        let gain = self.sign * (values[best] - self.best);
+        // Not a number beside the grid's points changes nothing.
+        if gain > 0.0 {
+            self.gap = gain;
+            self.found = gain <= SETTLED * width;
+            self.best = values[best];
+            self.best_xi = self.points().swap_remove(best);
+            self.xi = self.around.vertex(&values[..values.len() - 1], self.sign);
+            self.around = self.around.next(&self.xi);
+        } else {
+            // Nothing better around the best, or the quadratic led away from it.
+            self.gap = 0.0;
+            self.found = self.xi == self.best_xi;
+            self.xi.clone_from(&self.best_xi);
+            self.around = self.around.nearer(&self.xi);
+        }
+    }
 }

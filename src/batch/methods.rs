@@ -8,24 +8,29 @@ use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
 use super::compose::Composition;
+use super::probe::Probes;
 use super::study::Study;
-use crate::bounds::{ChebyshevBasis, Method, PolynomialRange, Range, ScanBounds, TaylorRange, TensorGrid, Work};
+use crate::bounds::{
+    ChebyshevBasis, Method, PolynomialRange, Range, ScanBounds, TaylorRange, TensorGrid, Work, surrogate_error,
+};
 use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
-use crate::model::{ChebyshevRequest, Expand, ScanRequest, TaylorRequest};
+use crate::model::{ChebyshevRequest, Expand, RangeKind, ScanRequest, TaylorRequest};
 use crate::report::MethodSummary;
 
 /// Values (rows × outputs × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
 
-/// Samples that a scan runs at once.
+/// Fewest and most samples that a scan runs at once.
 const SHARD: usize = 2048;
+const LARGEST_SHARD: usize = 16384;
 
 /// Scalar solves that a jet of order 1 is taken for in the progress bar.
 pub(super) const TAYLOR_WORK: usize = 5;
 
-/// One method's band for every output, and what it took.
+/// One method's band for every output, its surrogate's error, and what it took.
 pub(super) struct Outcome {
     pub(super) bands: Vec<Vec<Range>>,
+    pub(super) surrogate: Vec<Vec<f64>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
     pub(super) summary: MethodSummary,
     /// The sample whose local error was largest against the tolerance, and how large.
@@ -33,31 +38,34 @@ pub(super) struct Outcome {
 }
 
 /// One pass over all methods with one schedule.
+#[derive(Clone, Copy)]
 pub(super) struct Run<'a> {
     pub(super) study: &'a Study<'a>,
     pub(super) schedule: &'a Schedule,
     pub(super) tolerance: Option<f64>,
+    pub(super) progress: &'a Progress,
+}
+
+/// How far a run has come.
+pub(super) struct Progress {
     pub(super) done: AtomicUsize,
     pub(super) total: usize,
 }
 
 impl Run<'_> {
-    fn outputs(&self) -> usize {
+    pub(super) fn outputs(&self) -> usize {
         self.study.simulator.program.outputs.len()
     }
 
-    fn bands(&self) -> Vec<Vec<Range>> {
-        vec![vec![Range::UNKNOWN; self.schedule.rows]; self.outputs()]
-    }
-
     fn advance_progress(&self, work: usize) {
-        let done = self.done.fetch_add(work, Ordering::Relaxed) + work;
-        (self.study.progress)((done as f64 / self.total as f64).min(1.0));
+        let Progress { done, total } = self.progress;
+        let done = done.fetch_add(work, Ordering::Relaxed) + work;
+        (self.study.progress)((done as f64 / *total as f64).min(1.0));
     }
 
     /// Runs samples block by block; `reduce` gets the rows and their values (row, output, sample). Ends at the first block
     /// in which a sample stops.
-    fn fleet(
+    pub(super) fn fleet(
         &self,
         samples: &[Vec<f64>],
         observed: Observed,
@@ -83,7 +91,7 @@ impl Run<'_> {
         })
     }
 
-    fn method_summary(
+    pub(super) fn method_summary(
         &self,
         method: &str,
         solves: usize,
@@ -104,91 +112,124 @@ impl Run<'_> {
 
     pub(super) fn nominal(&self) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
-        let mut bands = self.bands();
+        let mut lines = Lines::new(self);
         let outputs = self.outputs();
         let done =
             self.fleet(std::slice::from_ref(&self.study.domain.nominal), Observed::Outputs, |rows, values| {
                 for (row, values) in rows.zip(values.chunks_exact(outputs)) {
-                    for (band, &value) in bands.iter_mut().zip(values) {
-                        band[row] = Range { lower: value, upper: value };
+                    for (output, &value) in values.iter().enumerate() {
+                        lines.set(row, output, Range { lower: value, upper: value }, 0.0);
                     }
                 }
             })?;
         let summary = self.method_summary("nominal", 1, done.counters, done.stop_place(), begun);
-        Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
+        Ok(lines.outcome(done, summary))
     }
 
-    pub(super) fn chebyshev(&self, request: &ChebyshevRequest) -> Result<Outcome, SimulationError> {
+    pub(super) fn chebyshev(&self, request: &ChebyshevRequest, probes: &Probes) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
         let basis = ChebyshevBasis::new(&request.order, &request.nodes);
         let samples = self.samples(&basis.grid());
-        let mut bands = self.bands();
-        let outputs = self.outputs();
         let composition = match request.expand {
-            Expand::Coordinates => Composition::new(&self.study.simulator, &self.study.domain, &basis),
+            Expand::Coordinates => Composition::new(&self.study.simulator, &self.study.domain, &basis, &probes.points),
             Expand::Output => None,
         };
-        let done = match composition {
-            Some(mut composition) => {
-                let lines = Observed::State.count(&self.study.simulator);
-                let mut failure = None;
-                let done = self.fleet(&samples, Observed::State, |rows, values| {
-                    let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
-                    match composition.ranges(&times, values, lines * samples.len()) {
-                        Ok(ranges) => scatter(&mut bands, rows, &ranges, outputs),
-                        Err(error) => failure = Some(error),
-                    }
-                })?;
-                failure.map_or(Ok(done), Err)?
-            }
-            None => {
-                let range = PolynomialRange::new(&request.order, request.range);
-                self.fleet(&samples, Observed::Outputs, |rows, values| {
-                    let ranges: Vec<Range> = values
-                        .par_chunks_exact(samples.len())
-                        .map_init(
-                            || (range.clone(), Work::default()),
-                            |(range, work), responses| range.range(basis.coefficients(responses, work)),
-                        )
-                        .collect();
-                    scatter(&mut bands, rows, &ranges, outputs);
-                })?
-            }
+        let (lines, done) = match composition {
+            Some(composition) => self.composed(composition, &samples, probes)?,
+            None => self.expanded(&basis, request.range, &samples, probes)?,
         };
         let summary =
             self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
-        Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
+        Ok(lines.outcome(done, summary))
     }
 
-    pub(super) fn scan(&self, request: &ScanRequest) -> Result<Outcome, SimulationError> {
+    /// The outputs follow from the expanded independent coordinates.
+    fn composed(
+        &self,
+        mut composition: Composition,
+        samples: &[Vec<f64>],
+        probes: &Probes,
+    ) -> Result<(Lines, FleetRun), SimulationError> {
+        let mut lines = Lines::new(self);
+        let count = Observed::Motion.count(&self.study.simulator);
+        let mut failure = None;
+        let done = self.fleet(samples, Observed::Motion, |rows, values| {
+            let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
+            match composition.rows(&times, values, count * samples.len()) {
+                Ok(found) => {
+                    for (row, found) in rows.zip(found) {
+                        for (output, at_probes) in found.at_probes.iter().enumerate() {
+                            let error = surrogate_error(at_probes, &probes.direct.at(row, output));
+                            lines.set(row, output, found.ranges[output], error + found.gaps[output]);
+                        }
+                    }
+                }
+                Err(error) => failure = Some(error),
+            }
+        })?;
+        failure.map_or(Ok((lines, done)), Err)
+    }
+
+    /// The outputs themselves are expanded.
+    fn expanded(
+        &self,
+        basis: &ChebyshevBasis,
+        range: RangeKind,
+        samples: &[Vec<f64>],
+        probes: &Probes,
+    ) -> Result<(Lines, FleetRun), SimulationError> {
+        let mut lines = Lines::new(self);
+        let range = PolynomialRange::new(basis.orders(), range);
+        let done = self.fleet(samples, Observed::Outputs, |rows, values| {
+            let found: Vec<Found> = values
+                .par_chunks_exact(samples.len())
+                .map_init(
+                    || (range.clone(), Work::default()),
+                    |(range, work), responses| {
+                        let coefficients = basis.coefficients(responses, work);
+                        let at_probes = probes.points.iter().map(|xi| basis.evaluate(coefficients, xi)).collect();
+                        let enclosed = range.enclose(coefficients);
+                        Found { range: enclosed.outer, excess: enclosed.excess(), at_probes }
+                    },
+                )
+                .collect();
+            lines.set_all(rows, &found, probes);
+        })?;
+        Ok((lines, done))
+    }
+
+    pub(super) fn scan(&self, request: &ScanRequest, probes: &Probes) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
         let grid = TensorGrid::full_factorial(&request.points);
         let outputs = self.outputs();
-        let mut bounds = ScanBounds::new(self.schedule.rows, outputs);
+        let mut bounds = ScanBounds::new(self.schedule.rows, outputs, &request.points);
         let mut total = FleetRun::default();
-        for first in (0..grid.len()).step_by(SHARD) {
+        // Slabs of the first axis stay together, so that neighbours do.
+        let slab = grid.len() / request.points.first().copied().unwrap_or(1);
+        let shard_size = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
+        for first in (0..grid.len()).step_by(shard_size) {
             let shard: Vec<Vec<f64>> =
-                (first..(first + SHARD).min(grid.len())).map(|index| self.sample(&grid, index)).collect();
+                (first..(first + shard_size).min(grid.len())).map(|index| self.sample(&grid, index)).collect();
             let done = self.fleet(&shard, Observed::Outputs, |rows, values| {
                 for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
                     for (output, values) in values.chunks_exact(shard.len()).enumerate() {
-                        bounds.observe_all(row, output, values);
+                        bounds.observe(row, output, first, values);
                     }
                 }
             })?;
             total.add(first, done);
         }
-        let mut bands = self.bands();
-        for (output, band) in bands.iter_mut().enumerate() {
-            for (row, range) in band.iter_mut().enumerate() {
-                *range = bounds.range(row, output);
-            }
+        let mut lines = Lines::new(self);
+        for (row, output) in (0..self.schedule.rows).flat_map(|row| (0..outputs).map(move |output| (row, output))) {
+            let range = bounds.range(row, output);
+            let outside = probes.direct.at(row, output).into_iter().map(|value| range.distance(value));
+            lines.set(row, output, range, outside.fold(bounds.error(row, output), f64::max));
         }
         let summary = self.method_summary(Method::Scan.name(), grid.len(), total.counters, total.stop_place(), begun);
-        Ok(Outcome { bands, stop: total.stop, summary, strained: total.strained })
+        Ok(lines.outcome(total, summary))
     }
 
-    pub(super) fn taylor(&self, request: &TaylorRequest) -> Result<Outcome, SimulationError> {
+    pub(super) fn taylor(&self, request: &TaylorRequest, probes: &Probes) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
         let domain = &self.study.domain;
         let k = domain.dimension();
@@ -197,24 +238,32 @@ impl Run<'_> {
         let center: Vec<f64> = (0..k).map(|parameter| domain.midpoint(parameter)).collect();
         let slopes: Vec<f64> = (0..k).map(|parameter| domain.half_width(parameter)).collect();
         let mut jet = JetRun::start(&self.study.simulator, &space, &center, &slopes, self.schedule.first_step())?;
-        let mut bands = self.bands();
-        let outputs = self.outputs();
+        let mut lines = Lines::new(self);
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
         while next < self.schedule.rows && stop.is_none() {
             let rows = next..(next + 64).min(self.schedule.rows);
             stop = jet.advance(self.schedule, rows.clone(), &mut values);
-            let ranges: Vec<Range> = values
+            let found: Vec<Found> = values
                 .par_chunks_exact(space.len())
-                .map_init(|| range.clone(), |range, coefficients| range.range(coefficients))
+                .map_init(
+                    || range.clone(),
+                    |range, coefficients| {
+                        let at_probe = |xi: &Vec<f64>| range.monomials().evaluate(coefficients, xi);
+                        let at_probes = probes.points.iter().map(at_probe).collect();
+                        let (range, excess) = range.enclose(coefficients);
+                        Found { range, excess, at_probes }
+                    },
+                )
                 .collect();
-            scatter(&mut bands, rows.clone(), &ranges, outputs);
+            lines.set_all(rows.clone(), &found, probes);
             self.advance_progress(TAYLOR_WORK * (request.order + 1) * rows.len());
             next = rows.end;
         }
         let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), stop.as_ref(), begun);
-        Ok(Outcome { bands, stop: stop.map(|stop| (stop, center)), summary, strained: None })
+        let done = FleetRun { counters: jet.counters(), stop: stop.map(|stop| (stop, center)), strained: None };
+        Ok(lines.outcome(done, summary))
     }
 
     fn samples(&self, grid: &TensorGrid) -> Vec<Vec<f64>> {
@@ -222,21 +271,20 @@ impl Run<'_> {
     }
 
     fn sample(&self, grid: &TensorGrid, index: usize) -> Vec<f64> {
-        let mut parameters = vec![0.0; grid.dimension()];
-        self.study.domain.map(&grid.sample(index), &mut parameters);
-        parameters
+        self.study.domain.point(&grid.sample(index))
     }
 }
 
+/// What samples run together took, and the first that stopped.
 #[derive(Default)]
-struct FleetRun {
-    counters: Counters,
-    strained: Option<(Vec<f64>, f64)>,
-    stop: Option<(Stop, Vec<f64>)>,
+pub(super) struct FleetRun {
+    pub(super) counters: Counters,
+    pub(super) strained: Option<(Vec<f64>, f64)>,
+    pub(super) stop: Option<(Stop, Vec<f64>)>,
 }
 
 impl FleetRun {
-    fn stop_place(&self) -> Option<&Stop> {
+    pub(super) fn stop_place(&self) -> Option<&Stop> {
         self.stop.as_ref().map(|(stop, _)| stop)
     }
 
@@ -251,11 +299,42 @@ impl FleetRun {
     }
 }
 
-/// Ranges that stand row by row, output by output, into each output's band.
-fn scatter(bands: &mut [Vec<Range>], rows: Rows<usize>, ranges: &[Range], outputs: usize) {
-    for (row, ranges) in rows.zip(ranges.chunks_exact(outputs)) {
-        for (band, range) in bands.iter_mut().zip(ranges) {
-            band[row] = *range;
+/// An output's polynomial in a row: its range, how much too wide that may be, and its values at the probes.
+struct Found {
+    range: Range,
+    excess: f64,
+    at_probes: Vec<f64>,
+}
+
+/// What a method finds of every output in every row.
+struct Lines {
+    bands: Vec<Vec<Range>>,
+    surrogate: Vec<Vec<f64>>,
+}
+
+impl Lines {
+    /// Of which nothing is known yet.
+    fn new(run: &Run) -> Self {
+        let (outputs, rows) = (run.outputs(), run.schedule.rows);
+        Self { bands: vec![vec![Range::UNKNOWN; rows]; outputs], surrogate: vec![vec![f64::NAN; rows]; outputs] }
+    }
+
+    fn set(&mut self, row: usize, output: usize, range: Range, surrogate: f64) {
+        self.bands[output][row] = range;
+        self.surrogate[output][row] = surrogate;
+    }
+
+    /// Row by row, output by output.
+    fn set_all(&mut self, rows: Rows<usize>, found: &[Found], probes: &Probes) {
+        for (row, found) in rows.zip(found.chunks_exact(self.bands.len())) {
+            for (output, Found { range, excess, at_probes }) in found.iter().enumerate() {
+                let error = surrogate_error(at_probes, &probes.direct.at(row, output));
+                self.set(row, output, *range, error + excess);
+            }
         }
+    }
+
+    fn outcome(self, done: FleetRun, summary: MethodSummary) -> Outcome {
+        Outcome { bands: self.bands, surrogate: self.surrogate, stop: done.stop, summary, strained: done.strained }
     }
 }

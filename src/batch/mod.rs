@@ -6,6 +6,7 @@
 
 mod compose;
 mod methods;
+mod probe;
 mod study;
 
 use crate::bounds::{Bounds, Method};
@@ -22,8 +23,17 @@ pub struct Options<'a> {
     pub methods: Option<Vec<Method>>,
     /// Threads; all cores where absent.
     pub threads: Option<usize>,
+    /// Whether the time steps' error is found by simulating every sample with halved steps too, instead of a few.
+    pub certify_time: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl Default for Options<'_> {
+    /// What the model asks for, on all cores.
+    fn default() -> Self {
+        Self { methods: None, threads: None, certify_time: false, progress: &|_| () }
+    }
 }
 
 /// Why nothing could be run at all.

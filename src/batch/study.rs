@@ -2,13 +2,17 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::methods::{Outcome, Run, TAYLOR_WORK};
+use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
+use super::probe::Probes;
 use super::{Options, RunError, first_step};
-use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
+use crate::bounds::{
+    Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, probes, time_error,
+    time_error_certified,
+};
 use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
 use crate::model::{BoundsRequest, ChebyshevRequest, Description, MOST_SOLVES, ScanRequest, Stepping};
-use crate::report::{ParameterSummary, Summary};
+use crate::report::{ErrorSummary, MethodSummary, ParameterSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
 const PILOT_CORNERS: usize = 16;
@@ -22,7 +26,38 @@ pub(super) struct Study<'a> {
     pub(super) simulator: Simulator,
     pub(super) domain: ParameterBox,
     request: BoundsRequest,
+    /// Whether all samples are simulated with halved steps too.
+    certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
+}
+
+/// What one schedule yields.
+struct Results {
+    nominal: Outcome,
+    /// Absent where no method is asked for.
+    probes: Option<Probes>,
+    methods: Vec<(Method, Outcome)>,
+    /// The same with halved steps, where asked for.
+    halved: Vec<(Method, Outcome)>,
+}
+
+impl Results {
+    fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
+    }
+
+    /// Samples that stopped.
+    fn stops(&self) -> impl Iterator<Item = &(Stop, Vec<f64>)> {
+        let probes = self.probes.iter().filter_map(|probes| probes.done.stop.as_ref());
+        self.outcomes().filter_map(|outcome| outcome.stop.as_ref()).chain(probes)
+    }
+
+    /// The sample whose local error was largest against the tolerance, where it was larger.
+    fn overstrained(&self) -> Option<(Vec<f64>, f64)> {
+        let probes = self.probes.iter().filter_map(|probes| probes.done.strained.as_ref());
+        let strained = self.outcomes().filter_map(|outcome| outcome.strained.as_ref()).chain(probes);
+        strained.filter(|(_, strain)| *strain > 1.0).max_by(|a, b| a.1.total_cmp(&b.1)).cloned()
+    }
 }
 
 impl<'a> Study<'a> {
@@ -36,7 +71,8 @@ impl<'a> Study<'a> {
         };
         let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension())?;
         let simulator = Simulator::new(system, description.simulation.alpha, first_step(description))?;
-        Ok(Self { description, simulator, domain, request, progress: options.progress })
+        let Options { certify_time, progress, .. } = *options;
+        Ok(Self { description, simulator, domain, request, certify_time, progress })
     }
 
     /// Runs every method.
@@ -45,8 +81,8 @@ impl<'a> Study<'a> {
         match simulation.stepping {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                let outcomes = self.methods(&schedule, None)?;
-                Ok(self.conclude(&schedule, outcomes, None))
+                let results = self.methods(&schedule, None)?;
+                Ok(self.conclude(&schedule, results, None))
             }
             Stepping::Tolerance(tolerance) => self.run_controlled(tolerance),
         }
@@ -62,13 +98,12 @@ impl<'a> Study<'a> {
             let Piloted { schedule, failure } =
                 schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
             let failure = failure.map(|failure| format!("{failure}; results up to that time are kept"));
-            let outcomes = self.methods(&schedule, Some(tolerance))?;
-            let strained = outcomes.iter().filter_map(|outcome| outcome.strained.clone());
-            match strained.filter(|(_, strain)| *strain > 1.0).reduce(|a, b| if b.1 > a.1 { b } else { a }) {
-                None => return Ok(self.conclude(&schedule, outcomes, failure)),
+            let results = self.methods(&schedule, Some(tolerance))?;
+            match results.overstrained() {
+                None => return Ok(self.conclude(&schedule, results, failure)),
                 Some((_, strain)) if round == PILOT_ROUNDS => {
                     let note = format!("a sample's local error is {strain:.2} times the tolerance in the worst step");
-                    return Ok(self.conclude(&schedule, outcomes, Some(note)));
+                    return Ok(self.conclude(&schedule, results, Some(note)));
                 }
                 Some((sample, _)) => pilots.push(sample),
             }
@@ -76,20 +111,10 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The nominal sample and corners of the box: all where they are few, else such that any two parameters meet at every
-    /// pair of their ends (the signs of Walsh functions).
+    /// The nominal sample and corners of the box.
     fn pilots(&self) -> Vec<Vec<f64>> {
-        let k = self.domain.dimension();
-        let corner = |index: usize| {
-            let mask = |axis: usize| if k <= 4 { 1 << axis } else { axis % (PILOT_CORNERS - 1) + 1 };
-            let sign = |axis: usize| (index & mask(axis)).count_ones().is_multiple_of(2);
-            let xi: Vec<f64> = (0..k).map(|axis| if sign(axis) { -1.0 } else { 1.0 }).collect();
-            let mut values = vec![0.0; k];
-            self.domain.map(&xi, &mut values);
-            values
-        };
         let mut pilots = vec![self.domain.nominal.clone()];
-        for corner in (0..if k == 0 { 0 } else { PILOT_CORNERS }).map(corner) {
+        for corner in corners(self.domain.dimension(), PILOT_CORNERS).iter().map(|xi| self.domain.point(xi)) {
             if !pilots.contains(&corner) {
                 pilots.push(corner);
             }
@@ -97,18 +122,35 @@ impl<'a> Study<'a> {
         pilots
     }
 
-    /// Nominal first, then every method asked for.
-    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Vec<Outcome>, SimulationError> {
-        let run = Run { study: self, schedule, tolerance, done: AtomicUsize::new(0), total: self.total_work(schedule) };
-        let mut outcomes = vec![run.nominal()?];
+    /// Nominal first, then the probes, then every method asked for.
+    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+        let progress = Progress { done: AtomicUsize::new(0), total: self.total_work(schedule) };
+        let run = Run { study: self, schedule, tolerance, progress: &progress };
+        let nominal = run.nominal()?;
+        let mut results = Results { nominal, probes: None, methods: Vec::new(), halved: Vec::new() };
+        if self.request.is_empty() {
+            return Ok(results);
+        }
+        let probes = Probes::run(&run)?;
+        results.methods = self.requested(&run, &probes)?;
+        if self.certify_time {
+            let schedule = schedule.refined(2);
+            results.halved = self.requested(&Run { schedule: &schedule, tolerance: None, ..run }, &probes)?;
+        }
+        results.probes = Some(probes);
+        Ok(results)
+    }
+
+    fn requested(&self, run: &Run, probes: &Probes) -> Result<Vec<(Method, Outcome)>, SimulationError> {
+        let mut outcomes = Vec::new();
         if let Some(request) = &self.request.chebyshev {
-            outcomes.push(run.chebyshev(request)?);
+            outcomes.push((Method::Chebyshev, run.chebyshev(request, probes)?));
         }
         if let Some(request) = &self.request.taylor {
-            outcomes.push(run.taylor(request)?);
+            outcomes.push((Method::Taylor, run.taylor(request, probes)?));
         }
         if let Some(request) = &self.request.scan {
-            outcomes.push(run.scan(request)?);
+            outcomes.push((Method::Scan, run.scan(request, probes)?));
         }
         Ok(outcomes)
     }
@@ -118,44 +160,51 @@ impl<'a> Study<'a> {
         let chebyshev = self.request.chebyshev.as_ref().map_or(0, |request| request.nodes.iter().product());
         let taylor = self.request.taylor.as_ref().map_or(0, |request| TAYLOR_WORK * (request.order + 1));
         let scan = self.request.scan.as_ref().map_or(0, |request| request.points.iter().product());
-        (1 + chebyshev + taylor + scan) * schedule.rows
+        let k = self.domain.dimension();
+        let probes = if self.request.is_empty() { 0 } else { 2 * probes(k).len() + held_out(k).len() };
+        let methods = (chebyshev + taylor + scan) * if self.certify_time { 2 } else { 1 };
+        (1 + probes + methods) * schedule.rows
     }
 
     /// Bounds up to the first row that a sample did not reach, and the summary.
-    fn conclude(&self, schedule: &Schedule, outcomes: Vec<Outcome>, note: Option<String>) -> (Bounds, Summary) {
-        let stops = || outcomes.iter().filter_map(|outcome| outcome.stop.as_ref());
-        let first = |stops: &mut dyn Iterator<Item = &'_ (Stop, Vec<f64>)>| {
-            stops.min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned()
-        };
-        let stop = first(&mut stops());
+    fn conclude(&self, schedule: &Schedule, results: Results, note: Option<String>) -> (Bounds, Summary) {
+        let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
         // Where only the jet cannot go on, its bounds are unknown from there on, and the others' are kept.
-        let end = first(&mut stops().filter(|(stop, _)| !stop.singular));
-        let rows = end.map_or(schedule.rows, |(stop, _)| stop.row);
-        let times: Vec<f64> = (0..rows).map(|row| schedule.time(row)).collect();
-        let methods = self.requested_methods();
-        let mut outputs: Vec<OutputBounds> = Vec::new();
-        for (place, output) in self.simulator.system.outputs.iter().enumerate() {
-            let line =
-                |outcome: &Outcome, end: fn(&Range) -> f64| outcome.bands[place][..rows].iter().map(end).collect();
-            let bands = methods.iter().zip(&outcomes[1..]).map(|(&method, outcome)| Band {
-                method,
-                lower: line(outcome, |range| range.lower),
-                upper: line(outcome, |range| range.upper),
-            });
-            outputs.push(OutputBounds {
-                name: output.name.clone(),
-                unit: output.unit.clone(),
-                nominal: line(&outcomes[0], |range| range.lower),
-                bands: bands.collect(),
-            });
-        }
+        let end = results.stops().filter(|(stop, _)| !stop.singular).map(|(stop, _)| stop.row).min();
+        let rows = end.unwrap_or(schedule.rows);
+        let outputs = self.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
+            name: output.name.clone(),
+            unit: output.unit.clone(),
+            nominal: results.nominal.bands[place][..rows].iter().map(|range| range.lower).collect(),
+            bands: self.bands(&results, place, rows),
+        });
+        let bounds = Bounds { times: (0..rows).map(|row| schedule.time(row)).collect(), outputs: outputs.collect() };
         let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
-        (Bounds { times, outputs }, self.summary(outcomes, failure))
+        let summary = self.summary(results, &bounds, failure);
+        (bounds, summary)
     }
 
-    fn requested_methods(&self) -> Vec<Method> {
-        let asked = [self.request.chebyshev.is_some(), self.request.taylor.is_some(), self.request.scan.is_some()];
-        Method::ALL.into_iter().zip(asked).filter(|(_, asked)| *asked).map(|(method, _)| method).collect()
+    /// An output's band by every method, with its error.
+    fn bands(&self, results: &Results, output: usize, rows: usize) -> Vec<Band> {
+        let Some(probes) = &results.probes else { return Vec::new() };
+        let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
+            let ranges = &outcome.bands[output][..rows];
+            let halved = results.halved.get(place).map(|(_, halved)| &halved.bands[output]);
+            let time: Vec<f64> = (0..rows)
+                .map(|row| match halved {
+                    Some(halved) => time_error_certified(ranges[row], halved[row]),
+                    None => time_error(ranges[row], &probes.direct.at(row, output), &probes.halved.at(row, output)),
+                })
+                .collect();
+            let surrogate = &outcome.surrogate[output][..rows];
+            Band {
+                method: *method,
+                lower: ranges.iter().map(|range| range.lower).collect(),
+                upper: ranges.iter().map(|range| range.upper).collect(),
+                error: BandError::new(ranges, surrogate, &time, probes.direct.span(output), None),
+            }
+        };
+        results.methods.iter().enumerate().map(band).collect()
     }
 
     fn failure(&self, stop: &Stop, sample: &[f64]) -> String {
@@ -175,7 +224,7 @@ impl<'a> Study<'a> {
         )
     }
 
-    fn summary(&self, outcomes: Vec<Outcome>, failure: Option<String>) -> Summary {
+    fn summary(&self, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
         let system = &self.simulator.system;
         let mobility = &self.simulator.mobility;
         Summary {
@@ -198,10 +247,32 @@ impl<'a> Study<'a> {
                     upper: parameter.upper,
                 })
                 .collect(),
-            methods: outcomes.into_iter().map(|outcome| outcome.summary).collect(),
+            methods: std::iter::once(results.nominal.summary)
+                .chain(results.probes.map(|probes| probes.summary))
+                .chain(results.methods.into_iter().map(|(_, outcome)| outcome.summary))
+                .chain(results.halved.into_iter().map(|(method, outcome)| MethodSummary {
+                    method: format!("{} with halved steps", method.name()),
+                    ..outcome.summary
+                }))
+                .collect(),
+            errors: errors(bounds),
             failure,
         }
     }
+}
+
+/// The largest errors of every band.
+fn errors(bounds: &Bounds) -> Vec<ErrorSummary> {
+    let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
+        output: output.name.clone(),
+        method: band.method.name().to_owned(),
+        width: band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower).fold(0.0, f64::max),
+        error: band.error.largest(),
+        surrogate: band.error.surrogate,
+        time: band.error.time,
+        unresolved_from: band.error.unresolved_from().map(|row| bounds.times[row]),
+    };
+    bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| of_band(output, band))).collect()
 }
 
 /// What is run: the model's requests, or defaults for methods named on the command line.

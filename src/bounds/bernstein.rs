@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::range::Range;
+use super::range::{Enclosed, Range};
 use super::tensor::{Matrix, Separable, Work};
 
 /// A bound is good when it is this close to an attained value, relative to the width of the attained range.
@@ -75,13 +75,14 @@ impl Bernstein {
     }
 
     /// Encloses a polynomial with finite Chebyshev coefficients; `radius` = Σ|c|.
-    pub(super) fn enclose(&mut self, coefficients: &[f64], radius: f64) -> Range {
+    pub(super) fn enclose(&mut self, coefficients: &[f64], radius: f64) -> Enclosed {
         let mut attained = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
         let upper = self.maximum(coefficients, 1.0, &mut attained);
         attained = Range { lower: -attained.upper, upper: -attained.lower };
         let lower = -self.maximum(coefficients, -1.0, &mut attained);
         let rounding = self.rounding * radius;
-        Range { lower: lower - rounding, upper: upper + rounding }
+        let attained = Range { lower: -attained.upper, upper: -attained.lower };
+        Enclosed { outer: Range { lower: lower - rounding, upper: upper + rounding }, attained }
     }
 
     /// An upper bound of sign · p; `attained` widens by what is seen of its values.
@@ -240,7 +241,7 @@ mod tests {
             c[2 * 3_usize.pow(axis)] = 0.5;
         }
         c[81 + 27 + 9] = -1.0;
-        let range = Bernstein::new(&orders).enclose(&c, 3.5);
+        let range = Bernstein::new(&orders).enclose(&c, 3.5).outer;
         // Without the constant 2.5.
         assert!(range.lower <= -2.5 && range.lower > -2.5 - 0.0061, "{range:?}");
         assert!(range.upper >= 3.5 && range.upper < 3.5 + 0.0061, "{range:?}");

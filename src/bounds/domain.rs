@@ -51,6 +51,13 @@ impl ParameterBox {
             *value = self.value(parameter, xi);
         }
     }
+
+    /// The same, as a point of its own.
+    pub fn point(&self, xi: &[f64]) -> Vec<f64> {
+        let mut point = vec![0.0; xi.len()];
+        self.map(xi, &mut point);
+        point
+    }
 }
 
 #[cfg(test)]

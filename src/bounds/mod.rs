@@ -9,6 +9,8 @@
 mod bernstein;
 mod chebyshev;
 mod domain;
+mod error;
+mod peak;
 mod range;
 mod result;
 mod samples;
@@ -18,9 +20,11 @@ mod tensor;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
-pub use range::{PolynomialRange, Range};
+pub use error::{BandError, surrogate_error, time_error, time_error_certified};
+pub use peak::Peak;
+pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
-pub use samples::TensorGrid;
+pub use samples::{TensorGrid, corners, held_out, probes};
 pub use scan::ScanBounds;
 pub use taylor::TaylorRange;
 pub use tensor::Work;

@@ -59,9 +59,34 @@ impl Range {
         self.upper - self.lower
     }
 
+    /// How far `value` lies outside; not a number of the unknown.
+    pub fn distance(self, value: f64) -> f64 {
+        if self.contains(value) { 0.0 } else { (self.lower - value).max(value - self.upper) }
+    }
+
     /// Whether `value` lies within, ends included; nothing lies within the unknown.
     pub fn contains(self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
+    }
+}
+
+/// What is known of a range: it lies within `outer`, and holds `attained`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Enclosed {
+    pub outer: Range,
+    pub attained: Range,
+}
+
+impl Enclosed {
+    const UNKNOWN: Self = Self { outer: Range::UNKNOWN, attained: Range::UNKNOWN };
+
+    /// How much too wide `outer` may be, at the worse end.
+    pub fn excess(self) -> f64 {
+        let Self { outer, attained } = self;
+        let excess = (attained.lower - outer.lower).max(outer.upper - attained.upper);
+        // Rounding may have put the one past the other.
+        if excess < 0.0 { 0.0 } else { excess }
     }
 }
 
@@ -69,6 +94,7 @@ impl Range {
 /// thread.
 #[derive(Clone, Debug)]
 pub struct PolynomialRange {
+    kind: RangeKind,
     count: usize,
     enclosure: Enclosure,
     /// The coefficients without their constant.
@@ -77,7 +103,6 @@ pub struct PolynomialRange {
 
 #[derive(Clone, Debug)]
 enum Enclosure {
-    Terms,
     Grid(Box<ExtremaGrid>),
     Bernstein(Box<Bernstein>),
 }
@@ -85,12 +110,11 @@ enum Enclosure {
 impl PolynomialRange {
     /// For polynomials of degree `orders[i]` in parameter i.
     pub fn new(orders: &[usize], kind: RangeKind) -> Self {
-        let enclosure = match (kind, intervals(orders)) {
-            (RangeKind::Interval, _) => Enclosure::Terms,
-            (RangeKind::Tight, Some(intervals)) => Enclosure::Grid(Box::new(ExtremaGrid::new(orders, &intervals))),
-            (RangeKind::Tight, None) => Enclosure::Bernstein(Box::new(Bernstein::new(orders))),
+        let enclosure = match intervals(orders) {
+            Some(intervals) => Enclosure::Grid(Box::new(ExtremaGrid::new(orders, &intervals))),
+            None => Enclosure::Bernstein(Box::new(Bernstein::new(orders))),
         };
-        Self { count: orders.iter().map(|n| n + 1).product(), enclosure, varying: Vec::new() }
+        Self { kind, count: orders.iter().map(|n| n + 1).product(), enclosure, varying: Vec::new() }
     }
 
     /// Number of coefficients, Π (nᵢ + 1).
@@ -101,25 +125,35 @@ impl PolynomialRange {
     /// Range of the polynomial with these Chebyshev coefficients (last index fastest). Exact for a constant; unknown
     /// if any coefficient is infinite or not a number. Never wider than c₀ ± Σ|c|.
     pub fn range(&mut self, coefficients: &[f64]) -> Range {
+        self.enclose(coefficients).outer
+    }
+
+    /// The same, with what the polynomial is seen to attain.
+    pub fn enclose(&mut self, coefficients: &[f64]) -> Enclosed {
         assert_eq!(coefficients.len(), self.count, "coefficients of another shape");
         let radius: f64 = coefficients[1..].iter().map(|c| c.abs()).sum();
         let middle = coefficients[0];
         if !(radius.is_finite() && middle.is_finite()) {
-            return Range::UNKNOWN;
+            return Enclosed::UNKNOWN;
         }
         if radius == 0.0 {
-            return Range { lower: middle, upper: middle };
+            let constant = Range { lower: middle, upper: middle };
+            return Enclosed { outer: constant, attained: constant };
         }
         // Without the constant, so that a small variation of a large value is not lost in the rounding of the value.
         self.varying.clear();
         self.varying.extend_from_slice(coefficients);
         self.varying[0] = 0.0;
-        let enclosed = match &mut self.enclosure {
-            Enclosure::Terms => Range { lower: -radius, upper: radius },
+        let Enclosed { outer, attained } = match &mut self.enclosure {
             Enclosure::Grid(grid) => grid.enclose(&self.varying, radius),
             Enclosure::Bernstein(bernstein) => bernstein.enclose(&self.varying, radius),
         };
-        Range { lower: middle + enclosed.lower.max(-radius), upper: middle + enclosed.upper.min(radius) }
+        let outer = match self.kind {
+            RangeKind::Interval => Range { lower: -radius, upper: radius },
+            RangeKind::Tight => Range { lower: outer.lower.max(-radius), upper: outer.upper.min(radius) },
+        };
+        let shifted = |range: Range| Range { lower: middle + range.lower, upper: middle + range.upper };
+        Enclosed { outer: shifted(outer), attained: shifted(attained) }
     }
 }
 
@@ -170,16 +204,17 @@ impl ExtremaGrid {
     }
 
     /// Encloses a polynomial with finite coefficients; `radius` = Σ|c|.
-    fn enclose(&mut self, coefficients: &[f64], radius: f64) -> Range {
+    fn enclose(&mut self, coefficients: &[f64], radius: f64) -> Enclosed {
         let on_grid = self.extrema(coefficients);
         let middle = 0.5 * on_grid.lower + 0.5 * on_grid.upper;
         let half = (0.5 * on_grid.upper - 0.5 * on_grid.lower) * self.widening;
         let between: f64 = coefficients.iter().zip(&self.curvature).map(|(c, weight)| c.abs() * weight).sum();
         let rounding = self.rounding * radius;
-        Range {
+        let outer = Range {
             lower: (middle - half).max(on_grid.lower - between) - rounding,
             upper: (middle + half).min(on_grid.upper + between) + rounding,
-        }
+        };
+        Enclosed { outer, attained: on_grid }
     }
 
     /// Least and largest value on the grid.
@@ -312,7 +347,7 @@ mod tests {
             let mut varying = c.clone();
             varying[0] = 0.0;
             let radius = varying.iter().map(|c| c.abs()).sum();
-            let enclosed = bernstein.enclose(&varying, radius);
+            let enclosed = bernstein.enclose(&varying, radius).outer;
             let (lower, upper) = (c[0] + enclosed.lower, c[0] + enclosed.upper);
             prop_assert!(lower <= dense.lower + rounding && dense.upper <= upper + rounding);
             prop_assert!(upper - lower <= 1.03 * dense.width() + rounding);

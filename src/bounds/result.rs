@@ -1,5 +1,7 @@
 //! What a run yields: bounds of every output over time.
 
+use super::error::BandError;
+
 /// Bounds of every output of a model at the output times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bounds {
@@ -22,13 +24,14 @@ pub struct OutputBounds {
     pub bands: Vec<Band>,
 }
 
-/// A method's bounds of one output over time.
+/// A method's bounds of one output over time, and how far they may be from the truth.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Band {
     pub method: Method,
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
+    pub error: BandError,
 }
 
 /// A bounding method.

@@ -56,12 +56,75 @@ impl TensorGrid {
         }
     }
 
+    /// Distance of the first two coordinates along each axis; both must be there.
+    pub fn spacing(&self) -> Vec<f64> {
+        self.axes.iter().map(|axis| (axis[1] - axis[0]).abs()).collect()
+    }
+
+    /// The sample itself, or the nearest that has neighbours on both sides along each axis; each has three coordinates or more.
+    pub fn inner(&self, index: usize) -> usize {
+        let mut rest = index;
+        let mut stride = 1;
+        let mut inner = 0;
+        for axis in self.axes.iter().rev() {
+            inner += stride * (rest % axis.len()).clamp(1, axis.len() - 2);
+            rest /= axis.len();
+            stride *= axis.len();
+        }
+        inner
+    }
+
+    /// The sample so many coordinates further along each axis, all of which must be there.
+    pub fn beside(&self, index: usize, offsets: &[i8]) -> usize {
+        let along = |away: isize, (axis, &by): (&Vec<f64>, &i8)| away * axis.len() as isize + isize::from(by);
+        index.wrapping_add_signed(self.axes.iter().zip(offsets).fold(0, along))
+    }
+
     /// The coordinates of a sample.
     pub fn sample(&self, index: usize) -> Vec<f64> {
         let mut out = vec![0.0; self.dimension()];
         self.fill(index, &mut out);
         out
     }
+}
+
+/// Corners of [−1, 1]^k: all where they are not more than `most` (a power of two), else `most` of them such that any two
+/// axes, unless they are as many as `most` apart, meet at every pair of their ends (the signs of Walsh functions).
+pub fn corners(k: usize, most: usize) -> Vec<Vec<f64>> {
+    let all = k < usize::BITS as usize && 1 << k <= most;
+    let mask = |axis: usize| if all { 1 << axis } else { axis % (most - 1) + 1 };
+    let sign = |index: usize, axis: usize| if (index & mask(axis)).count_ones().is_multiple_of(2) { -1.0 } else { 1.0 };
+    (0..if all { 1 << k } else { most }).map(|index| (0..k).map(|axis| sign(index, axis)).collect()).collect()
+}
+
+/// Points inside the box at which a surrogate is held against simulations that it was not made from.
+const HELD_OUT: usize = 8;
+
+/// Points spread evenly over the inside of the box (the additive recurrence of Kronecker), for a surrogate to be held
+/// against simulations that it was not made from.
+pub fn held_out(k: usize) -> Vec<Vec<f64>> {
+    // Roberts' generalisation of the golden ratio: the root of x^(k+1) = x + 1.
+    let mut ratio = 1.5_f64;
+    for _ in 0..100 {
+        ratio -= (ratio.powi(k as i32 + 1) - ratio - 1.0) / ((k + 1) as f64 * ratio.powi(k as i32) - 1.0);
+    }
+    let count = if k == 0 { 0 } else { HELD_OUT.max(k) };
+    let at = |index: usize, axis: usize| (0.5 + (index + 1) as f64 * ratio.powi(-(axis as i32 + 1))).fract();
+    (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
+}
+
+/// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all 3^k
+/// of them for up to three axes, else the centre, both ends of every axis and 16 corners.
+pub fn probes(k: usize) -> Vec<Vec<f64>> {
+    if k <= 3 {
+        let lattice = TensorGrid::full_factorial(&vec![3; k]);
+        return (0..lattice.len()).map(|index| lattice.sample(index)).collect();
+    }
+    let on_axis = |axis: usize, xi: f64| (0..k).map(|other| if other == axis { xi } else { 0.0 }).collect();
+    let mut points = vec![vec![0.0; k]];
+    points.extend((0..k).flat_map(|axis| [on_axis(axis, -1.0), on_axis(axis, 1.0)]));
+    points.extend(corners(k, 16));
+    points
 }
 
 #[cfg(test)]
@@ -78,6 +141,21 @@ mod tests {
     }
 
     #[test]
+    fn neighbours_are_beside_inner_samples() {
+        let grid = TensorGrid::full_factorial(&[3, 4, 5]);
+        for index in 0..grid.len() {
+            let (at, inner) = (grid.sample(index), grid.inner(index));
+            let middle = grid.sample(inner);
+            let spacing = grid.spacing();
+            assert!((0..3).all(|axis| (at[axis] - middle[axis]).abs() <= spacing[axis] + 1e-12));
+            let beside = grid.sample(grid.beside(inner, &[-1, 1, -1]));
+            for (axis, sign) in [-1.0, 1.0, -1.0].into_iter().enumerate() {
+                assert!((beside[axis] - middle[axis] - sign * spacing[axis]).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
     fn thirty_points_are_symmetric_and_reach_both_ends() {
         let grid = TensorGrid::full_factorial(&[30]);
         let axis = grid.axis(0);
@@ -91,6 +169,20 @@ mod tests {
         assert_eq!(grid.axis(0), [0.0]);
         assert!((grid.axis(1)[0] - 0.5_f64.sqrt()).abs() < 1e-16 && grid.axis(1)[1] == -grid.axis(1)[0]);
         assert!((grid.axis(2)[0] - 0.75_f64.sqrt()).abs() < 1.2e-16 && grid.axis(2)[1] == 0.0);
+    }
+
+    #[test]
+    fn any_two_axes_meet_at_all_their_ends() {
+        for k in [2, 4, 8, 15] {
+            let corners = corners(k, 16);
+            assert_eq!(corners.len(), 16.min(1 << k));
+            for (a, b) in (0..k).flat_map(|a| (0..a).map(move |b| (a, b))) {
+                for ends in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+                    assert!(corners.iter().any(|corner| [corner[a], corner[b]] == ends), "{k}: {a}, {b}");
+                }
+            }
+        }
+        assert_eq!(corners(0, 16), [Vec::<f64>::new()]);
     }
 
     #[test]

@@ -1,4 +1,8 @@
-//! Least and largest values over samples, as they come.
+//! Least and largest values over a grid of samples, as they come.
+//!
+//! Between two samples a smooth response can go beyond both: past an extreme of the grid that is not at the box's edge by at
+//! most an eighth of the second difference along each axis (that of the parabola through it and its neighbours). That is the
+//! error stated of a scan.
 
 use super::range::Range;
 
@@ -7,52 +11,101 @@ use super::range::Range;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanBounds {
     outputs: usize,
-    /// By time, then by output. Empty while lower > upper; not a number once any sample was.
-    ranges: Vec<Range>,
+    /// Points along each axis, the last fastest.
+    points: Vec<usize>,
+    /// By time, then by output: least and largest. Empty while least > largest; not a number once any sample was.
+    extremes: Vec<[Extreme; 2]>,
 }
 
-const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+/// A value, and how far the response may go beyond it beside its sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Extreme {
+    value: f64,
+    beyond: f64,
+}
 
-/// Widens `range`; not a number wins over everything.
-fn include(range: &mut Range, lower: f64, upper: f64) {
-    if lower < range.lower || lower.is_nan() {
-        range.lower = lower;
+const EMPTY: [Extreme; 2] =
+    [Extreme { value: f64::INFINITY, beyond: 0.0 }, Extreme { value: f64::NEG_INFINITY, beyond: 0.0 }];
+
+/// Widens `extremes`; not a number wins over everything, and of equals the one with the larger error.
+fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
+    if low.value < least.value || low.value.is_nan() || (low.value == least.value && low.beyond > least.beyond) {
+        *least = low;
     }
-    if upper > range.upper || upper.is_nan() {
-        range.upper = upper;
+    if high.value > largest.value
+        || high.value.is_nan()
+        || (high.value == largest.value && high.beyond > largest.beyond)
+    {
+        *largest = high;
     }
 }
 
 impl ScanBounds {
-    /// Before the first sample.
-    pub fn new(times: usize, outputs: usize) -> Self {
-        Self { outputs, ranges: vec![EMPTY; times * outputs] }
+    /// Before the first sample of a grid with so many points along each axis.
+    pub fn new(times: usize, outputs: usize, points: &[usize]) -> Self {
+        Self { outputs, points: points.to_vec(), extremes: vec![EMPTY; times * outputs] }
     }
 
-    /// One sample's value of an output at a time.
-    pub fn observe(&mut self, time: usize, output: usize, value: f64) {
-        include(&mut self.ranges[time * self.outputs + output], value, value);
-    }
-
-    /// Many samples' values of an output at a time.
-    pub fn observe_all(&mut self, time: usize, output: usize, values: &[f64]) {
-        let range = &mut self.ranges[time * self.outputs + output];
-        values.iter().for_each(|&value| include(range, value, value));
+    /// Values of an output at a time for the grid's samples from number `first` on.
+    pub fn observe(&mut self, time: usize, output: usize, first: usize, values: &[f64]) {
+        let place = |better: fn(f64, f64) -> bool| {
+            (0..values.len()).reduce(|best, place| {
+                let (value, known) = (values[place], values[best]);
+                if better(value, known) || (value.is_nan() && !known.is_nan()) { place } else { best }
+            })
+        };
+        let (Some(least), Some(largest)) = (place(|a, b| a < b), place(|a, b| a > b)) else { return };
+        let extremes = [least, largest]
+            .map(|place| Extreme { value: values[place], beyond: beyond(&self.points, first, values, place) });
+        include(&mut self.extremes[time * self.outputs + output], extremes);
     }
 
     /// All that another part of the same scan has seen.
     pub fn merge(&mut self, other: &Self) {
-        assert_eq!((self.outputs, self.ranges.len()), (other.outputs, other.ranges.len()), "parts of different scans");
-        for (range, other) in self.ranges.iter_mut().zip(&other.ranges) {
-            include(range, other.lower, other.upper);
+        assert_eq!((self.outputs, &self.points), (other.outputs, &other.points), "parts of different scans");
+        for (extremes, &other) in self.extremes.iter_mut().zip(&other.extremes) {
+            include(extremes, other);
         }
     }
 
     /// Bounds of an output at a time; unknown before the first sample and after one that was not a number.
     pub fn range(&self, time: usize, output: usize) -> Range {
-        let range = self.ranges[time * self.outputs + output];
-        if range.lower <= range.upper { range } else { Range::UNKNOWN }
+        let [least, largest] = self.extremes[time * self.outputs + output];
+        if least.value <= largest.value { Range { lower: least.value, upper: largest.value } } else { Range::UNKNOWN }
     }
+
+    /// How far the response may go beyond those bounds between the samples.
+    pub fn error(&self, time: usize, output: usize) -> f64 {
+        let [least, largest] = self.extremes[time * self.outputs + output];
+        if least.beyond <= largest.beyond { largest.beyond } else { least.beyond }
+    }
+}
+
+/// What the response may go beyond the sample at `place`: along each axis an eighth of the second difference, unless the
+/// sample is at the axis' end. Along an axis whose neighbours are in another part of the scan, the largest of the others'.
+fn beyond(points: &[usize], first: usize, values: &[f64], place: usize) -> f64 {
+    let (mut known, mut largest, mut unknown) = (0.0, 0.0_f64, 0.0);
+    let mut stride = 1;
+    for &count in points.iter().rev() {
+        if count > 2 {
+            let at = (first + place) / stride % count;
+            // The nearest sample that is not at the end.
+            let middle = (place + stride * at.clamp(1, count - 2)).checked_sub(stride * at);
+            let neighbours = middle.and_then(|middle| Some((middle.checked_sub(stride)?, middle)));
+            let inside = at > 0 && at + 1 < count;
+            match neighbours.filter(|(_, middle)| middle + stride < values.len()) {
+                Some((before, middle)) => {
+                    let bend = (values[before] - 2.0 * values[middle] + values[middle + stride]).abs() / 8.0;
+                    known += if inside { bend } else { 0.0 };
+                    largest = largest.max(bend);
+                }
+                _ if inside => unknown += 1.0,
+                _ => (),
+            }
+        }
+        stride *= count;
+    }
+    known + unknown * largest
 }
 
 #[cfg(test)]
@@ -62,28 +115,54 @@ mod tests {
 
     #[test]
     fn not_a_number_stays() {
-        let mut scan = ScanBounds::new(1, 2);
+        let mut scan = ScanBounds::new(1, 2, &[6]);
         assert!(scan.range(0, 0).lower.is_nan());
-        scan.observe_all(0, 0, &[1.0, f64::NAN, 2.0]);
-        scan.observe(0, 1, 3.0);
-        let mut whole = ScanBounds::new(1, 2);
-        whole.observe_all(0, 0, &[-1.0, 5.0]);
+        scan.observe(0, 0, 0, &[1.0, f64::NAN, 2.0]);
+        scan.observe(0, 1, 0, &[3.0]);
+        let mut whole = ScanBounds::new(1, 2, &[6]);
+        whole.observe(0, 0, 3, &[-1.0, 5.0]);
         whole.merge(&scan);
-        whole.observe(0, 0, 9.0);
+        whole.observe(0, 0, 5, &[9.0]);
         assert!(whole.range(0, 0).lower.is_nan() && whole.range(0, 0).upper.is_nan());
         assert_eq!(whole.range(0, 1), Range { lower: 3.0, upper: 3.0 });
+    }
+
+    /// The peak of a parabola lies wherever it likes between the samples.
+    #[test]
+    fn a_peak_between_samples_is_within_the_error() {
+        for shift in [-0.1, -0.03, 0.0, 0.02, 0.07, 0.1] {
+            let value = |i: usize, j: usize| {
+                let (x, y) = (-1.0 + 0.2 * i as f64, -1.0 + 0.2 * j as f64);
+                1.0 - (x - shift).powi(2) - 3.0 * (y - 2.0 * shift).powi(2)
+            };
+            let values: Vec<f64> = (0..121).map(|index| value(index / 11, index % 11)).collect();
+            let mut scan = ScanBounds::new(1, 1, &[11, 11]);
+            scan.observe(0, 0, 0, &values);
+            let (missed, error) = (1.0 - scan.range(0, 0).upper, scan.error(0, 0));
+            assert!(missed <= error + 1e-12, "{shift}: {missed} of {error}");
+            assert!(error < 0.041);
+        }
+    }
+
+    #[test]
+    fn the_ends_of_the_axes_are_exact() {
+        let values: Vec<f64> = (0..25).map(|index| (0.3 * index as f64).exp()).collect();
+        let mut scan = ScanBounds::new(1, 1, &[5, 5]);
+        scan.observe(0, 0, 0, &values);
+        assert_eq!(scan.error(0, 0), 0.0);
     }
 
     proptest! {
         #[test]
         fn parts_merge_to_the_whole(values in prop::collection::vec(-1e3..1e3_f64, 1..50), cut in 0..50_usize) {
             let cut = cut.min(values.len());
-            let (mut whole, mut first, mut second) = (ScanBounds::new(1, 1), ScanBounds::new(1, 1), ScanBounds::new(1, 1));
-            whole.observe_all(0, 0, &values);
-            first.observe_all(0, 0, &values[..cut]);
-            second.observe_all(0, 0, &values[cut..]);
+            let empty = || ScanBounds::new(1, 1, &[values.len()]);
+            let (mut whole, mut first, mut second) = (empty(), empty(), empty());
+            whole.observe(0, 0, 0, &values);
+            first.observe(0, 0, 0, &values[..cut]);
+            second.observe(0, 0, cut, &values[cut..]);
             second.merge(&first);
-            prop_assert_eq!(&whole, &second);
+            prop_assert_eq!(whole.range(0, 0), second.range(0, 0));
             prop_assert!(values.iter().all(|&value| whole.range(0, 0).contains(value)));
         }
     }

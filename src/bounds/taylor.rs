@@ -2,17 +2,19 @@
 
 use symdiff::jet::Monomials;
 
-use super::range::{PolynomialRange, Range};
+use super::range::{Enclosed, PolynomialRange, Range};
 use super::tensor::{Matrix, Separable, Work};
 use crate::model::RangeKind;
 
-/// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term.
+/// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how much
+/// too wide it is is unknown.
 const MAX_TENSOR: usize = 1 << 16;
 
 /// Bounds polynomials of total degree N in k variables, given by coefficients in the order of [`Monomials`], which is
 /// that of jets: Σ c_e ξ₁^e₁ … ξ_k^e_k.
 #[derive(Clone, Debug)]
 pub struct TaylorRange {
+    kind: RangeKind,
     monomials: Monomials,
     /// Whether all powers of a monomial are even: then it lies in [0, 1], otherwise in [−1, 1].
     even: Vec<bool>,
@@ -36,7 +38,7 @@ impl TaylorRange {
         let monomials = Monomials::new(variables, order);
         let even = (0..monomials.len()).map(|r| monomials.exponents(r).iter().all(|e| e % 2 == 0)).collect();
         let size = (0..variables).fold(1_usize, |size, _| size.saturating_mul(order + 1));
-        let tensor = (kind == RangeKind::Tight && size <= MAX_TENSOR).then(|| {
+        let tensor = (size <= MAX_TENSOR).then(|| {
             let place = |r| monomials.exponents(r).iter().fold(0, |place, e| place * (order + 1) + e);
             Tensor {
                 places: (0..monomials.len()).map(place).collect(),
@@ -46,7 +48,7 @@ impl TaylorRange {
                 range: PolynomialRange::new(&vec![order; variables], RangeKind::Tight),
             }
         });
-        Self { monomials, even, tensor }
+        Self { kind, monomials, even, tensor }
     }
 
     /// What the coefficients stand before.
@@ -57,16 +59,25 @@ impl TaylorRange {
     /// Range of the polynomial with these coefficients. Exact for a constant; unknown if any coefficient is infinite or
     /// not a number. The tight range is never wider than the one term by term.
     pub fn range(&mut self, coefficients: &[f64]) -> Range {
+        self.enclose(coefficients).0
+    }
+
+    /// The same, with how much too wide it may be: not a number where the polynomial is too large to know.
+    pub fn enclose(&mut self, coefficients: &[f64]) -> (Range, f64) {
         let terms = self.term_by_term(coefficients);
-        let Some(tensor) = &mut self.tensor else { return terms };
+        let Some(tensor) = &mut self.tensor else { return (terms, f64::NAN) };
         for (&place, &c) in tensor.places.iter().zip(coefficients) {
             tensor.powers[place] = c;
         }
-        let tight = tensor.range.range(tensor.conversion.apply(&tensor.powers, &mut tensor.work));
-        if terms.lower.is_nan() {
-            return terms;
-        }
-        Range { lower: tight.lower.max(terms.lower), upper: tight.upper.min(terms.upper) }
+        let Enclosed { outer, attained } =
+            tensor.range.enclose(tensor.conversion.apply(&tensor.powers, &mut tensor.work));
+        let range = match self.kind {
+            RangeKind::Tight if !terms.lower.is_nan() => {
+                Range { lower: outer.lower.max(terms.lower), upper: outer.upper.min(terms.upper) }
+            }
+            _ => terms,
+        };
+        (range, Enclosed { outer: range, attained }.excess())
     }
 
     /// The paper's (8) without its remainder, each power evaluated as a power: even ones are not negative.

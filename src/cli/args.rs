@@ -26,6 +26,7 @@ Exit status:
   0  done
   1  a run failed; what was finished is kept
   2  the command or a model is wrong; nothing was run
+  3  done, but at some time no method resolves an output: the errors are too large
 
 Begin with `mbint new NAME`, which writes a small model to change.";
 
@@ -73,6 +74,10 @@ pub(super) struct RunArgs {
     #[arg(short, long)]
     pub quiet: bool,
 
+    /// Simulate every sample with halved steps too, to know the time steps' error of every bound [default: a few].
+    #[arg(long)]
+    pub certify_time: bool,
+
     /// Write seconds into summary.json, which is then no longer the same from run to run.
     #[arg(long)]
     pub timings: bool,
@@ -82,7 +87,8 @@ pub(super) struct RunArgs {
 const MOST_THREADS: i64 = 1024;
 
 const RUN_HELP: &str = "\
-Writes bounds.csv (a column t, then NAME.nominal, NAME.chebyshev.lower, … of each output),
+Writes bounds.csv (a column t, then NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
+output, and which are unresolved),
 summary.json, and a plot NAME.svg of each output.";
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ use super::Failure;
 
 /// Headings.
 pub(super) const BOLD: Style = Style::new().bold();
+const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
 /// Standard output and standard error.
@@ -37,6 +38,11 @@ impl Console {
     /// An error's one line on standard error.
     pub fn error(&self, message: &str) {
         self.complain(&format!("{RED}error{RED:#}: {message}\n"));
+    }
+
+    /// A warning's one line on standard error.
+    pub fn warning(&self, message: &str) {
+        self.complain(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
     }
 
     /// Text as it stands to standard error. If that is closed there is no one left to tell.

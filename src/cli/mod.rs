@@ -1,7 +1,8 @@
 //! The command line. Arguments are read (`args`), checked and built once into what a command needs, and carried out
 //! by one file a command.
 //!
-//! Exit status: 0 done; 1 the run failed; 2 the command or the model is wrong.
+//! Exit status: 0 done; 1 the run failed; 2 the command or the model is wrong; 3 done, but
+//! at some time no method resolves an output.
 
 mod args;
 mod check;
@@ -24,9 +25,21 @@ use self::console::Console;
 /// How a command ended; the worse, the greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Status {
-    Done = 0,
-    Failed = 1,
-    Wrong = 2,
+    Done,
+    Unresolved,
+    Failed,
+    Wrong,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(match status {
+            Status::Done => 0,
+            Status::Failed => 1,
+            Status::Wrong => 2,
+            Status::Unresolved => 3,
+        })
+    }
 }
 
 /// Why a command came to an end before its time, in words for the user.
@@ -65,7 +78,7 @@ pub fn main() -> ExitCode {
         console.error(&message);
         status
     });
-    ExitCode::from(status as u8)
+    ExitCode::from(status)
 }
 
 fn carry_out(command: Command, console: &mut Console) -> Result<Status, Failure> {

@@ -9,11 +9,11 @@ use super::progress::Progress;
 use super::table::{Align, Table};
 use super::{Failure, Status, load};
 use crate::batch;
-use crate::bounds::Method;
+use crate::bounds::{Method, OutputBounds};
 use crate::mechanics;
 use crate::model::Description;
 use crate::model::Override;
-use crate::report::{Summary, file_stem, prepare_folder, write_results};
+use crate::report::{ErrorSummary, Summary, file_stem, prepare_folder, write_results};
 
 /// What a run needs, checked.
 struct Request {
@@ -25,6 +25,7 @@ struct Request {
     threads: Option<usize>,
     quiet: bool,
     timings: bool,
+    certify_time: bool,
 }
 
 /// A model with the folder for its results.
@@ -70,7 +71,12 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
     let progress = Progress::new(name, !request.quiet);
     let report = |fraction| progress.set(fraction);
-    let options = batch::Options { methods: request.methods.clone(), threads: request.threads, progress: &report };
+    let options = batch::Options {
+        methods: request.methods.clone(),
+        threads: request.threads,
+        certify_time: request.certify_time,
+        progress: &report,
+    };
     let (bounds, summary) = batch::run(&job.model, options).map_err(|error| failed(&error))?;
     drop(progress);
 
@@ -79,10 +85,18 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
     if !request.quiet {
         console.print(&overview(&summary, &job.folder, &files))?;
     }
-    match &summary.failure {
-        None => Ok(Status::Done),
-        Some(failure) => Err(failed(failure)),
+    if let Some(failure) = &summary.failure {
+        return Err(failed(failure));
     }
+    if let Some(message) = unresolved(&summary) {
+        console.warning(&format!("{name}: {message}"));
+    }
+    // A method that is lost where another is not leaves an answer.
+    let answered = |output: &OutputBounds| {
+        let resolved = |row: usize| output.bands.iter().any(|band| !band.error.unresolved[row]);
+        output.bands.is_empty() || (0..bounds.times.len()).all(resolved)
+    };
+    Ok(if bounds.outputs.iter().all(answered) { Status::Done } else { Status::Unresolved })
 }
 
 impl Request {
@@ -104,6 +118,7 @@ impl Request {
             threads: args.threads.map(usize::from),
             quiet: args.quiet,
             timings: args.timings,
+            certify_time: args.certify_time,
         })
     }
 }
@@ -129,6 +144,46 @@ fn jobs(models: Vec<Description>, request: &Request) -> Result<Vec<Job>, Failure
         jobs.push(Job { model, folder });
     }
     Ok(jobs)
+}
+
+/// How wide each band is and how far it may be from the truth.
+fn errors(errors: &[ErrorSummary]) -> String {
+    /// What still fits a screen.
+    const MOST: usize = 24;
+    let mut table = Table::new([
+        ("bounds", Align::Left),
+        ("widest", Align::Right),
+        ("error", Align::Right),
+        ("of the surrogate", Align::Right),
+        ("of the steps", Align::Right),
+    ]);
+    for error in errors.iter().take(MOST) {
+        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
+        let name = format!("{}.{}", error.output, error.method);
+        table.row([name, number(error.width), number(error.error), number(error.surrogate), number(error.time)]);
+    }
+    match errors.len() {
+        0 => String::new(),
+        n if n > MOST => format!("\n{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
+        _ => format!("\n{}\n", table.render(2)),
+    }
+}
+
+/// Which bounds cannot be relied on, and from when.
+fn unresolved(summary: &Summary) -> Option<String> {
+    const MOST: usize = 4;
+    let mut bands: Vec<(f64, String)> = summary
+        .errors
+        .iter()
+        .filter_map(|error| Some((error.unresolved_from?, format!("{}.{}", error.output, error.method))))
+        .collect();
+    let total = bands.len();
+    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    bands.truncate(MOST);
+    let named: Vec<String> = bands.iter().map(|(time, band)| format!("{band} from {time} s")).collect();
+    let more = if total > MOST { format!(" and {} more", total - MOST) } else { String::new() };
+    let help = "their errors are too large there: see the `.error` columns";
+    (total > 0).then(|| format!("bounds are not resolved: {}{more}; {help}", named.join(", ")))
 }
 
 /// What was done, and where it is, for people.
@@ -157,6 +212,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
         count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
         table.render(2),
     );
+    text += &errors(&summary.errors);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let steps = count(method.rank_revealing_solves as usize, "step", "steps");
         text += &format!("  {}: {steps} through a singular matrix, by the rank-revealing solve\n", method.method);
@@ -192,6 +248,15 @@ mod tests {
             duration: 2.0,
             parameters: vec![],
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
+            errors: vec![ErrorSummary {
+                output: "x3".into(),
+                method: "scan".into(),
+                width: 0.2,
+                error: 2e-3,
+                surrogate: f64::NAN,
+                time: 1.5e-3,
+                unresolved_from: None,
+            }],
             failure: None,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
@@ -203,6 +268,9 @@ mod tests {
           method   solves    steps  Newton iterations  seconds
           nominal       1     2000               4013    0.004
           scan        900  1800000            3611700        –
+
+          bounds    widest    error  of the surrogate  of the steps
+          x3.scan  2.00e-1  2.00e-3           unknown       1.50e-3
 
           scan: 12 steps through a singular matrix, by the rank-revealing solve
           results/slider_crank: bounds.csv, x3.svg

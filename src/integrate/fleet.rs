@@ -41,8 +41,8 @@ struct Member<'s> {
 pub enum Observed {
     /// The model's outputs.
     Outputs,
-    /// Positions, then velocities: 2n.
-    State,
+    /// Positions, then velocities (2n), then the model's outputs.
+    Motion,
 }
 
 impl Observed {
@@ -50,7 +50,7 @@ impl Observed {
     pub fn count(self, simulator: &Simulator) -> usize {
         match self {
             Self::Outputs => simulator.program.outputs.len(),
-            Self::State => 2 * simulator.program.scale.len(),
+            Self::Motion => 2 * simulator.program.scale.len() + simulator.program.outputs.len(),
         }
     }
 }
@@ -190,7 +190,11 @@ impl Member<'_> {
             let values = &mut values[place * outputs * width..][..outputs * width];
             match observed {
                 Observed::Outputs => self.stepper.observe(values),
-                Observed::State => self.stepper.copy_motion(values),
+                Observed::Motion => {
+                    let (motion, outputs) = values.split_at_mut(2 * self.stepper.coordinates() * width);
+                    self.stepper.copy_motion(motion);
+                    self.stepper.observe(outputs);
+                }
             }
         }
         (values, stops)

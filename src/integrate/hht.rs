@@ -61,6 +61,11 @@ impl<'p> Stepper<'p> {
         &mut self.tile
     }
 
+    /// Number of coordinates, n.
+    pub fn coordinates(&self) -> usize {
+        self.program.layout.q.len()
+    }
+
     /// Which lanes still run.
     pub fn alive(&self) -> &[bool] {
         &self.alive

@@ -35,6 +35,25 @@ impl Schedule {
         Self { output_step, rows: ends.len() + 1, steps: Steps::Listed(ends) }
     }
 
+    /// The same rows, each step divided into `parts` equal ones.
+    #[must_use]
+    pub fn refined(&self, parts: usize) -> Self {
+        let steps = match &self.steps {
+            Steps::Fixed { step, per_row } => Steps::Fixed { step: step / parts as f64, per_row: per_row * parts },
+            Steps::Listed(ends) => {
+                let refine = |row: usize| {
+                    self.steps_to(row)
+                        .flat_map(|(h, end)| {
+                            (1..=parts).map(move |part| end - h * (parts - part) as f64 / parts as f64)
+                        })
+                        .collect()
+                };
+                Steps::Listed((1..=ends.len()).map(refine).collect())
+            }
+        };
+        Self { steps, ..*self }
+    }
+
     /// Number of rows for a schedule still to be made.
     pub fn rows_of(duration: f64, output_step: f64) -> usize {
         rows(duration, output_step)
@@ -119,5 +138,21 @@ mod tests {
         let schedule = Schedule::listed(0.1, vec![vec![0.05, 0.1], vec![0.2]]);
         let steps: Vec<(f64, f64)> = schedule.steps_to(1).chain(schedule.steps_to(2)).collect();
         assert_eq!(steps, [(0.05, 0.05), (0.05, 0.1), (0.1, 0.2)]);
+    }
+
+    #[test]
+    fn refined_steps_meet_the_same_rows() {
+        for schedule in [Schedule::fixed(0.2, 0.05, 0.1), Schedule::listed(0.1, vec![vec![0.025, 0.1], vec![0.2]])] {
+            let refined = schedule.refined(3);
+            assert_eq!(refined.steps_before(2), 3 * schedule.steps_before(2));
+            for row in 1..3 {
+                let (coarse, fine): (Vec<_>, Vec<_>) =
+                    (schedule.steps_to(row).collect(), refined.steps_to(row).collect());
+                for (coarse, fine) in coarse.iter().zip(fine.chunks_exact(3)) {
+                    assert!(fine.iter().all(|(h, _)| (3.0 * h - coarse.0).abs() < 1e-15));
+                    assert!((fine[2].1 - coarse.1).abs() < 1e-15);
+                }
+            }
+        }
     }
 }

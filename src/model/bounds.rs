@@ -78,7 +78,9 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
     };
     let expand = match fields.get("expand") {
         Some(node) => reader.choice(node, &EXPAND),
-        None => Some(Expand::Output),
+        // A range is asked for of outputs only.
+        None if fields.get("range").is_some() => Some(Expand::Output),
+        None => Some(Expand::Coordinates),
     };
     if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
         let help = "leave it out, or expand the output".to_owned();

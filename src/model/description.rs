@@ -392,6 +392,13 @@ pub struct BoundsRequest {
     pub scan: Option<ScanRequest>,
 }
 
+impl BoundsRequest {
+    /// Whether no method is asked for.
+    pub fn is_empty(&self) -> bool {
+        self.chebyshev.is_none() && self.taylor.is_none() && self.scan.is_none()
+    }
+}
+
 /// Chebyshev bounds.
 #[derive(Clone, Debug)]
 pub struct ChebyshevRequest {
@@ -428,9 +435,9 @@ impl ChebyshevRequest {
     /// Degree where a model asks for none.
     pub const ORDER: usize = 5;
 
-    /// One degree for each of k parameters, one node more than the degree, the tight range.
+    /// One degree for each of k parameters, one node more than the degree.
     pub fn of_order(order: usize, k: usize) -> Self {
-        Self { order: vec![order; k], nodes: vec![order + 1; k], expand: Expand::Output, range: RangeKind::Tight }
+        Self { order: vec![order; k], nodes: vec![order + 1; k], expand: Expand::Coordinates, range: RangeKind::Tight }
     }
 }
 

@@ -357,9 +357,9 @@ grammar! {
         order: Option<PerParameter>,
         /// Nodes, more than the degree; by default one more.
         nodes: Option<PerParameter>,
-        /// What is expanded; by default the output.
+        /// What is expanded; by default the coordinates, or the output where a `range` is asked for.
         expand: Option<Expand>,
-        /// How the range of an output's polynomial is found; by default tight.
+        /// How the range of an output's polynomial is found; by default tight. Coordinates need none.
         range: Option<Range>,
     }
 

@@ -2,21 +2,25 @@
 
 use csv::WriterBuilder;
 
-use crate::bounds::Bounds;
+use crate::bounds::{Band, Bounds};
 
 /// The table of all bounds as CSV, RFC 4180 with `\n` line ends.
 ///
-/// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower` and
-/// `x3.chebyshev.upper`. Numbers are the shortest decimals that read back as the same `f64`; what is unknown is `NaN`.
+/// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower`, `.upper` and `.error`;
+/// last `unresolved`, which names the bands that cannot be relied on in that row (`x3.chebyshev x3.taylor`), where there are
+/// bands. Numbers are the shortest decimals that read back as the same `f64`; what is unknown is `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
 pub fn bounds_csv(bounds: &Bounds) -> Result<Vec<u8>, csv::Error> {
     let columns = columns(bounds);
     let mut writer = WriterBuilder::new().from_writer(Vec::new());
-    writer.write_record(columns.iter().map(|column| column.name.as_str()))?;
+    let bands = bands(bounds);
+    let heading = (!bands.is_empty()).then(|| "unresolved".to_owned());
+    writer.write_record(columns.iter().map(|column| column.name.clone()).chain(heading))?;
     for row in 0..bounds.times.len() {
-        writer.write_record(columns.iter().map(|column| number(column.values[row])))?;
+        let unresolved = (!bands.is_empty()).then(|| unresolved(&bands, row));
+        writer.write_record(columns.iter().map(|column| number(column.values[row])).chain(unresolved))?;
     }
     writer.into_inner().map_err(|e| e.into_error().into())
 }
@@ -39,9 +43,22 @@ fn columns(bounds: &Bounds) -> Vec<Column<'_>> {
             let method = band.method.name();
             add(format!("{method}.lower"), &band.lower);
             add(format!("{method}.upper"), &band.upper);
+            add(format!("{method}.error"), &band.error.total);
         }
     }
     columns
+}
+
+/// All bands, with their names.
+fn bands(bounds: &Bounds) -> Vec<(String, &Band)> {
+    let outputs = bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| (output, band)));
+    outputs.map(|(output, band)| (format!("{}.{}", output.name, band.method.name()), band)).collect()
+}
+
+/// Names of the bands that are not resolved in a row.
+fn unresolved(bands: &[(String, &Band)], row: usize) -> String {
+    let names = bands.iter().filter(|(_, band)| band.error.unresolved[row]).map(|(name, _)| name.as_str());
+    names.collect::<Vec<_>>().join(" ")
 }
 
 /// The shortest decimal that reads back as `x`: `0.1`, `2`, `1e-7`, `NaN`, `inf`.
@@ -57,11 +74,14 @@ fn number(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::{Band, Method, OutputBounds};
+    use crate::bounds::{BandError, Method, OutputBounds};
 
     #[test]
     fn a_column_for_each_curve_in_the_order_of_the_model() {
-        let band = |method, lower, upper| Band { method, lower: vec![lower; 2], upper: vec![upper; 2] };
+        let band = |method, lower, upper, error: [f64; 2], unresolved: [bool; 2]| {
+            let error = BandError { total: error.to_vec(), unresolved: unresolved.to_vec(), ..BandError::default() };
+            Band { method, lower: vec![lower; 2], upper: vec![upper; 2], error }
+        };
         let bounds = Bounds {
             times: vec![0.0, 0.01],
             outputs: vec![
@@ -69,7 +89,10 @@ mod tests {
                     name: "x3".into(),
                     unit: "m".into(),
                     nominal: vec![0.71, f64::NAN],
-                    bands: vec![band(Method::Chebyshev, 0.7, 0.72), band(Method::Scan, 0.705, 0.715)],
+                    bands: vec![
+                        band(Method::Chebyshev, 0.7, 0.72, [1e-3, 0.5], [false, true]),
+                        band(Method::Scan, 0.705, 0.715, [0.0, f64::NAN], [false, true]),
+                    ],
                 },
                 OutputBounds {
                     name: "a,\"b\"".into(),
@@ -82,9 +105,10 @@ mod tests {
         let text = String::from_utf8(bounds_csv(&bounds).unwrap()).unwrap();
         assert_eq!(
             text,
-            "t,x3.nominal,x3.chebyshev.lower,x3.chebyshev.upper,x3.scan.lower,x3.scan.upper,\"a,\"\"b\"\".nominal\"\n\
-             0,0.71,0.7,0.72,0.705,0.715,1e-300\n\
-             0.01,NaN,0.7,0.72,0.705,0.715,-2\n"
+            "t,x3.nominal,x3.chebyshev.lower,x3.chebyshev.upper,x3.chebyshev.error,x3.scan.lower,x3.scan.upper,\
+             x3.scan.error,\"a,\"\"b\"\".nominal\",unresolved\n\
+             0,0.71,0.7,0.72,0.001,0.705,0.715,0,1e-300,\n\
+             0.01,NaN,0.7,0.72,0.5,0.705,0.715,NaN,-2,x3.chebyshev x3.scan\n"
         );
     }
 

@@ -154,6 +154,7 @@ mod tests {
             duration: 1.0,
             parameters: vec![],
             methods: vec![],
+            errors: vec![],
             failure: None,
         };
         (bounds, summary)

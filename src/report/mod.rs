@@ -13,4 +13,4 @@ pub use self::csv::bounds_csv;
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, prepare_folder, write_results};
 pub use plot::plot_svg;
-pub use summary::{MethodSummary, ParameterSummary, Summary};
+pub use summary::{ErrorSummary, MethodSummary, ParameterSummary, Summary};

@@ -2,6 +2,8 @@
 //!
 //! Two panels share the time axis. The upper shows the output: the nominal course and every method's band. Tolerances of
 //! a per cent make bands that are a line wide there, so the lower panel shows the bands less the nominal course.
+//!
+//! Around each band a lighter one is as wide as its error; from where it is not resolved, a band is hatched.
 
 use std::fmt::Display;
 
@@ -32,6 +34,10 @@ const TEXT_COLOR: RGBColor = RGBColor(34, 34, 34);
 const FRAME: RGBColor = RGBColor(102, 102, 102);
 const GRID: RGBColor = RGBColor(228, 228, 228);
 const NOMINAL: RGBColor = BLACK;
+/// Opacity of what a band's error adds, over the band's own.
+const LIGHTER: f64 = 0.5;
+/// From one line of a hatched band to the next, and how far each leans over, px.
+const HATCH: (f64, f64) = (7.0, 5.0);
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
@@ -102,13 +108,13 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
     let upper = Panel { canvas, left, right: width - RIGHT, top: TOP, bottom: split, x: &time, y: &main };
 
     upper.mesh()?;
-    for band in &output.bands {
-        upper.band(times, band)?;
-    }
+    upper.bands(times, &output.bands)?;
     upper.curve(times, &output.nominal, NOMINAL, 1.2)?;
     upper.y_title(&main.title(&shortened(&output.name), &output.unit))?;
     let beyond = beyond.iter().zip(beyond_below).map(|(&above, below)| above || below);
-    upper.legend(output.bands.iter().map(|band| style(band.method)).zip(beyond))?;
+    let unresolved = output.bands.iter().map(|band| band.error.unresolved_from().map(|row| times[row]));
+    let notes = beyond.zip(unresolved).map(|(beyond, unresolved)| note(beyond, unresolved));
+    upper.legend(output.bands.iter().map(|band| style(band.method)).zip(notes))?;
     if output.bands.is_empty() {
         upper.frame()?;
         return upper.time_axis();
@@ -116,9 +122,7 @@ fn draw(canvas: &Canvas, times: &[f64], output: &OutputBounds) -> Result<(), imp
 
     let lower = Panel { top: split + BETWEEN, bottom: height - BOTTOM, y: &below, ..upper };
     lower.mesh()?;
-    for band in &deviations {
-        lower.band(times, band)?;
-    }
+    lower.bands(times, &deviations)?;
     // The nominal course, less itself: a line at zero with the same gaps.
     let zero: Vec<f64> = output.nominal.iter().map(|x| if x.is_finite() { 0.0 } else { f64::NAN }).collect();
     lower.curve(times, &zero, NOMINAL, 1.2)?;
@@ -181,35 +185,68 @@ impl Panel<'_, '_> {
     }
 
     /// A row above the panel: never in the way of the data.
-    fn legend(&self, bands: impl Iterator<Item = (Style, bool)>) -> Drawn {
+    fn legend(&self, bands: impl Iterator<Item = (Style, String)>) -> Drawn {
         let y = self.top - 19.0;
         let mut x = self.left;
         self.line(&[(x, y), (x + 26.0, y)], NOMINAL.stroke_width(fine(1.4)))?;
         self.text("Nominal", (x + 33.0, y), HPos::Left, VPos::Center)?;
         x += legend_step("Nominal");
-        for (style, beyond) in bands {
+        for (style, note) in bands {
             let (top, bottom) = (y - 6.0, y + 6.0);
-            self.fill(&[(x, top), (x + 26.0, top), (x + 26.0, bottom), (x, bottom)], &style)?;
+            self.fill(&[(x, top), (x + 26.0, top), (x + 26.0, bottom), (x, bottom)], &style, 1.0)?;
             for edge in [top, bottom] {
                 self.line(&[(x, edge), (x + 26.0, edge)], style.color.stroke_width(fine(style.edge)))?;
             }
-            let label = if beyond { format!("{} (beyond the plot)", style.label) } else { style.label.to_owned() };
+            let label = format!("{}{note}", style.label);
             self.text(&label, (x + 33.0, y), HPos::Left, VPos::Center)?;
             x += legend_step(&label);
         }
         Ok(())
     }
 
+    /// Errors below, then the bands.
+    fn bands(&self, times: &[f64], bands: &[Band]) -> Drawn {
+        for band in bands {
+            let apart = |side: &[f64], sign: f64| -> Vec<f64> {
+                side.iter().zip(&band.error.total).map(|(bound, error)| bound + sign * error).collect()
+            };
+            self.between(times, &apart(&band.lower, -1.0), &apart(&band.upper, 1.0), &style(band.method), LIGHTER)?;
+        }
+        bands.iter().try_for_each(|band| self.band(times, band))
+    }
+
     fn band(&self, times: &[f64], band: &Band) -> Drawn {
         let style = style(band.method);
-        let pieces = band_pieces(times, &band.lower, &band.upper);
-        for (lower, upper) in &pieces {
-            let outline: Vec<Point> = upper.iter().chain(lower.iter().rev()).map(|p| self.place(*p)).collect();
-            self.fill(&outline, &style)?;
+        self.between(times, &band.lower, &band.upper, &style, 1.0)?;
+        self.hatch(times, band, &style)?;
+        for (lower, upper) in band_pieces(times, &band.lower, &band.upper) {
+            self.points(&lower, style.color, style.edge)?;
+            self.points(&upper, style.color, style.edge)?;
         }
-        for (lower, upper) in &pieces {
-            self.points(lower, style.color, style.edge)?;
-            self.points(upper, style.color, style.edge)?;
+        Ok(())
+    }
+
+    /// What lies between two curves.
+    fn between(&self, times: &[f64], lower: &[f64], upper: &[f64], style: &Style, opacity: f64) -> Drawn {
+        for (lower, upper) in band_pieces(times, lower, upper) {
+            let outline: Vec<Point> = upper.iter().chain(lower.iter().rev()).map(|p| self.place(*p)).collect();
+            self.fill(&outline, style, opacity)?;
+        }
+        Ok(())
+    }
+
+    /// Lines across the band from where it is not resolved.
+    fn hatch(&self, times: &[f64], band: &Band, style: &Style) -> Drawn {
+        let Some(first) = band.error.unresolved_from() else { return Ok(()) };
+        let pixels_a_row = (self.right - self.left) * (self.x.place(times[times.len() - 1]) - self.x.place(times[0]))
+            / (times.len() - 1).max(1) as f64;
+        let rows = |pixels: f64| ((pixels / pixels_a_row) as usize).clamp(1, times.len());
+        for row in (first..times.len()).step_by(rows(HATCH.0)) {
+            let over = (row + rows(HATCH.1)).min(times.len() - 1);
+            let ends = [(times[row], band.lower[row]), (times[over], band.upper[over])];
+            if ends.iter().all(|end| end.1.is_finite()) {
+                self.line(&ends.map(|end| self.place(end)), style.color.stroke_width(fine(1.0)))?;
+            }
         }
         Ok(())
     }
@@ -237,13 +274,28 @@ impl Panel<'_, '_> {
         self.canvas.draw(&PathElement::new(pixels(points), style))
     }
 
-    fn fill(&self, outline: &[Point], style: &Style) -> Drawn {
-        self.canvas.draw(&Polygon::new(pixels(outline), style.color.mix(style.fill).filled()))
+    fn fill(&self, outline: &[Point], style: &Style, opacity: f64) -> Drawn {
+        self.canvas.draw(&Polygon::new(pixels(outline), style.color.mix(opacity * style.fill).filled()))
     }
 
     fn text(&self, text: &str, at: Point, horizontal: HPos, vertical: VPos) -> Drawn {
         self.canvas.draw_text(text, &text_style(horizontal, vertical), pixel(at))
     }
+}
+
+/// What the legend adds to a method's name.
+fn note(beyond: bool, unresolved_from: Option<f64>) -> String {
+    match (unresolved_from, beyond) {
+        (Some(time), _) => format!(" (unresolved from {} s)", short(time)),
+        (None, true) => " (beyond the plot)".to_owned(),
+        (None, false) => String::new(),
+    }
+}
+
+/// A time with three digits.
+fn short(time: f64) -> String {
+    let text = format!("{time:.2e}").parse::<f64>().unwrap_or(time);
+    format!("{text}")
 }
 
 fn text_style(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
@@ -299,6 +351,11 @@ fn shortened(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::BandError;
+
+    fn error(rows: usize, error: f64) -> BandError {
+        BandError { total: vec![error; rows], unresolved: vec![false; rows], ..BandError::default() }
+    }
 
     /// A damped oscillation with bands of about a per cent, one method a little wider than the next.
     fn sample(n: usize) -> (Vec<f64>, OutputBounds) {
@@ -310,6 +367,7 @@ mod tests {
             method,
             lower: times.iter().map(|&t| course(t) - wide * half(t)).collect(),
             upper: times.iter().map(|&t| course(t) + wide * half(t) * 0.9).collect(),
+            error: error(n, 1e-4),
         };
         let bands = vec![band(Method::Chebyshev, 1.0), band(Method::Taylor, 1.0), band(Method::Scan, 0.99)];
         (times.clone(), OutputBounds { name: "x3".into(), unit: "m".into(), nominal, bands })
@@ -356,7 +414,9 @@ mod tests {
         check(&svg);
 
         for value in [0.0, 5.0, -1e-310, f64::MAX, 1e-9, f64::NAN] {
-            let flat = Band { method: Method::Scan, lower: vec![value; 101], upper: vec![value; 101] };
+            let (lower, upper) = (vec![value; 101], vec![value; 101]);
+            let mut flat = Band { method: Method::Scan, lower, upper, error: error(101, value) };
+            flat.error.unresolved[3..].fill(true);
             let nominal = vec![value; 101];
             let constant = OutputBounds { name: "<c & d>".into(), unit: String::new(), nominal, bands: vec![flat] };
             check(&plot_svg(&times, &constant).unwrap());
@@ -376,5 +436,17 @@ mod tests {
         check(&svg);
         assert!(svg.contains("Taylor (beyond the plot)") && !svg.contains("Scan (beyond"));
         assert!(svg.contains("x3 [m]"), "an axis for the others");
+    }
+
+    #[test]
+    fn what_is_not_resolved_is_hatched_from_there_on() {
+        let (times, mut output) = sample(101);
+        let lines = |svg: &str| svg.matches("<polyline").count();
+        let before = lines(&plot_svg(&times, &output).unwrap());
+        output.bands[0].error.unresolved[50] = true;
+        let svg = plot_svg(&times, &output).unwrap();
+        check(&svg);
+        assert!(svg.contains("Chebyshev (unresolved from 1 s)"));
+        assert!(lines(&svg) > before + 60, "lines across the second half of both panels");
     }
 }

@@ -18,6 +18,8 @@ pub struct Summary {
     pub duration: f64,
     pub parameters: Vec<ParameterSummary>,
     pub methods: Vec<MethodSummary>,
+    /// Of every band.
+    pub errors: Vec<ErrorSummary>,
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -44,7 +46,22 @@ pub struct ParameterSummary {
     pub upper: f64,
 }
 
-/// What a method took. `method` is `nominal`, `chebyshev`, `taylor` or `scan`.
+/// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which time on it is
+/// not resolved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct ErrorSummary {
+    pub output: String,
+    pub method: String,
+    pub width: f64,
+    pub error: f64,
+    pub surrogate: f64,
+    pub time: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unresolved_from: Option<f64>,
+}
+
+/// What a method took. `method` is `nominal`, `probes`, `chebyshev`, `taylor` or `scan`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct MethodSummary {

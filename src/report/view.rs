@@ -36,16 +36,17 @@ fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
 /// A band less the nominal course.
 pub(super) fn deviation(band: &Band, nominal: &[f64]) -> Band {
     let less = |side: &[f64]| side.iter().zip(nominal).map(|(x, nominal)| x - nominal).collect();
-    Band { method: band.method, lower: less(&band.lower), upper: less(&band.upper) }
+    Band { lower: less(&band.lower), upper: less(&band.upper), ..band.clone() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::Method;
+    use crate::bounds::{BandError, Method};
 
     fn band(half: f64) -> Band {
-        Band { method: Method::Scan, lower: vec![0.0, -half, f64::NAN], upper: vec![0.0, half, half] }
+        let error = BandError::default();
+        Band { method: Method::Scan, lower: vec![0.0, -half, f64::NAN], upper: vec![0.0, half, half], error }
     }
 
     #[test]

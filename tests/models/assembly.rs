@@ -6,7 +6,7 @@ use mbint::model::Description;
 use super::common::read;
 
 fn error(description: &Description) -> String {
-    let options = Options { methods: None, threads: Some(2), progress: &|_| () };
+    let options = Options { threads: Some(2), ..Options::default() };
     batch::run(description, options).expect_err("it cannot be assembled").to_string()
 }
 

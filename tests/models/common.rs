@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use mbint::batch::{self, Options};
 use mbint::bounds::{Band, Bounds, Method, OutputBounds};
-use mbint::model::{self, ChebyshevRequest, Description, Output, ParameterValue, RangeKind, ScanRequest, Stepping};
+use mbint::model::{
+    self, ChebyshevRequest, Description, Expand, Output, ParameterValue, RangeKind, ScanRequest, Stepping,
+};
 use mbint::report::Summary;
 
 /// The files of `models/`, in alphabetical order.
@@ -53,7 +55,7 @@ pub fn nominal(description: &Description) -> Bounds {
 
 #[track_caller]
 pub fn run_methods(description: &Description, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
-    let options = Options { methods, threads: Some(2), progress: &|_| () };
+    let options = Options { methods, threads: Some(2), ..Options::default() };
     let (bounds, summary) =
         batch::run(description, options).unwrap_or_else(|error| panic!("{}: {error}", description.name));
     assert_eq!(summary.failure, None, "{}", description.name);
@@ -71,7 +73,7 @@ pub trait Vary {
     fn observing(self, formulas: &[&str]) -> Self;
     /// An uncertain parameter's interval, relative to its nominal value.
     fn uncertain(self, parameter: &str, relative: f64) -> Self;
-    /// Chebyshev bounds only, of this order in every parameter.
+    /// Chebyshev bounds of the expanded outputs only, of this order in every parameter.
     fn chebyshev(self, order: usize, range: RangeKind) -> Self;
     /// A scan only.
     fn scan(self, points: usize) -> Self;
@@ -117,7 +119,8 @@ impl Vary for Description {
     }
 
     fn chebyshev(mut self, order: usize, range: RangeKind) -> Self {
-        let request = ChebyshevRequest { range, ..ChebyshevRequest::of_order(order, uncertain_count(&self)) };
+        let order = ChebyshevRequest::of_order(order, uncertain_count(&self));
+        let request = ChebyshevRequest { expand: Expand::Output, range, ..order };
         self.bounds = model::BoundsRequest { chebyshev: Some(request), ..Default::default() };
         self
     }

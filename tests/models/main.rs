@@ -11,6 +11,7 @@ mod closed_forms;
 mod common;
 mod composition;
 mod convergence;
+mod honesty;
 mod invariants;
 mod linkages;
 mod reproducibility;

@@ -7,7 +7,7 @@ use mbint::report::bounds_csv;
 use super::common::{Vary, load, model, model_files};
 
 fn bytes(description: &Description, threads: usize) -> (Vec<u8>, String) {
-    let options = Options { methods: None, threads: Some(threads), progress: &|_| () };
+    let options = Options { threads: Some(threads), ..Options::default() };
     let (bounds, summary) = batch::run(description, options).unwrap();
     (bounds_csv(&bounds).unwrap(), serde_json::to_string_pretty(&summary.without_seconds()).unwrap())
 }

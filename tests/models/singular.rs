@@ -83,7 +83,7 @@ fn a_flat_parallelogram_is_a_singular_start_and_runs() {
     let simulator = batch::prepare(&description).unwrap();
     assert_eq!(simulator.mobility.degrees_of_freedom, 1);
     assert!(simulator.mobility.redundant.is_empty() && !simulator.mobility.singular_at_start.is_empty());
-    let options = Options { methods: None, threads: Some(2), progress: &|_| () };
+    let options = Options { threads: Some(2), ..Options::default() };
     let (bounds, summary) = batch::run(&description, options).unwrap();
     assert_eq!(summary.failure, None);
     let end = *curve(&bounds, "angle").last().unwrap();

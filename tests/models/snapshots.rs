@@ -42,13 +42,17 @@ fn table(bounds: &Bounds) -> String {
         write!(text, "{:>8} {:>12}", "t", "nominal").unwrap();
         for band in &output.bands {
             let method = band.method.name();
-            write!(text, " {:>15} {:>15}", format!("{method}.lower"), format!("{method}.upper")).unwrap();
+            for column in ["lower", "upper", "error"] {
+                write!(text, " {:>15}", format!("{method}.{column}")).unwrap();
+            }
         }
         text += "\n";
         for row in (0..TIMES).map(|place| (place + 1) * rows / TIMES) {
             write!(text, "{:>8} {:>12}", format!("{:.4}", bounds.times[row]), number(output.nominal[row])).unwrap();
             for band in &output.bands {
-                write!(text, " {:>15} {:>15}", number(band.lower[row]), number(band.upper[row])).unwrap();
+                for value in [band.lower[row], band.upper[row], band.error.total[row]] {
+                    write!(text, " {:>15}", number(value)).unwrap();
+                }
             }
             text += "\n";
         }

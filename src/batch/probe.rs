@@ -1,0 +1,76 @@
+//! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
+
+use super::methods::{FleetRun, Run};
+use crate::bounds::{held_out, probes};
+use crate::integrate::{Counters, Observed, Schedule, SimulationError};
+use crate::report::MethodSummary;
+
+/// Values of all outputs at all rows, of a few samples.
+pub(super) struct Table {
+    outputs: usize,
+    samples: usize,
+    /// Row by row, output by output, sample by sample; rows that were not reached are missing.
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// Simulates samples with a run's schedule.
+    pub fn of(run: &Run, samples: &[Vec<f64>]) -> Result<(Self, FleetRun), SimulationError> {
+        let mut values = Vec::new();
+        let done = run.fleet(samples, Observed::Outputs, |_, block| values.extend_from_slice(block))?;
+        Ok((Self { outputs: run.outputs(), samples: samples.len(), values }, done))
+    }
+
+    /// One output's values in one row; not numbers where it was not reached.
+    pub fn at(&self, row: usize, output: usize) -> Vec<f64> {
+        let first = (row * self.outputs + output) * self.samples;
+        match self.values.get(first..first + self.samples) {
+            Some(values) => values.to_vec(),
+            None => vec![f64::NAN; self.samples],
+        }
+    }
+
+    /// Largest less least value of an output in all rows and samples.
+    pub fn span(&self, output: usize) -> f64 {
+        let lines = self.values.chunks_exact(self.samples).skip(output).step_by(self.outputs);
+        let (least, largest) = lines.flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), &value| {
+            (least.min(value), largest.max(value))
+        });
+        (largest - least).max(0.0)
+    }
+}
+
+/// The probes of one box under one schedule.
+pub(super) struct Probes {
+    /// ξ of each.
+    pub points: Vec<Vec<f64>>,
+    /// With the schedule's steps.
+    pub direct: Table,
+    /// The first of them, with each step halved.
+    pub halved: Table,
+    /// What they took.
+    pub done: FleetRun,
+    pub summary: MethodSummary,
+}
+
+impl Probes {
+    /// Simulates them.
+    pub fn run(run: &Run) -> Result<Self, SimulationError> {
+        let begun = std::time::Instant::now();
+        let domain = &run.study.domain;
+        let mut points = probes(domain.dimension());
+        let halved = points.len();
+        points.extend(held_out(domain.dimension()));
+        let samples: Vec<Vec<f64>> = points.iter().map(|xi| domain.point(xi)).collect();
+        let (direct, done) = Table::of(run, &samples)?;
+        let schedule: Schedule = run.schedule.refined(2);
+        let finer = Run { schedule: &schedule, tolerance: None, ..*run };
+        let (fine, finely) = Table::of(&finer, &samples[..halved])?;
+        let counters = Counters {
+            iterations: done.counters.iterations + finely.counters.iterations,
+            rank_revealing: done.counters.rank_revealing + finely.counters.rank_revealing,
+        };
+        let summary = run.method_summary("probes", points.len() + halved, counters, done.stop_place(), begun);
+        Ok(Self { points, direct, halved: fine, done, summary })
+    }
+}

@@ -1,0 +1,159 @@
+//! How far a bound may be from the truth: the surrogate's error, and the time steps'.
+//!
+//! *Surrogate.* At held-out samples (`probes`) the surrogate is compared with the simulation itself; its error is the largest
+//! difference. A scan's is what its own points say of the space between them.
+//!
+//! *Time.* The probes are simulated with halved steps too. The scheme is of second order, so that a value at step h is off by
+//! 4/3 of what halving changes (Richardson). What counts for an end of a band are the probes that carry it: those whose
+//! values lie near it.
+//!
+//! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held up by
+//! its neighbours and by a share of the largest so far.
+
+use super::range::Range;
+
+/// A probe whose value lies within this share of the band's width from its end carries that end.
+const CARRIES: f64 = 0.25;
+
+/// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
+const RICHARDSON: f64 = 4.0 / 3.0;
+
+/// What the estimates themselves may be wrong by.
+const SAFETY_OF_STEPS: f64 = 1.25;
+const SAFETY_OF_SURROGATE: f64 = 2.0;
+
+/// Shares of a neighbour's error, and of the largest so far, below which no error falls.
+const NEIGHBOUR: f64 = 0.5;
+const LASTING: f64 = 0.02;
+
+/// An error beyond this share of the width means that the surrogate does not follow the response.
+const LOST: f64 = 0.25;
+
+/// Shares of the output's span: what is narrower is too narrow for its shape to matter, and what errs more is lost
+/// however wide.
+const NARROW: f64 = 1e-6;
+
+/// A band's errors over the output times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BandError {
+    /// Surrogate and time together, in the output's unit.
+    pub total: Vec<f64>,
+    /// Largest of the surrogate's.
+    pub surrogate: f64,
+    /// Largest of the time steps'.
+    pub time: f64,
+    /// Rows whose bounds cannot be relied on.
+    pub unresolved: Vec<bool>,
+}
+
+/// Largest difference between what a surrogate says of the probes and what they do; unknown where either is.
+pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
+    largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
+}
+
+/// Error of a band's ends from its probes' values, with the steps as they are and halved: the worse end's. Probes without
+/// halved steps, after the others, do not count.
+pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
+    let direct = &direct[..halved.len()];
+    let reach = CARRIES * range.width();
+    let of_end = |end: f64| {
+        let distance = |place: &usize| (direct[*place] - end).abs();
+        let nearest = (0..direct.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let carriers = (0..direct.len()).filter(|place| distance(place) <= reach).chain(nearest);
+        largest(carriers.map(|place| RICHARDSON * (halved[place] - direct[place])))
+    };
+    if range.lower.is_nan() { f64::NAN } else { of_end(range.lower).max(of_end(range.upper)) }
+}
+
+/// Error of a band's ends from the bounds with halved steps, all samples run again.
+pub fn time_error_certified(range: Range, halved: Range) -> f64 {
+    largest([range.lower - halved.lower, range.upper - halved.upper].map(|change| RICHARDSON * change))
+}
+
+impl BandError {
+    /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which is how
+    /// far the output ranges at all.
+    pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
+        let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
+        let time = held_up(time, SAFETY_OF_STEPS);
+        let total: Vec<f64> = surrogate.iter().zip(&time).map(|(surrogate, time)| surrogate + time).collect();
+        let mut lost = false;
+        let mut unresolved = Vec::with_capacity(total.len());
+        for (row, range) in ranges.iter().enumerate() {
+            // Written so that not a number is lost.
+            let follows = surrogate[row] <= LOST * range.width() || surrogate[row] <= NARROW * span;
+            let stays = total[row] <= LOST * span || span == 0.0;
+            lost |= !(follows && stays);
+            let within = tolerance.is_none_or(|tolerance| total[row] <= tolerance * span || span == 0.0);
+            unresolved.push(lost || !within);
+        }
+        Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
+    }
+
+    /// Largest of all rows; not a number if one is.
+    pub fn largest(&self) -> f64 {
+        largest(self.total.iter().copied())
+    }
+
+    /// The first row that is not resolved.
+    pub fn unresolved_from(&self) -> Option<usize> {
+        self.unresolved.iter().position(|&unresolved| unresolved)
+    }
+}
+
+/// Estimates with their safety, none far below those beside and before it.
+fn held_up(estimates: &[f64], safety: f64) -> Vec<f64> {
+    let mut lasting = 0.0_f64;
+    let held = |row: usize| {
+        let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));
+        lasting = lasting.max(estimates[row]);
+        // `max` passes over not a number.
+        let least = (NEIGHBOUR * beside[0]).max(NEIGHBOUR * beside[1]).max(LASTING * lasting);
+        safety * if estimates[row] < least { least } else { estimates[row] }
+    };
+    (0..estimates.len()).map(held).collect()
+}
+
+/// Largest absolute value; not a number if one is.
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let larger = |largest: f64, value: f64| if value <= largest || largest.is_nan() { largest } else { value };
+    values.into_iter().map(f64::abs).fold(0.0, larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_has_the_error_of_those_that_carry_it() {
+        let range = Range { lower: 0.0, upper: 1.0 };
+        let direct = [0.0, 0.2, 0.5, 1.0];
+        let halved = [0.03, 0.2, 7.0, 1.06];
+        assert!((time_error(range, &direct, &halved) - 0.08).abs() < 1e-15);
+        // Where none is near, the nearest.
+        let error = time_error(Range { lower: -9.0, upper: 1.0 }, &[0.0, 1.0], &[0.3, 1.0]);
+        assert!((error - 0.4).abs() < 1e-15);
+        assert!(time_error(Range::UNKNOWN, &direct, &halved).is_nan());
+        assert!(time_error(range, &direct, &[f64::NAN; 4]).is_nan());
+    }
+
+    #[test]
+    fn what_is_lost_stays_lost_and_what_is_unknown_is_lost() {
+        let ranges = vec![Range { lower: 0.0, upper: 1.0 }; 6];
+        let follows = BandError::new(&ranges, &[0.01; 6], &[0.0; 6], 1.0, None);
+        assert_eq!(follows.unresolved_from(), None);
+        let lost = BandError::new(&ranges, &[0.0, 0.0, 0.0, 0.3, 0.0, 0.0], &[0.0; 6], 1.0, None);
+        assert_eq!(lost.unresolved, [false, false, true, true, true, true]);
+        let unknown = BandError::new(&ranges, &[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0], &[0.0; 6], 1.0, None);
+        assert_eq!(unknown.unresolved_from(), Some(3));
+        assert!(unknown.surrogate.is_nan());
+    }
+
+    #[test]
+    fn a_tolerance_is_missed_row_by_row() {
+        let ranges = vec![Range { lower: 0.0, upper: 1.0 }; 5];
+        let error = BandError::new(&ranges, &[0.0; 5], &[0.0, 0.0, 0.01, 0.0, 0.0], 2.0, Some(4e-3));
+        assert_eq!(error.unresolved, [false, false, true, false, false]);
+        assert!((error.time - 0.0125).abs() < 1e-15 && error.surrogate == 0.0);
+    }
+}

@@ -1,0 +1,157 @@
+//! From the best point of a grid to the peak beside it: by the quadratic through a point and its neighbours, as far as those
+//! reach.
+
+use nalgebra::{DMatrix, DVector};
+
+/// How much nearer the next neighbours are.
+const NEARER: f64 = 0.25;
+
+/// A point near a function's peak, and its neighbours within [−1, 1]^k.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Peak {
+    /// ξ in the middle of the neighbours.
+    center: Vec<f64>,
+    /// Distance of the neighbours along each axis.
+    spacing: Vec<f64>,
+}
+
+impl Peak {
+    /// Around a point; a little away from it where its neighbours would lie outside the box.
+    pub fn new(mut xi: Vec<f64>, spacing: Vec<f64>) -> Self {
+        for (xi, spacing) in xi.iter_mut().zip(&spacing) {
+            *xi = xi.clamp(spacing - 1.0, 1.0 - spacing);
+        }
+        Self { center: xi, spacing }
+    }
+
+    /// Where the function is needed, in spacings along each axis: the middle, its neighbours along each axis (before, after),
+    /// and those along each two (−−, −+, +−, ++).
+    pub fn stencil(&self) -> Vec<Vec<i8>> {
+        let k = self.center.len();
+        let at = |moves: &[(usize, i8)]| {
+            let mut offsets = vec![0; k];
+            moves.iter().for_each(|&(axis, by)| offsets[axis] = by);
+            offsets
+        };
+        let mut stencil = vec![at(&[])];
+        stencil.extend((0..k).flat_map(|axis| [at(&[(axis, -1)]), at(&[(axis, 1)])]));
+        for (a, b) in (0..k).flat_map(|a| (0..a).map(move |b| (a, b))) {
+            stencil.extend([(-1, -1), (-1, 1), (1, -1), (1, 1)].map(|(of_a, of_b)| at(&[(a, of_a), (b, of_b)])));
+        }
+        stencil
+    }
+
+    /// ξ of a place of the stencil.
+    pub fn neighbour(&self, offsets: &[i8]) -> Vec<f64> {
+        let steps: Vec<f64> = offsets.iter().map(|&offset| f64::from(offset)).collect();
+        self.away(&steps)
+    }
+
+    /// Around the peak that was found: nearer neighbours, unless it lies at the limit of their reach.
+    #[must_use]
+    pub fn next(&self, xi: &[f64]) -> Self {
+        let at_limit = |axis: usize| (xi[axis] - self.center[axis]).abs() > 0.99 * self.spacing[axis];
+        let further = (0..xi.len()).any(|axis| at_limit(axis) && xi[axis].abs() < 1.0);
+        if further { Self::new(xi.to_vec(), self.spacing.clone()) } else { self.nearer(xi) }
+    }
+
+    /// Around a point, with nearer neighbours.
+    #[must_use]
+    pub fn nearer(&self, xi: &[f64]) -> Self {
+        Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| NEARER * spacing).collect())
+    }
+
+    /// ξ at steps of the spacing.
+    fn away(&self, steps: &[f64]) -> Vec<f64> {
+        let xi = self.center.iter().zip(&self.spacing).zip(steps);
+        xi.map(|((center, spacing), step)| (center + step * spacing).clamp(-1.0, 1.0)).collect()
+    }
+
+    /// Where, no further away than the neighbours, the quadratic through the values on the stencil is best. `sign` is 1 for a
+    /// largest value, −1 for a least.
+    pub fn vertex(&self, values: &[f64], sign: f64) -> Vec<f64> {
+        let k = self.center.len();
+        let along = |axis: usize| (values[1 + 2 * axis], values[2 + 2 * axis]);
+        let slope = DVector::from_fn(k, |axis, _| sign * 0.5 * (along(axis).1 - along(axis).0));
+        let mut bend = DMatrix::zeros(k, k);
+        let mut corners = values[1 + 2 * k..].chunks_exact(4);
+        for a in 0..k {
+            bend[(a, a)] = sign * (2.0 * values[0] - along(a).0 - along(a).1);
+            for (b, corners) in (0..a).zip(&mut corners) {
+                bend[(a, b)] = -sign * 0.25 * (corners[0] - corners[1] - corners[2] + corners[3]);
+                bend[(b, a)] = bend[(a, b)];
+            }
+        }
+        self.away(&best_step(&slope, &bend))
+    }
+}
+
+/// Where sᵀd − ½ dᵀBd is largest for |dᵢ| ≤ 1: inside the box, or inside one of its faces, edges, … with a peak there.
+fn best_step(slope: &DVector<f64>, bend: &DMatrix<f64>) -> Vec<f64> {
+    let k = slope.len();
+    let mut best = (0.0, vec![0.0; k]);
+    for face in 0..3_usize.pow(k as u32) {
+        // Along each axis: free, or at one of its ends.
+        let side = |axis: usize| face / 3_usize.pow(axis as u32) % 3;
+        let mut step = DVector::from_fn(k, |axis, _| [0.0, -1.0, 1.0][side(axis)]);
+        let free: Vec<usize> = (0..k).filter(|&axis| side(axis) == 0).collect();
+        let pull = slope - bend * &step;
+        let Some(peak) = DMatrix::from_fn(free.len(), free.len(), |a, b| bend[(free[a], free[b])]).cholesky() else {
+            continue;
+        };
+        let along = peak.solve(&DVector::from_fn(free.len(), |place, _| pull[free[place]]));
+        free.iter().zip(along.iter()).for_each(|(&axis, &along)| step[axis] = along);
+        let gain = slope.dot(&step) - 0.5 * step.dot(&(bend * &step));
+        if gain > best.0 && step.iter().all(|step| step.abs() <= 1.0) {
+            best = (gain, step.as_slice().to_vec());
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vertex(peak: &Peak, f: impl Fn(&[f64]) -> f64, sign: f64) -> Vec<f64> {
+        let values: Vec<f64> = peak.stencil().iter().map(|offsets| f(&peak.neighbour(offsets))).collect();
+        peak.vertex(&values, sign)
+    }
+
+    #[test]
+    fn corners_are_kept_and_peaks_beside_them_found() {
+        let near = |found: Vec<f64>, x: f64, y: f64| (found[0] - x).abs() < 1e-12 && (found[1] - y).abs() < 1e-12;
+        let corner = Peak::new(vec![1.0, -1.0], vec![0.1; 2]);
+        assert!(near(vertex(&corner, |xi| xi[0] - 2.0 * xi[1] + xi[0] * xi[0], 1.0), 1.0, -1.0));
+        assert!(near(vertex(&corner, |xi| -(xi[0] - 0.98).powi(2) - xi[1], 1.0), 0.98, -1.0));
+        let edge = Peak::new(vec![1.0, 0.2], vec![0.1; 2]);
+        assert!(near(vertex(&edge, |xi| xi[0] - (xi[1] - 0.25).powi(2) - 0.5 * xi[0] * xi[1], -1.0), 0.8, 0.3));
+    }
+
+    #[test]
+    fn what_is_not_a_number_moves_nothing() {
+        let peak = Peak::new(vec![0.5], vec![0.1]);
+        assert_eq!(peak.vertex(&[1.0, f64::NAN, 2.0], 1.0), [0.5]);
+    }
+
+    proptest! {
+        #[test]
+        fn quadratics_are_met_in_one_step(
+            center in prop::array::uniform3(-0.3..0.3_f64),
+            start in prop::array::uniform3(-0.3..0.3_f64),
+            mixed in prop::array::uniform3(-0.4..0.4_f64),
+            sign in prop::sample::select(vec![-1.0, 1.0]),
+        ) {
+            let f = |xi: &[f64]| {
+                let d = [xi[0] - center[0], xi[1] - center[1], xi[2] - center[2]];
+                let squares = d[0] * d[0] + 2.0 * d[1] * d[1] + 1.5 * d[2] * d[2];
+                -sign * (squares + mixed[0] * d[0] * d[1] + mixed[1] * d[1] * d[2] + mixed[2] * d[0] * d[2])
+            };
+            let found = vertex(&Peak::new(start.to_vec(), vec![0.7; 3]), f, sign);
+            for (found, center) in found.iter().zip(center) {
+                prop_assert!((found - center).abs() < 1e-10);
+            }
+        }
+    }
+}
