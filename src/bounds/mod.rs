@@ -3,6 +3,8 @@
 //! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
 //!
 //! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
+//! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
+//!   [`SparseBasis`], for many parameters;
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest.
 
@@ -10,11 +12,15 @@ mod bernstein;
 mod chebyshev;
 mod domain;
 mod error;
+mod lobatto;
 mod peak;
 mod range;
 mod result;
 mod samples;
 mod scan;
+mod sparse_basis;
+mod sparse_grid;
+mod sparse_transform;
 mod taylor;
 mod tensor;
 
@@ -26,5 +32,8 @@ pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
 pub use samples::{TensorGrid, corners, held_out, probes};
 pub use scan::ScanBounds;
+pub use sparse_basis::{SparseBasis, SparseWork};
+pub use sparse_grid::{Candidate, SparseGrid};
+pub use sparse_transform::{SparseTransform, TransformWork};
 pub use taylor::TaylorRange;
 pub use tensor::Work;

@@ -164,8 +164,8 @@ fn errors(errors: &[ErrorSummary]) -> String {
     }
     match errors.len() {
         0 => String::new(),
-        n if n > MOST => format!("\n{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
-        _ => format!("\n{}\n", table.render(2)),
+        n if n > MOST => format!("{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
+        _ => format!("{}\n", table.render(2)),
     }
 }
 

@@ -1,0 +1,294 @@
+//! Polynomials of many parameters with few terms: f(ξ) = Σ c_t Π C_j(ξᵢ), where most terms have few factors.
+
+use rustc_hash::FxHashMap;
+use symdiff::{Vectorise, vectorised};
+
+use super::chebyshev::clenshaw;
+use super::sparse_grid::SparseGrid;
+
+/// Points or lines treated together.
+pub(super) const LANES: usize = 8;
+/// One number for each of them.
+pub(super) type Lanes = [f64; LANES];
+
+/// Products of Chebyshev polynomials with downward-closed degrees: with a term, all that are nowhere of higher degree.
+/// The first is the constant. Coefficients of one polynomial are a number for each term.
+#[derive(Clone, Debug)]
+pub struct SparseBasis {
+    dimension: usize,
+    /// Degree along each axis, term after term.
+    degrees: Vec<u8>,
+    /// Of each term but the first.
+    factors: Vec<Factor>,
+    /// Highest degree along each axis.
+    orders: Vec<u8>,
+    fibres: Vec<Fibres>,
+}
+
+/// A term is an earlier one times one polynomial of an axis on which that one is constant.
+#[derive(Clone, Copy, Debug)]
+struct Factor {
+    earlier: u32,
+    /// Place in the table of all axes' polynomials.
+    polynomial: u32,
+}
+
+/// Terms that differ only in their degree along one axis, in the order of that degree, which starts with 0; where there are
+/// at least two.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Fibres {
+    terms: Vec<u32>,
+    ends: Vec<u32>,
+}
+
+impl Fibres {
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let mut start = 0;
+        self.ends.iter().map(move |&end| &self.terms[std::mem::replace(&mut start, end as usize)..end as usize])
+    }
+}
+
+/// Room for evaluation, kept between calls.
+#[derive(Clone, Debug, Default)]
+pub struct SparseWork {
+    polynomials: Vec<Lanes>,
+    terms: Vec<Lanes>,
+}
+
+impl SparseBasis {
+    /// The polynomials that values at a grid's nodes determine; term i has the degrees that [`SparseGrid`] numbers node i by.
+    pub fn new(grid: &SparseGrid) -> Self {
+        let degrees = (0..grid.len()).flat_map(|index| grid.numbers(index)).copied().collect();
+        Self::closed(grid.dimension(), grid.len(), degrees)
+    }
+
+    /// All terms up to `orders[i]` ≤ 255 in parameter i, the last index fastest, as in
+    /// [`ChebyshevBasis`](super::ChebyshevBasis).
+    pub fn tensor(orders: &[u8]) -> Self {
+        let count = orders.iter().map(|&n| usize::from(n) + 1).product();
+        let mut degrees = Vec::with_capacity(count * orders.len());
+        let mut next = vec![0; orders.len()];
+        loop {
+            degrees.extend_from_slice(&next);
+            let Some(axis) = (0..orders.len()).rev().find(|&axis| next[axis] < orders[axis]) else { break };
+            next[axis] += 1;
+            next[axis + 1..].fill(0);
+        }
+        Self::closed(orders.len(), count, degrees)
+    }
+
+    /// With downward-closed degrees, each term after those that it has as factors.
+    fn closed(dimension: usize, count: usize, degrees: Vec<u8>) -> Self {
+        let term = |t: usize| &degrees[t * dimension..][..dimension];
+        let places: FxHashMap<&[u8], u32> = (0..count).map(|t| (term(t), t as u32)).collect();
+        let orders: Vec<u8> = (0..dimension).map(|axis| (0..count).map(|t| term(t)[axis]).max().unwrap_or(0)).collect();
+        let first_polynomials: Vec<u32> =
+            orders.iter().scan(0, |next, &n| Some(std::mem::replace(next, *next + u32::from(n) + 1))).collect();
+
+        let factor = |t: usize| {
+            let mut earlier = term(t).to_vec();
+            let axis = earlier.iter().rposition(|&j| j > 0).expect("only the first term is constant");
+            let polynomial = first_polynomials[axis] + u32::from(std::mem::take(&mut earlier[axis]));
+            Factor { earlier: places[earlier.as_slice()], polynomial }
+        };
+        let factors = (1..count).map(factor).collect();
+
+        let fibres = (0..dimension).map(|axis| {
+            let mut fibres = Fibres::default();
+            for start in (0..count).filter(|&t| term(t)[axis] == 0) {
+                let mut next = term(start).to_vec();
+                let first = fibres.terms.len();
+                while let Some(&t) = places.get(next.as_slice()) {
+                    fibres.terms.push(t);
+                    if next[axis] == orders[axis] {
+                        break;
+                    }
+                    next[axis] += 1;
+                }
+                if fibres.terms.len() == first + 1 {
+                    fibres.terms.pop();
+                } else {
+                    fibres.ends.push(fibres.terms.len() as u32);
+                }
+            }
+            fibres
+        });
+        let fibres = fibres.collect();
+        Self { dimension, factors, orders, fibres, degrees }
+    }
+
+    /// Number of parameters, k.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Number of terms, which is that of coefficients.
+    #[allow(clippy::len_without_is_empty)] // the constant is always there
+    pub fn len(&self) -> usize {
+        self.factors.len() + 1
+    }
+
+    /// Degree along each axis of a term.
+    pub fn degrees(&self, term: usize) -> &[u8] {
+        &self.degrees[term * self.dimension..][..self.dimension]
+    }
+
+    /// Highest degree along each axis.
+    pub fn orders(&self) -> &[u8] {
+        &self.orders
+    }
+
+    pub(super) fn fibres(&self, axis: usize) -> &Fibres {
+        &self.fibres[axis]
+    }
+
+    /// Value at ξ ∈ [−1, 1]^k of the polynomial with these coefficients.
+    pub fn evaluate(&self, coefficients: &[f64], xi: &[f64]) -> f64 {
+        let mut value = [0.0];
+        self.values(&[xi], coefficients, &mut value, &mut SparseWork::default());
+        value[0]
+    }
+
+    /// Values of many polynomials at many points: `coefficients` are those of one polynomial after the other, and so
+    /// are their values in `out`, which has a number for each polynomial and point. Allocates only when `work` is first
+    /// used.
+    pub fn values<P: AsRef<[f64]>>(&self, points: &[P], coefficients: &[f64], out: &mut [f64], work: &mut SparseWork) {
+        assert_eq!(coefficients.len() * points.len(), out.len() * self.len(), "a value for each polynomial and point");
+        vectorised(Evaluation { basis: self, points, coefficients, out, work });
+    }
+
+    /// Replaces a polynomial by what it is where parameter `axis` is `value`: constant along that axis.
+    pub fn restrict(&self, axis: usize, value: f64, coefficients: &mut [f64]) {
+        let mut line = Vec::with_capacity(usize::from(self.orders[axis]) + 1);
+        for fibre in self.fibres(axis).iter() {
+            line.clear();
+            line.extend(fibre.iter().map(|&t| std::mem::take(&mut coefficients[t as usize])));
+            coefficients[fibre[0] as usize] = clenshaw(&line, value);
+        }
+    }
+
+    /// Writes the coefficients of ∂f/∂ξ along an axis.
+    pub fn derivative(&self, axis: usize, coefficients: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for fibre in self.fibres(axis).iter() {
+            // C_j′ = 2j (C_{j−1} + C_{j−3} + …), where C₀ counts half.
+            let (mut this, mut last) = (0.0, 0.0);
+            for j in (1..fibre.len()).rev() {
+                (this, last) = (last + 2.0 * j as f64 * coefficients[fibre[j] as usize], this);
+                out[fibre[j - 1] as usize] = this;
+            }
+            out[fibre[0] as usize] *= 0.5;
+        }
+    }
+}
+
+/// [`SparseBasis::values`], compiled for wide vectors.
+struct Evaluation<'a, P> {
+    basis: &'a SparseBasis,
+    points: &'a [P],
+    coefficients: &'a [f64],
+    out: &'a mut [f64],
+    work: &'a mut SparseWork,
+}
+
+impl<P: AsRef<[f64]>> Vectorise for Evaluation<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { basis, points, coefficients, out, work } = self;
+        for (tile, points) in points.chunks(LANES).enumerate() {
+            basis.polynomials(points, &mut work.polynomials);
+            work.terms.clear();
+            work.terms.push([1.0; LANES]);
+            for factor in &basis.factors {
+                let (earlier, polynomial) =
+                    (&work.terms[factor.earlier as usize], &work.polynomials[factor.polynomial as usize]);
+                let term = std::array::from_fn(|lane| earlier[lane] * polynomial[lane]);
+                work.terms.push(term);
+            }
+            let lines = coefficients.chunks_exact(basis.len()).zip(out.chunks_exact_mut(self.points.len()));
+            for (coefficients, out) in lines {
+                let mut sum = [0.0; LANES];
+                for (c, term) in coefficients.iter().zip(&work.terms) {
+                    sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += c * term);
+                }
+                out[tile * LANES..][..points.len()].copy_from_slice(&sum[..points.len()]);
+            }
+        }
+    }
+}
+
+impl SparseBasis {
+    /// C_j(ξᵢ), j = 0…nᵢ, axis after axis; lanes without a point stay at ξ = 0.
+    #[inline(always)]
+    fn polynomials<P: AsRef<[f64]>>(&self, points: &[P], out: &mut Vec<Lanes>) {
+        out.clear();
+        for (axis, &n) in self.orders.iter().enumerate() {
+            let x: Lanes = std::array::from_fn(|lane| points.get(lane).map_or(0.0, |xi| xi.as_ref()[axis]));
+            let (mut last, mut this) = (x, [1.0; LANES]);
+            for _ in 0..=n {
+                out.push(this);
+                let next = std::array::from_fn(|lane| 2.0 * x[lane] * this[lane] - last[lane]);
+                (last, this) = (this, next);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chebyshev::ChebyshevBasis;
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn fibres_are_lines_of_terms() {
+        // Degrees 00 01 02 10 11 12: along the last axis two lines of three, along the first three of two.
+        let basis = SparseBasis::tensor(&[1, 2]);
+        let lines = |axis| basis.fibres(axis).iter().map(<[u32]>::to_vec).collect::<Vec<_>>();
+        assert_eq!(lines(1), [vec![0, 1, 2], vec![3, 4, 5]]);
+        assert_eq!(lines(0), [vec![0, 3], vec![1, 4], vec![2, 5]]);
+    }
+
+    proptest! {
+        #[test]
+        fn tensors_are_evaluated_as_elsewhere(
+            c in prop::collection::vec(-1.0..1.0_f64, 48),
+            points in prop::collection::vec(prop::array::uniform3(-1.0..=1.0_f64), 1..20),
+        ) {
+            let (sparse, tensor) = (SparseBasis::tensor(&[1, 3, 2]), ChebyshevBasis::new(&[1, 3, 2], &[2, 4, 3]));
+            let mut values = vec![0.0; 2 * points.len()];
+            sparse.values(&points, &c, &mut values, &mut SparseWork::default());
+            for (line, values) in c.chunks_exact(24).zip(values.chunks_exact(points.len())) {
+                for (xi, value) in points.iter().zip(values) {
+                    prop_assert!((value - tensor.evaluate(line, xi)).abs() < 1e-14);
+                }
+            }
+        }
+
+        #[test]
+        fn restrictions_and_derivatives(
+            c in prop::collection::vec(-1.0..1.0_f64, 40),
+            xi in prop::array::uniform3(-0.9..=0.9_f64), axis in 0..3_usize,
+        ) {
+            let basis = SparseBasis::tensor(&[1, 3, 4]);
+            let f = |x: f64| {
+                let mut at = xi;
+                at[axis] = x;
+                basis.evaluate(&c, &at)
+            };
+            let mut restricted = c.clone();
+            basis.restrict(axis, 0.3, &mut restricted);
+            prop_assert!((basis.evaluate(&restricted, &xi) - f(0.3)).abs() < 1e-13);
+            prop_assert!((0..40).all(|t| basis.degrees(t)[axis] == 0 || restricted[t] == 0.0));
+            // Exact for degrees up to 4: the five-point difference.
+            let h = 0.05;
+            let x = xi[axis];
+            let difference = (8.0 * (f(x + h) - f(x - h)) - f(x + 2.0 * h) + f(x - 2.0 * h)) / (12.0 * h);
+            let mut derivative = vec![f64::NAN; 40];
+            basis.derivative(axis, &c, &mut derivative);
+            prop_assert!((basis.evaluate(&derivative, &xi) - difference).abs() < 1e-11);
+        }
+    }
+}
