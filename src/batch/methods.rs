@@ -7,14 +7,15 @@ use std::time::Instant;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
-use super::compose::Composition;
+use super::compose::{self, Composer, Row};
 use super::probe::Probes;
 use super::study::Study;
 use crate::bounds::{
-    ChebyshevBasis, Method, PolynomialRange, Range, ScanBounds, TaylorRange, TensorGrid, Work, surrogate_error,
+    Extremes, Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange,
+    TensorGrid, surrogate_error,
 };
 use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
-use crate::model::{ChebyshevRequest, Expand, RangeKind, ScanRequest, TaylorRequest};
+use crate::model::{ChebyshevRequest, Expand, ScanRequest, TaylorRequest};
 use crate::report::MethodSummary;
 
 /// Values (rows × outputs × samples) that one block holds.
@@ -128,15 +129,12 @@ impl Run<'_> {
 
     pub(super) fn chebyshev(&self, request: &ChebyshevRequest, probes: &Probes) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
-        let basis = ChebyshevBasis::new(&request.order, &request.nodes);
-        let samples = self.samples(&basis.grid());
-        let composition = match request.expand {
-            Expand::Coordinates => Composition::new(&self.study.simulator, &self.study.domain, &basis, &probes.points),
-            Expand::Output => None,
-        };
-        let (lines, done) = match composition {
-            Some(composition) => self.composed(composition, &samples, probes)?,
-            None => self.expanded(&basis, request.range, &samples, probes)?,
+        let surrogate = Surrogate::tensor(&request.order, &request.nodes);
+        let samples: Vec<Vec<f64>> = surrogate.samples().iter().map(|xi| self.study.domain.point(xi)).collect();
+        let composed = compose::fits(&self.study.simulator, self.study.domain.dimension());
+        let (lines, done) = match request.expand {
+            Expand::Coordinates if composed => self.composed(&surrogate, &samples, probes)?,
+            _ => self.expanded(&surrogate, request, &samples, probes)?,
         };
         let summary =
             self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
@@ -146,21 +144,24 @@ impl Run<'_> {
     /// The outputs follow from the expanded independent coordinates.
     fn composed(
         &self,
-        mut composition: Composition,
+        surrogate: &Surrogate,
         samples: &[Vec<f64>],
         probes: &Probes,
     ) -> Result<(Lines, FleetRun), SimulationError> {
         let mut lines = Lines::new(self);
-        let count = Observed::Motion.count(&self.study.simulator);
+        let mut composer = Composer::new(&self.study.simulator);
+        let stride = Observed::Motion.count(&self.study.simulator) * samples.len();
         let mut failure = None;
         let done = self.fleet(samples, Observed::Motion, |rows, values| {
             let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
-            match composition.rows(&times, values, count * samples.len()) {
+            let look = |_, row: &Row| (row.ranges(), row.evaluate(&probes.points));
+            match composer.rows(surrogate, &self.study.domain, &times, (values, stride), look) {
                 Ok(found) => {
-                    for (row, found) in rows.zip(found) {
-                        for (output, at_probes) in found.at_probes.iter().enumerate() {
+                    for (row, (ranges, at_probes)) in rows.zip(found) {
+                        let at_probes = at_probes.chunks_exact(probes.points.len());
+                        for (output, (Extremes { range, gap }, at_probes)) in ranges.iter().zip(at_probes).enumerate() {
                             let error = surrogate_error(at_probes, &probes.direct.at(row, output));
-                            lines.set(row, output, found.ranges[output], error + found.gaps[output]);
+                            lines.set(row, output, *range, error + gap);
                         }
                     }
                 }
@@ -173,22 +174,23 @@ impl Run<'_> {
     /// The outputs themselves are expanded.
     fn expanded(
         &self,
-        basis: &ChebyshevBasis,
-        range: RangeKind,
+        surrogate: &Surrogate,
+        request: &ChebyshevRequest,
         samples: &[Vec<f64>],
         probes: &Probes,
     ) -> Result<(Lines, FleetRun), SimulationError> {
         let mut lines = Lines::new(self);
-        let range = PolynomialRange::new(basis.orders(), range);
+        let range = PolynomialRange::new(&request.order, request.range);
         let done = self.fleet(samples, Observed::Outputs, |rows, values| {
             let found: Vec<Found> = values
                 .par_chunks_exact(samples.len())
                 .map_init(
-                    || (range.clone(), Work::default()),
-                    |(range, work), responses| {
-                        let coefficients = basis.coefficients(responses, work);
-                        let at_probes = probes.points.iter().map(|xi| basis.evaluate(coefficients, xi)).collect();
-                        let enclosed = range.enclose(coefficients);
+                    || (range.clone(), SurrogateWork::default(), SparseWork::default()),
+                    |(range, work, sparse), responses| {
+                        let coefficients = surrogate.coefficients(responses, work);
+                        let mut at_probes = vec![0.0; probes.points.len()];
+                        surrogate.basis().values(&probes.points, &coefficients, &mut at_probes, sparse);
+                        let enclosed = range.enclose(&coefficients);
                         Found { range: enclosed.outer, excess: enclosed.excess(), at_probes }
                     },
                 )
@@ -264,10 +266,6 @@ impl Run<'_> {
         let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), stop.as_ref(), begun);
         let done = FleetRun { counters: jet.counters(), stop: stop.map(|stop| (stop, center)), strained: None };
         Ok(lines.outcome(done, summary))
-    }
-
-    fn samples(&self, grid: &TensorGrid) -> Vec<Vec<f64>> {
-        (0..grid.len()).map(|index| self.sample(grid, index)).collect()
     }
 
     fn sample(&self, grid: &TensorGrid, index: usize) -> Vec<f64> {
