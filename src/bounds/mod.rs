@@ -6,7 +6,8 @@
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
 //!   [`SparseBasis`], for many parameters;
 //! - [`TaylorRange`]: the response's jet → range;
-//! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest.
+//! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
+//! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
 mod bernstein;
 mod chebyshev;
@@ -19,6 +20,8 @@ mod range;
 mod result;
 mod samples;
 mod scan;
+mod search;
+mod shares;
 mod sparse_basis;
 mod sparse_grid;
 mod sparse_transform;
@@ -34,6 +37,8 @@ pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
 pub use samples::{TensorGrid, corners, held_out, probes};
 pub use scan::ScanBounds;
+pub use search::{ExtremeSearch, Extremes};
+pub use shares::{Shares, VarianceShares};
 pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::{Candidate, SparseGrid};
 pub use sparse_transform::{SparseTransform, TransformWork};
