@@ -1,12 +1,14 @@
 //! Composition: what is expanded is what is smooth. The independent coordinates and their velocities become polynomials of
 //! the parameters; every output follows from them through the loop closure and its own formula.
 
+use std::convert::Infallible;
+
 use rayon::prelude::*;
 
-use crate::bounds::{Extremes, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes};
+use crate::bounds::{Extent, ExtremeSearch, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, extremes};
 use crate::integrate::{Closure, Points, SimulationError, Simulator, choose_independent};
 
-/// More parameters than this make too large a grid; then the outputs themselves are expanded.
+/// For so many parameters ranges are found on a grid; for more, by a search.
 const MOST_PARAMETERS: usize = 3;
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
@@ -20,7 +22,7 @@ const POINTS: [(usize, usize); MOST_PARAMETERS] = [(9, 129), (9, 33), (7, 15)];
 
 /// Whether outputs of a mechanism can be composed over so many parameters.
 pub(super) fn fits(simulator: &Simulator, k: usize) -> bool {
-    (1..=MOST_PARAMETERS).contains(&k) && simulator.system.q.len() <= MOST_COORDINATES
+    k > 0 && simulator.system.q.len() <= MOST_COORDINATES
 }
 
 /// One mechanism's closures, and what is evaluated through them.
@@ -82,6 +84,19 @@ impl<'a> Composer<'a> {
     }
 }
 
+/// How ranges over a box are found.
+pub(super) enum Seeker {
+    Grid,
+    Search(ExtremeSearch),
+}
+
+impl Seeker {
+    /// For k parameters.
+    pub fn new(k: usize) -> Self {
+        if k <= MOST_PARAMETERS { Self::Grid } else { Self::Search(ExtremeSearch::new(k)) }
+    }
+}
+
 /// One row of output.
 pub(super) struct Row<'r> {
     simulator: &'r Simulator,
@@ -124,16 +139,30 @@ impl<'r> Row<'r> {
     }
 
     /// Every output's range over the box.
-    pub fn ranges(&self) -> Vec<Extremes> {
-        extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate(points))
+    pub fn ranges(&self, seeker: &Seeker) -> Vec<Extent> {
+        match seeker {
+            Seeker::Grid => extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate(points)),
+            Seeker::Search(search) => {
+                let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+                    values.copy_from_slice(&self.evaluate(points));
+                    Ok::<(), Infallible>(())
+                };
+                let Ok(found) = search.extremes(self.simulator.program.outputs.len(), &[], evaluate);
+                let extent = |range: Range| Extent { range, gap: ExtremeSearch::TOLERANCE * range.width() };
+                found.into_iter().map(|found| extent(found.range)).collect()
+            }
+        }
+    }
+
+    /// Every output at some ξ as it follows from the motion there: 2n lines of points.
+    pub fn evaluate_motion(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
+        let motion = motion[..self.extent.len() * points.len()].to_vec();
+        self.close(points, motion)
     }
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let count = points.len();
-        let parameters = (0..self.domain.dimension())
-            .flat_map(|parameter| points.iter().map(move |xi| self.domain.value(parameter, xi[parameter])))
-            .collect();
         let mut motion = vec![0.0; self.extent.len() * count];
         self.surrogate.basis().values(points, &self.coefficients, &mut motion, &mut SparseWork::default());
         // Dependent coordinates are only a guess, and are kept within what the samples have.
@@ -143,8 +172,15 @@ impl<'r> Row<'r> {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
+        self.close(points, motion)
+    }
+
+    fn close(&self, points: &[Vec<f64>], motion: Vec<f64>) -> Vec<f64> {
+        let parameters = (0..self.domain.dimension())
+            .flat_map(|parameter| points.iter().map(move |xi| self.domain.value(parameter, xi[parameter])))
+            .collect();
         let mut values = Vec::new();
-        self.closure.outputs(self.time, &Points { count, parameters, motion }, &mut values);
+        self.closure.outputs(self.time, &Points { count: points.len(), parameters, motion }, &mut values);
         values
     }
 }

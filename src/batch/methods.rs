@@ -7,15 +7,16 @@ use std::time::Instant;
 use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
-use super::compose::{self, Composer, Row};
+use super::adapt::{Adaptation, Goal};
+use super::compose::{self, Composer, Row, Seeker};
 use super::probe::Probes;
 use super::study::Study;
 use crate::bounds::{
-    Extremes, Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange,
-    TensorGrid, surrogate_error,
+    Extent, Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange, TensorGrid,
+    largest, surrogate_error,
 };
 use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
-use crate::model::{ChebyshevRequest, Expand, ScanRequest, TaylorRequest};
+use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Expand, ScanRequest, TaylorRequest};
 use crate::report::MethodSummary;
 
 /// Values (rows × outputs × samples) that one block holds.
@@ -24,6 +25,9 @@ const BLOCK: usize = 1 << 20;
 /// Fewest and most samples that a scan runs at once.
 const SHARD: usize = 2048;
 const LARGEST_SHARD: usize = 16384;
+
+/// The least share of a tolerance that is left to the surrogate, whatever the steps take.
+const LEAST_SHARE: f64 = 0.25;
 
 /// Scalar solves that a jet of order 1 is taken for in the progress bar.
 pub(super) const TAYLOR_WORK: usize = 5;
@@ -107,6 +111,8 @@ impl Run<'_> {
             steps: self.schedule.steps_before(rows.saturating_sub(1)),
             newton_iterations: counters.iterations,
             rank_revealing_solves: counters.rank_revealing,
+            order: None,
+            boxes: None,
             seconds: Some(begun.elapsed().as_secs_f64()),
         }
     }
@@ -129,16 +135,52 @@ impl Run<'_> {
 
     pub(super) fn chebyshev(&self, request: &ChebyshevRequest, probes: &Probes) -> Result<Outcome, SimulationError> {
         let begun = Instant::now();
-        let surrogate = Surrogate::tensor(&request.order, &request.nodes);
+        let Degree::Fixed { order, nodes } = &request.degree else { return self.adapted(probes) };
+        let surrogate = Surrogate::tensor(order, nodes);
         let samples: Vec<Vec<f64>> = surrogate.samples().iter().map(|xi| self.study.domain.point(xi)).collect();
         let composed = compose::fits(&self.study.simulator, self.study.domain.dimension());
         let (lines, done) = match request.expand {
             Expand::Coordinates if composed => self.composed(&surrogate, &samples, probes)?,
-            _ => self.expanded(&surrogate, request, &samples, probes)?,
+            _ => {
+                let range = PolynomialRange::new(order, request.range);
+                self.expanded(&surrogate, range, &samples, probes)?
+            }
         };
         let summary =
             self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
         Ok(lines.outcome(done, summary))
+    }
+
+    /// To the degree that the tolerance asks for.
+    fn adapted(&self, probes: &Probes) -> Result<Outcome, SimulationError> {
+        let begun = Instant::now();
+        let tolerance = self.study.request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
+        let mut goal = Goal {
+            allowed: Vec::new(),
+            rows: self.schedule.rows,
+            budget: self.study.request.budget,
+            spent: probes.solves,
+        };
+        for output in 0..self.outputs() {
+            let (span, time) = (probes.direct.span(output), probes.time_error(output, self.schedule.rows));
+            let allowed = tolerance * span;
+            // Where the steps miss the tolerance nothing is to be gained.
+            let resolved = time.iter().position(|&time| !(time <= allowed)).unwrap_or(self.schedule.rows);
+            goal.rows = goal.rows.min(if span > 0.0 { resolved } else { goal.rows });
+            let time = largest(time[..resolved].iter().copied());
+            goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
+        }
+        let search = Adaptation::new(self, goal).search(probes.points.clone(), probes.direct.clone())?;
+        let mut lines = Lines::new(self);
+        for (place, (range, error)) in search.found.iter().enumerate() {
+            lines.set(place / self.outputs(), place % self.outputs(), *range, *error);
+        }
+        let solves = search.solves - probes.solves;
+        let stop = search.done.stop_place();
+        let mut summary = self.method_summary(Method::Chebyshev.name(), solves, search.done.counters, stop, begun);
+        summary.order = Some(search.order);
+        summary.boxes = Some(search.boxes);
+        Ok(lines.outcome(search.done, summary))
     }
 
     /// The outputs follow from the expanded independent coordinates.
@@ -150,16 +192,17 @@ impl Run<'_> {
     ) -> Result<(Lines, FleetRun), SimulationError> {
         let mut lines = Lines::new(self);
         let mut composer = Composer::new(&self.study.simulator);
+        let seeker = Seeker::new(self.study.domain.dimension());
         let stride = Observed::Motion.count(&self.study.simulator) * samples.len();
         let mut failure = None;
         let done = self.fleet(samples, Observed::Motion, |rows, values| {
             let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
-            let look = |_, row: &Row| (row.ranges(), row.evaluate(&probes.points));
+            let look = |_, row: &Row| (row.ranges(&seeker), row.evaluate(&probes.points));
             match composer.rows(surrogate, &self.study.domain, &times, (values, stride), look) {
                 Ok(found) => {
                     for (row, (ranges, at_probes)) in rows.zip(found) {
                         let at_probes = at_probes.chunks_exact(probes.points.len());
-                        for (output, (Extremes { range, gap }, at_probes)) in ranges.iter().zip(at_probes).enumerate() {
+                        for (output, (Extent { range, gap }, at_probes)) in ranges.iter().zip(at_probes).enumerate() {
                             let error = surrogate_error(at_probes, &probes.direct.at(row, output));
                             lines.set(row, output, *range, error + gap);
                         }
@@ -175,12 +218,11 @@ impl Run<'_> {
     fn expanded(
         &self,
         surrogate: &Surrogate,
-        request: &ChebyshevRequest,
+        range: PolynomialRange,
         samples: &[Vec<f64>],
         probes: &Probes,
     ) -> Result<(Lines, FleetRun), SimulationError> {
         let mut lines = Lines::new(self);
-        let range = PolynomialRange::new(&request.order, request.range);
         let done = self.fleet(samples, Observed::Outputs, |rows, values| {
             let found: Vec<Found> = values
                 .par_chunks_exact(samples.len())
@@ -287,7 +329,7 @@ impl FleetRun {
     }
 
     /// Takes in a shard whose first sample is `first`.
-    fn add(&mut self, first: usize, shard: Self) {
+    pub(super) fn add(&mut self, first: usize, shard: Self) {
         self.counters.iterations += shard.counters.iterations;
         self.counters.rank_revealing += shard.counters.rank_revealing;
         let stop = shard.stop.map(|(stop, sample)| (Stop { sample: first + stop.sample, ..stop }, sample));

@@ -4,9 +4,11 @@
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
 //! bounds before the next is run; `compose` evaluates outputs from expanded coordinates.
 
+mod adapt;
 mod compose;
 mod methods;
 mod probe;
+mod step_search;
 mod study;
 
 use crate::bounds::{Bounds, Method};

@@ -1,11 +1,12 @@
 //! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
 
 use super::methods::{FleetRun, Run};
-use crate::bounds::{held_out, probes};
+use crate::bounds::{BandError, Range, held_out, probes, time_error};
 use crate::integrate::{Counters, Observed, Schedule, SimulationError};
 use crate::report::MethodSummary;
 
-/// Values of all outputs at all rows, of a few samples.
+/// A table of the values of all outputs at all rows, of a few samples.
+#[derive(Clone)]
 pub(super) struct Table {
     outputs: usize,
     samples: usize,
@@ -30,6 +31,16 @@ impl Table {
         }
     }
 
+    /// From the least to the largest of one output's values in one row; unknown if one of them is.
+    fn range(&self, row: usize, output: usize) -> Range {
+        let values = self.at(row, output);
+        if values.iter().any(|value| value.is_nan()) {
+            return Range::UNKNOWN;
+        }
+        let fold = |f: fn(f64, f64) -> f64, start| values.iter().copied().fold(start, f);
+        Range { lower: fold(f64::min, f64::INFINITY), upper: fold(f64::max, f64::NEG_INFINITY) }
+    }
+
     /// Largest less least value of an output in all rows and samples.
     pub fn span(&self, output: usize) -> f64 {
         let lines = self.values.chunks_exact(self.samples).skip(output).step_by(self.outputs);
@@ -49,6 +60,7 @@ pub(super) struct Probes {
     /// The first of them, with each step halved.
     pub halved: Table,
     /// What they took.
+    pub solves: usize,
     pub done: FleetRun,
     pub summary: MethodSummary,
 }
@@ -70,7 +82,16 @@ impl Probes {
             iterations: done.counters.iterations + finely.counters.iterations,
             rank_revealing: done.counters.rank_revealing + finely.counters.rank_revealing,
         };
-        let summary = run.method_summary("probes", points.len() + halved, counters, done.stop_place(), begun);
-        Ok(Self { points, direct, halved: fine, done, summary })
+        let solves = points.len() + halved;
+        let summary = run.method_summary("probes", solves, counters, done.stop_place(), begun);
+        Ok(Self { points, direct, halved: fine, solves, done, summary })
+    }
+
+    /// The time steps' error of an output in each row, as if its range were that of the probes.
+    pub fn time_error(&self, output: usize, rows: usize) -> Vec<f64> {
+        let ranges: Vec<Range> = (0..rows).map(|row| self.direct.range(row, output)).collect();
+        let of_row = |row: usize| time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
+        let time: Vec<f64> = (0..rows).map(of_row).collect();
+        BandError::new(&ranges, &vec![0.0; rows], &time, self.direct.span(output), None).total
     }
 }

@@ -4,14 +4,15 @@ use std::sync::atomic::AtomicUsize;
 
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
+use super::step_search::StepSearch;
 use super::{Options, RunError, first_step};
 use crate::bounds::{
-    Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, probes, time_error,
+    Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes, time_error,
     time_error_certified,
 };
 use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
-use crate::model::{BoundsRequest, ChebyshevRequest, Description, MOST_SOLVES, ScanRequest, Stepping};
+use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, MOST_SOLVES, ScanRequest, Stepping};
 use crate::report::{ErrorSummary, MethodSummary, ParameterSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
@@ -25,7 +26,7 @@ pub(super) struct Study<'a> {
     description: &'a Description,
     pub(super) simulator: Simulator,
     pub(super) domain: ParameterBox,
-    request: BoundsRequest,
+    pub(super) request: BoundsRequest,
     /// Whether all samples are simulated with halved steps too.
     certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
@@ -33,6 +34,7 @@ pub(super) struct Study<'a> {
 
 /// What one schedule yields.
 struct Results {
+    schedule: Schedule,
     nominal: Outcome,
     /// Absent where no method is asked for.
     probes: Option<Probes>,
@@ -82,7 +84,7 @@ impl<'a> Study<'a> {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
                 let results = self.methods(&schedule, None)?;
-                Ok(self.conclude(&schedule, results, None))
+                Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => self.run_controlled(tolerance),
         }
@@ -100,10 +102,10 @@ impl<'a> Study<'a> {
             let failure = failure.map(|failure| format!("{failure}; results up to that time are kept"));
             let results = self.methods(&schedule, Some(tolerance))?;
             match results.overstrained() {
-                None => return Ok(self.conclude(&schedule, results, failure)),
+                None => return Ok(self.conclude(results, failure)),
                 Some((_, strain)) if round == PILOT_ROUNDS => {
                     let note = format!("a sample's local error is {strain:.2} times the tolerance in the worst step");
-                    return Ok(self.conclude(&schedule, results, Some(note)));
+                    return Ok(self.conclude(results, Some(note)));
                 }
                 Some((sample, _)) => pilots.push(sample),
             }
@@ -122,23 +124,51 @@ impl<'a> Study<'a> {
         pilots
     }
 
-    /// Nominal first, then the probes, then every method asked for.
+    /// Nominal first, then the probes, then every method asked for. With a tolerance for the bounds, the probes decide how
+    /// the schedule's steps are divided or joined.
     fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
         let progress = Progress { done: AtomicUsize::new(0), total: self.total_work(schedule) };
-        let run = Run { study: self, schedule, tolerance, progress: &progress };
+        let (schedule, probes) = if self.request.is_empty() {
+            (schedule.clone(), None)
+        } else {
+            let (schedule, probes) = self.balance(schedule, tolerance, &progress)?;
+            (schedule, Some(probes))
+        };
+        let run = Run { study: self, schedule: &schedule, tolerance, progress: &progress };
         let nominal = run.nominal()?;
-        let mut results = Results { nominal, probes: None, methods: Vec::new(), halved: Vec::new() };
-        if self.request.is_empty() {
-            return Ok(results);
+        let (mut methods, mut halved) = (Vec::new(), Vec::new());
+        if let Some(probes) = &probes {
+            methods = self.requested(&run, probes)?;
+            if self.certify_time {
+                let schedule = schedule.refined(2);
+                halved = self.requested(&Run { schedule: &schedule, tolerance: None, ..run }, probes)?;
+            }
         }
-        let probes = Probes::run(&run)?;
-        results.methods = self.requested(&run, &probes)?;
-        if self.certify_time {
-            let schedule = schedule.refined(2);
-            results.halved = self.requested(&Run { schedule: &schedule, tolerance: None, ..run }, &probes)?;
+        Ok(Results { schedule, nominal, probes, methods, halved })
+    }
+
+    /// The probes, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    fn balance(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<f64>,
+        progress: &Progress,
+    ) -> Result<(Schedule, Probes), SimulationError> {
+        let mut steps = StepSearch::new(schedule);
+        loop {
+            let schedule = steps.schedule();
+            let probes = Probes::run(&Run { study: self, schedule: &schedule, tolerance, progress })?;
+            let Some(allowed) = self.request.tolerance else { return Ok((schedule, probes)) };
+            let outputs = 0..self.simulator.program.outputs.len();
+            let share = |output: usize| {
+                let span = probes.direct.span(output);
+                let error = largest(probes.time_error(output, schedule.rows));
+                if span > 0.0 { error / (allowed * span) } else { 0.0 }
+            };
+            if !steps.adjust(largest(outputs.map(share))) {
+                return Ok((schedule, probes));
+            }
         }
-        results.probes = Some(probes);
-        Ok(results)
     }
 
     fn requested(&self, run: &Run, probes: &Probes) -> Result<Vec<(Method, Outcome)>, SimulationError> {
@@ -157,7 +187,10 @@ impl<'a> Study<'a> {
 
     /// Samples × rows of all methods; a jet counts as its coefficients.
     fn total_work(&self, schedule: &Schedule) -> usize {
-        let chebyshev = self.request.chebyshev.as_ref().map_or(0, |request| request.nodes.iter().product());
+        let chebyshev = self.request.chebyshev.as_ref().map_or(0, |request| match &request.degree {
+            Degree::Fixed { nodes, .. } => nodes.iter().product(),
+            Degree::Adaptive => self.request.budget.solves,
+        });
         let taylor = self.request.taylor.as_ref().map_or(0, |request| TAYLOR_WORK * (request.order + 1));
         let scan = self.request.scan.as_ref().map_or(0, |request| request.points.iter().product());
         let k = self.domain.dimension();
@@ -167,18 +200,19 @@ impl<'a> Study<'a> {
     }
 
     /// Bounds up to the first row that a sample did not reach, and the summary.
-    fn conclude(&self, schedule: &Schedule, results: Results, note: Option<String>) -> (Bounds, Summary) {
+    fn conclude(&self, results: Results, note: Option<String>) -> (Bounds, Summary) {
         let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
         // Where only the jet cannot go on, its bounds are unknown from there on, and the others' are kept.
         let end = results.stops().filter(|(stop, _)| !stop.singular).map(|(stop, _)| stop.row).min();
-        let rows = end.unwrap_or(schedule.rows);
+        let rows = end.unwrap_or(results.schedule.rows);
         let outputs = self.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
             name: output.name.clone(),
             unit: output.unit.clone(),
             nominal: results.nominal.bands[place][..rows].iter().map(|range| range.lower).collect(),
             bands: self.bands(&results, place, rows),
         });
-        let bounds = Bounds { times: (0..rows).map(|row| schedule.time(row)).collect(), outputs: outputs.collect() };
+        let bounds =
+            Bounds { times: (0..rows).map(|row| results.schedule.time(row)).collect(), outputs: outputs.collect() };
         let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
         let summary = self.summary(results, &bounds, failure);
         (bounds, summary)
@@ -201,7 +235,7 @@ impl<'a> Study<'a> {
                 method: *method,
                 lower: ranges.iter().map(|range| range.lower).collect(),
                 upper: ranges.iter().map(|range| range.upper).collect(),
-                error: BandError::new(ranges, surrogate, &time, probes.direct.span(output), None),
+                error: BandError::new(ranges, surrogate, &time, probes.direct.span(output), self.request.tolerance),
             }
         };
         results.methods.iter().enumerate().map(band).collect()
@@ -282,21 +316,25 @@ fn errors(bounds: &Bounds) -> Vec<ErrorSummary> {
 fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Result<BoundsRequest, RunError> {
     let Some(methods) = methods else { return Ok(model.clone()) };
     let asked = |method: Method| methods.contains(&method);
-    let chebyshev =
-        || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::of_order(ChebyshevRequest::ORDER, k));
+    let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::unspecified(k, model.tolerance));
     let taylor = || model.taylor.clone().unwrap_or_default();
     let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(ScanRequest::POINTS, k));
     let request = BoundsRequest {
         chebyshev: asked(Method::Chebyshev).then(chebyshev),
         taylor: asked(Method::Taylor).then(taylor),
         scan: asked(Method::Scan).then(scan),
+        ..*model
+    };
+    let nodes = |request: &ChebyshevRequest| match &request.degree {
+        Degree::Fixed { nodes, .. } => nodes.clone(),
+        Degree::Adaptive => Vec::new(),
     };
     let counts = [
-        (Method::Chebyshev, request.chebyshev.as_ref().map(|request| &request.nodes)),
-        (Method::Scan, request.scan.as_ref().map(|request| &request.points)),
+        (Method::Chebyshev, request.chebyshev.as_ref().map(nodes)),
+        (Method::Scan, request.scan.as_ref().map(|request| request.points.clone())),
     ];
     for (method, counts) in counts {
-        let solves: f64 = counts.into_iter().flatten().map(|&count| count as f64).product();
+        let solves: f64 = counts.into_iter().flatten().map(|count| count as f64).product();
         if solves > MOST_SOLVES {
             return Err(RunError::TooMany { method: method.name(), solves, parameters: k });
         }

@@ -20,7 +20,8 @@ const RICHARDSON: f64 = 4.0 / 3.0;
 
 /// What the estimates themselves may be wrong by.
 const SAFETY_OF_STEPS: f64 = 1.25;
-const SAFETY_OF_SURROGATE: f64 = 2.0;
+/// The same of the surrogate's.
+pub const SAFETY_OF_SURROGATE: f64 = 2.0;
 
 /// Shares of a neighbour's error, and of the largest so far, below which no error falls.
 const NEIGHBOUR: f64 = 0.5;
@@ -115,7 +116,7 @@ fn held_up(estimates: &[f64], safety: f64) -> Vec<f64> {
 }
 
 /// Largest absolute value; not a number if one is.
-fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let larger = |largest: f64, value: f64| if value <= largest || largest.is_nan() { largest } else { value };
     values.into_iter().map(f64::abs).fold(0.0, larger)
 }

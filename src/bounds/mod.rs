@@ -31,8 +31,8 @@ mod tensor;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
-pub use error::{BandError, surrogate_error, time_error, time_error_certified};
-pub use extremes::{Extremes, extremes};
+pub use error::{BandError, SAFETY_OF_SURROGATE, largest, surrogate_error, time_error, time_error_certified};
+pub use extremes::{Extent, extremes};
 pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
 pub use samples::{TensorGrid, corners, held_out, probes};

@@ -31,8 +31,6 @@ const REACH: f64 = 0.25;
 const ON_FACE: f64 = 0.05;
 /// Least distance of probes: nearer, rounding bends parabolas.
 const NEAREST: f64 = 0.01;
-/// A climb ends where a round neither promises nor brings this share of the range.
-const TOLERANCE: f64 = 2e-4;
 /// Most rounds of a climb.
 const ROUNDS: usize = 12;
 /// Shares of the way to the targets that are tried, ascending.
@@ -59,6 +57,9 @@ pub struct ExtremeSearch {
 }
 
 impl ExtremeSearch {
+    /// A climb ends where a round neither promises nor brings this share of the range.
+    pub const TOLERANCE: f64 = 2e-4;
+
     /// Prepares the design.
     pub fn new(dimension: usize) -> Self {
         Self { dimension, design: design(dimension) }
@@ -366,7 +367,7 @@ impl Climb {
         let value = seen.value(self.goal, self.best);
         let gained = value - seen.value(self.goal, self.at);
         self.at = self.best;
-        let least = TOLERANCE * seen.width(self.goal);
+        let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
         let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
         self.arrived = hopeless || !(gained > least) || !(self.promised > least);
     }

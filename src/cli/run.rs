@@ -235,6 +235,8 @@ mod tests {
             steps: 2000 * solves,
             newton_iterations: 4013 * solves as u64,
             rank_revealing_solves,
+            order: None,
+            boxes: None,
             seconds,
         };
         let summary = Summary {

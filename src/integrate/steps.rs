@@ -54,6 +54,20 @@ impl Schedule {
         Self { steps, ..*self }
     }
 
+    /// How many steps there are between rows, where they are all of one length.
+    pub fn steps_per_row(&self) -> Option<usize> {
+        match &self.steps {
+            Steps::Fixed { per_row, .. } => Some(*per_row),
+            Steps::Listed(_) => None,
+        }
+    }
+
+    /// The same rows, with so many steps of one length between them.
+    #[must_use]
+    pub fn with_steps_per_row(&self, per_row: usize) -> Self {
+        Self { steps: Steps::Fixed { step: self.output_step / per_row as f64, per_row }, ..*self }
+    }
+
     /// Number of rows for a schedule still to be made.
     pub fn rows_of(duration: f64, output_step: f64) -> usize {
         rows(duration, output_step)

@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 
 use super::description::{
-    BoundsRequest, ChebyshevRequest, Expand, MOST_SOLVES, ParameterValue, RangeKind, ScanRequest, TaylorRequest,
+    BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, ParameterValue, RangeKind, ScanRequest,
+    TaylorRequest,
 };
 use super::diagnostic::Diagnostic;
 use super::file;
+use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::source::Span;
 use super::suggest::{self, clip};
@@ -14,6 +16,9 @@ use super::yaml::{Node, Value};
 
 /// Coefficients of a Taylor polynomial.
 const MOST_COEFFICIENTS: f64 = 1e5;
+
+/// Errors below this share of an output's range drown in rounding.
+const LEAST_TOLERANCE: f64 = 1e-8;
 
 const MOST_ORDER: usize = 200;
 const MOST_NODES: usize = 1000;
@@ -33,17 +38,8 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         .map(|parameter| parameter.name.clone())
         .collect();
     let Some((node, at)) = section else {
-        let chebyshev = ChebyshevRequest::of_order(ChebyshevRequest::ORDER, uncertain.len());
-        let solves: f64 = chebyshev.nodes.iter().map(|count| *count as f64).product();
-        if solves > MOST_SOLVES {
-            let message = format!(
-                "{} uncertain parameters make {solves:.2e} simulations of a Chebyshev surrogate",
-                uncertain.len()
-            );
-            let help = "ask for other `bounds`, such as `taylor: { order: 2 }`, or make fewer parameters uncertain";
-            reader.diagnostics.push(Diagnostic::of_file(message).help(help.to_owned()));
-        }
-        return Some(BoundsRequest { chebyshev: Some(chebyshev), taylor: None, scan: None });
+        let chebyshev = ChebyshevRequest::unspecified(uncertain.len(), None);
+        return Some(BoundsRequest { chebyshev: Some(chebyshev), ..BoundsRequest::default() });
     };
     let fields = reader.fields::<file::Bounds>(node, at.clone())?;
     if uncertain.is_empty() && !reader.diagnostics.has_errors() {
@@ -51,11 +47,20 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         let help = "give a parameter a `tolerance` or an `interval`".to_owned();
         reader.diagnostics.push(warning.help(help));
     }
-    let mut request = BoundsRequest::default();
+    let mut request = BoundsRequest { tolerance: tolerance(reader, &fields), ..BoundsRequest::default() };
+    if let Some(node) = fields.get("budget")
+        && let Some(fields) = reader.fields::<file::Budget>(node, fields.key_span("budget"))
+    {
+        request.budget = budget(reader, &fields);
+    }
+    let methods = ["chebyshev", "taylor", "scan"];
+    if fields.get("tolerance").is_some() && methods.iter().all(|method| fields.get(method).is_none()) {
+        request.chebyshev = Some(ChebyshevRequest::ADAPTIVE);
+    }
     if let Some(node) = fields.get("chebyshev")
         && let Some(fields) = reader.fields::<file::Chebyshev>(node, fields.key_span("chebyshev"))
     {
-        request.chebyshev = chebyshev(reader, &fields, &uncertain);
+        request.chebyshev = chebyshev(reader, &fields, &uncertain, request.tolerance);
     }
     if let Some(node) = fields.get("taylor")
         && let Some(fields) = reader.fields::<file::Taylor>(node, fields.key_span("taylor"))
@@ -70,7 +75,40 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
     Some(request)
 }
 
-fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ChebyshevRequest> {
+fn tolerance(reader: &mut Reader, fields: &Fields) -> Option<f64> {
+    let node = fields.get("tolerance")?;
+    let tolerance = reader.number(node, Dimension::NUMBER)?;
+    if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
+        let message = format!("a tolerance of {tolerance} is not from {LEAST_TOLERANCE:e} to below 1");
+        let help = "it is relative to how far an output ranges: 1e-3 is a thousandth of that".to_owned();
+        reader.error(node.span.clone(), message, help);
+        return None;
+    }
+    Some(tolerance)
+}
+
+fn budget(reader: &mut Reader, fields: &Fields) -> Budget {
+    let mut budget = Budget::default();
+    if let Some(solves) = fields.get("solves").and_then(|node| reader.count(node, 1, MOST_SOLVES as usize)) {
+        budget.solves = solves;
+    }
+    if let Some(node) = fields.get("seconds")
+        && let Some(seconds) = reader.number(node, Dimension::TIME)
+    {
+        if seconds <= 0.0 {
+            reader.error(node.span.clone(), format!("`seconds` must be positive, but is {seconds}"), None);
+        }
+        budget.seconds = Some(seconds);
+    }
+    budget
+}
+
+fn chebyshev(
+    reader: &mut Reader,
+    fields: &Fields,
+    uncertain: &[String],
+    tolerance: Option<f64>,
+) -> Option<ChebyshevRequest> {
     let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, ChebyshevRequest::ORDER);
     let nodes = match fields.get("nodes") {
         Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, ChebyshevRequest::ORDER + 1),
@@ -82,6 +120,16 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
         None if fields.get("range").is_some() => Some(Expand::Output),
         None => Some(Expand::Coordinates),
     };
+    let unspecified = ChebyshevRequest::unspecified(uncertain.len(), tolerance);
+    if fields.get("order").is_none() && fields.get("nodes").is_none() && unspecified.degree == Degree::Adaptive {
+        let of_output =
+            if expand == Some(Expand::Output) { fields.get("range").or(fields.get("expand")) } else { None };
+        if let Some(node) = of_output {
+            let message = "an output is expanded to an order that is given, not to a tolerance".to_owned();
+            reader.error(node.span.clone(), message, "give an `order`, or leave this out".to_owned());
+        }
+        return Some(unspecified);
+    }
     if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
         let help = "leave it out, or expand the output".to_owned();
         reader.error(node.span.clone(), "`range` is about an expanded output".to_owned(), help);
@@ -95,7 +143,7 @@ fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Opti
     }
     let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
     check_solves(reader, fields, key, &nodes);
-    Some(ChebyshevRequest { order, nodes, expand: expand?, range: range? })
+    Some(ChebyshevRequest { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
 }
 
 fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<TaylorRequest> {

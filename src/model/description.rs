@@ -384,6 +384,10 @@ pub enum Expand {
 /// Which bounds are asked for; per-parameter vectors run over the uncertain parameters in file order.
 #[derive(Clone, Debug, Default)]
 pub struct BoundsRequest {
+    /// Error allowed of every bound, relative to how far its output ranges over the run.
+    pub tolerance: Option<f64>,
+    /// What may be spent on it.
+    pub budget: Budget,
     #[allow(missing_docs)]
     pub chebyshev: Option<ChebyshevRequest>,
     #[allow(missing_docs)]
@@ -392,7 +396,25 @@ pub struct BoundsRequest {
     pub scan: Option<ScanRequest>,
 }
 
+/// Where the search for bounds within a tolerance ends at the latest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Simulations.
+    pub solves: usize,
+    /// s
+    pub seconds: Option<f64>,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { solves: 3000, seconds: None }
+    }
+}
+
 impl BoundsRequest {
+    /// Error relative to the output's range that is aimed at where a degree is to be chosen and no tolerance is given.
+    pub const TOLERANCE: f64 = 1e-3;
+
     /// Whether no method is asked for.
     pub fn is_empty(&self) -> bool {
         self.chebyshev.is_none() && self.taylor.is_none() && self.scan.is_none()
@@ -402,10 +424,8 @@ impl BoundsRequest {
 /// Chebyshev bounds.
 #[derive(Clone, Debug)]
 pub struct ChebyshevRequest {
-    /// Degree per parameter.
-    pub order: Vec<usize>,
-    /// Nodes per parameter, more than the degree.
-    pub nodes: Vec<usize>,
+    #[allow(missing_docs)]
+    pub degree: Degree,
     #[allow(missing_docs)]
     pub expand: Expand,
     /// Of the outputs' polynomials, where those are expanded.
@@ -431,13 +451,40 @@ pub struct ScanRequest {
 /// Simulations that one method may ask for.
 pub const MOST_SOLVES: f64 = 1e7;
 
+/// The degree of a Chebyshev polynomial.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// As given, for each parameter, with so many nodes, more than the degree.
+    Fixed {
+        #[allow(missing_docs)]
+        order: Vec<usize>,
+        #[allow(missing_docs)]
+        nodes: Vec<usize>,
+    },
+    /// As the tolerance asks for.
+    Adaptive,
+}
+
 impl ChebyshevRequest {
+    /// As the tolerance asks for.
+    pub const ADAPTIVE: Self = Self { degree: Degree::Adaptive, expand: Expand::Coordinates, range: RangeKind::Tight };
+
+    /// Most parameters for which full grids are the default.
+    pub const FEW: usize = 3;
+
+    /// What a model gets that asks for no degree: [`ORDER`](Self::ORDER), or what a tolerance asks for where there is one or
+    /// are many parameters.
+    pub fn unspecified(k: usize, tolerance: Option<f64>) -> Self {
+        if tolerance.is_some() || k > Self::FEW { Self::ADAPTIVE } else { Self::of_order(Self::ORDER, k) }
+    }
+
     /// Degree where a model asks for none.
     pub const ORDER: usize = 5;
 
     /// One degree for each of k parameters, one node more than the degree.
     pub fn of_order(order: usize, k: usize) -> Self {
-        Self { order: vec![order; k], nodes: vec![order + 1; k], expand: Expand::Coordinates, range: RangeKind::Tight }
+        let degree = Degree::Fixed { order: vec![order; k], nodes: vec![order + 1; k] };
+        Self { degree, expand: Expand::Coordinates, range: RangeKind::Tight }
     }
 }
 

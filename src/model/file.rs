@@ -343,6 +343,11 @@ grammar! {
 
     /// Which bounds to compute; a method that is not named is not run.
     Bounds is "`bounds`" {
+        /// Error allowed of every bound, relative to how far its output ranges over the run. Chebyshev's degree (where it has no
+        /// `order`) and the steps are then chosen to meet it; what misses it is flagged.
+        tolerance: Option<Number>,
+        /// What may be spent on the tolerance.
+        budget: Option<Budget>,
         /// A Chebyshev polynomial in the parameters.
         chebyshev: Option<Chebyshev>,
         /// A Taylor polynomial in the parameters.
@@ -351,9 +356,18 @@ grammar! {
         scan: Option<Scan>,
     }
 
+    /// Where the search for bounds within the tolerance ends at the latest; what it has come to is kept.
+    Budget is "`budget`" {
+        /// Simulations; by default 3000.
+        solves: Option<u32>,
+        /// Seconds; by default as long as it takes. Results then depend on the machine.
+        seconds: Option<Number>,
+    }
+
     /// Chebyshev bounds.
     Chebyshev is "`chebyshev`" {
-        /// Degree, for all parameters or by parameter; by default 5.
+        /// Degree, for all parameters or by parameter; by default 5, or as the tolerance asks for where there is one, or more
+        /// than three parameters.
         order: Option<PerParameter>,
         /// Nodes, more than the degree; by default one more.
         nodes: Option<PerParameter>,
@@ -439,6 +453,7 @@ mod tests {
         same_keys::<SpringDamper>();
         same_keys::<Simulation>();
         same_keys::<Bounds>();
+        same_keys::<Budget>();
         same_keys::<Chebyshev>();
     }
 }

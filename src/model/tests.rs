@@ -60,7 +60,7 @@ fn the_slider_crank_is_what_its_file_says() {
     assert_eq!((model.outputs[0].name.as_str(), model.outputs[0].unit.as_str()), ("x3", "m"));
     assert_eq!(model.simulation.stepping, Stepping::Fixed(1e-3));
     assert_eq!(model.simulation.output_step, 0.01);
-    assert_eq!(model.bounds.chebyshev.as_ref().unwrap().nodes, [6, 6]);
+    assert_eq!(model.bounds.chebyshev.as_ref().unwrap().degree, Degree::Fixed { order: vec![5, 5], nodes: vec![6, 6] });
     assert_eq!(model.bounds.taylor.as_ref().unwrap().order, 2);
     assert_eq!(model.bounds.scan.as_ref().unwrap().points, [30, 30]);
 }
@@ -188,7 +188,7 @@ fn defaults_are_sensible() {
     let model = good(BAR);
     assert_eq!(model.simulation.stepping, Stepping::Fixed(1e-3));
     assert_eq!((model.simulation.alpha, model.simulation.output_step), (-0.1, 0.005));
-    assert_eq!(model.bounds.chebyshev.as_ref().unwrap().order, [5]);
+    assert_eq!(model.bounds.chebyshev.as_ref().unwrap().degree, Degree::Fixed { order: vec![5], nodes: vec![6] });
     assert!(model.bounds.taylor.is_none() && model.bounds.scan.is_none());
     assert_eq!(model.name, "x");
     let model = good(&BAR.replace("duration: 1", "duration: 1, tolerance: 1e-6"));

@@ -71,6 +71,12 @@ pub struct MethodSummary {
     pub newton_iterations: u64,
     /// Steps that fell back to the dense rank-revealing solve.
     pub rank_revealing_solves: u64,
+    /// Highest degree in each parameter, where a tolerance decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<Vec<usize>>,
+    /// How many boxes the parameters' was split into, where a tolerance decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boxes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }

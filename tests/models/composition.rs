@@ -1,7 +1,7 @@
 //! Bounds whose outputs are evaluated from the expanded independent coordinates (`expand: coordinates`).
 
 use mbint::bounds::{Method, OutputBounds};
-use mbint::model::{ChebyshevRequest, Description, Expand, ParameterValue, ScanRequest};
+use mbint::model::{ChebyshevRequest, Degree, Description, Expand, ParameterValue, ScanRequest};
 
 use super::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
 
@@ -46,7 +46,10 @@ fn scans_lie_within_composed_bounds_of_every_model() {
     for path in model_files() {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let description = load(&path);
-        let order = description.bounds.chebyshev.as_ref().map_or(5, |request| request.order[0]);
+        let order = match description.bounds.chebyshev.as_ref().map(|request| &request.degree) {
+            Some(Degree::Fixed { order, .. }) => order[0],
+            _ => 5,
+        };
         let bounds = run(&composed(description, order, 9));
         for output in &bounds.outputs {
             let bounds = band(output, Method::Chebyshev);
