@@ -4,11 +4,12 @@
 //!
 //! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
-//!   [`SparseBasis`], for many parameters;
+//!   [`SparseBasis`], for many parameters → [`SparseRange`], [`VarianceShares`];
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
+mod adaptive;
 mod bernstein;
 mod chebyshev;
 mod domain;
@@ -24,11 +25,13 @@ mod search;
 mod shares;
 mod sparse_basis;
 mod sparse_grid;
+mod sparse_range;
 mod sparse_transform;
 mod surrogate;
 mod taylor;
 mod tensor;
 
+pub use adaptive::{choose, contributions, expected};
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
 pub use error::{BandError, SAFETY_OF_SURROGATE, largest, surrogate_error, time_error, time_error_certified};
@@ -41,6 +44,7 @@ pub use search::{ExtremeSearch, Extremes};
 pub use shares::{Shares, VarianceShares};
 pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::{Candidate, SparseGrid};
+pub use sparse_range::{ProvenRange, SparseRange};
 pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 
 use super::lobatto::{MAX_LEVEL, fresh, node};
 
@@ -18,7 +18,8 @@ pub struct SparseGrid {
     /// Highest level allowed along each axis.
     caps: Vec<u8>,
     indices: Vec<Index>,
-    known: FxHashSet<Vec<u8>>,
+    /// Place of each in `indices`.
+    places: FxHashMap<Vec<u8>, usize>,
     /// Number along each axis of every node, node after node.
     numbers: Vec<u8>,
 }
@@ -44,7 +45,7 @@ impl SparseGrid {
     pub fn new(caps: &[u8]) -> Self {
         let caps: Vec<u8> = caps.iter().map(|&cap| cap.min(MAX_LEVEL)).collect();
         let mut grid =
-            Self { dimension: caps.len(), caps, indices: Vec::new(), known: FxHashSet::default(), numbers: Vec::new() };
+            Self { dimension: caps.len(), caps, indices: Vec::new(), places: FxHashMap::default(), numbers: Vec::new() };
         grid.add(&vec![0; grid.dimension]);
         grid
     }
@@ -90,9 +91,9 @@ impl SparseGrid {
         self.indices.iter().map(|index| (index.levels.as_slice(), index.nodes.clone()))
     }
 
-    /// Whether an index is in the set.
-    pub fn contains(&self, levels: &[u8]) -> bool {
-        self.known.contains(levels)
+    /// Place of an index in [`indices`](Self::indices), if it is in the set.
+    pub fn position(&self, levels: &[u8]) -> Option<usize> {
+        self.places.get(levels).copied()
     }
 
     /// Indices that could be added next: not in the set, no higher than the caps, with all that are smaller in it. In
@@ -103,7 +104,7 @@ impl SparseGrid {
             for axis in 0..self.dimension {
                 let mut levels = index.levels.clone();
                 levels[axis] += 1;
-                if levels[axis] <= self.caps[axis] && !self.contains(&levels) && self.admissible(&levels) {
+                if levels[axis] <= self.caps[axis] && self.position(&levels).is_none() && self.admissible(&levels) {
                     found.insert(levels);
                 }
             }
@@ -116,7 +117,7 @@ impl SparseGrid {
         let mut smaller = levels.to_vec();
         (0..self.dimension).filter(|&axis| levels[axis] > 0).all(|axis| {
             smaller[axis] -= 1;
-            let known = self.contains(&smaller);
+            let known = self.position(&smaller).is_some();
             smaller[axis] += 1;
             known
         })
@@ -130,7 +131,7 @@ impl SparseGrid {
         assert_eq!(levels.len(), self.dimension, "an index of another dimension");
         assert!(levels.iter().zip(&self.caps).all(|(level, cap)| level <= cap), "{levels:?} is above the caps");
         assert!(self.admissible(levels), "the set would not be downward closed with {levels:?}");
-        assert!(self.known.insert(levels.to_vec()), "{levels:?} is in the set");
+        assert!(self.places.insert(levels.to_vec(), self.indices.len()).is_none(), "{levels:?} is in the set");
         let mut number: Vec<u8> = levels.iter().map(|&level| *fresh(level).start()).collect();
         loop {
             self.numbers.extend_from_slice(&number);
