@@ -1,27 +1,34 @@
 //! Chebyshev bounds within a tolerance: the degree grows parameter by parameter where the response asks for it, and where
 //! that does not help, the box is split.
 //!
-//! Each box has a sparse grid (Gerstner & Griebel, Computing 71 (2003) 65). In a round, the indices that taught most are
-//! followed by their neighbours of higher level. What a new index teaches is how far the surrogate was off at its nodes: for
-//! nested nodes that is |p_n − p_2n|, the error of the surrogate as it was. Whether it is good enough as it is now is told by
-//! held-out samples.
+//! Each box has a sparse grid (Gerstner & Griebel, Computing 71 (2003) 65), to which in a round those indices are added that
+//! are expected to teach most. What an index teaches is how far the surrogate was off at its node: for nested nodes the
+//! difference of the polynomials without and with it. Expected is what those before it taught, times what one degree more
+//! would change if the response depended on a single weighted sum of the parameters, as it does to first order. Whether the
+//! surrogate is good enough is told by held-out samples.
 
 use std::time::Instant;
 
-use super::compose::{Composer, Row, Seeker};
+use rustc_hash::FxHashMap;
+
+use super::compose::{Composer, Known, Row, Seeker};
 use super::methods::{FleetRun, Run};
 use super::probe::Table;
-use crate::bounds::{
-    Extent, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, held_out, largest, probes, surrogate_error,
-};
+use crate::bounds::{ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, held_out, largest, probes};
 use crate::integrate::{Observed, SimulationError};
 use crate::model::Budget;
 
-/// Highest level of an axis, of 17 nodes; then the box is split.
-const HIGHEST: u8 = 4;
+/// Highest degree in a parameter, of 17 nodes; then the box is split.
+const HIGHEST: u8 = 16;
 
-/// Of the indices not yet followed, those are that taught at least this share of what the best did.
-const FOLLOWED: f64 = 0.25;
+/// Indices are added that are expected to teach at least this share of what the best is.
+const ADDED: f64 = 0.3;
+
+/// The box is split where indices of a higher degree than is allowed would teach so many times what the best allowed one would.
+const SPLIT: f64 = 4.0;
+
+/// Rows at which a surrogate is looked at between rounds.
+const CHECKED: usize = 48;
 
 /// What surrogates have to meet.
 pub(super) struct Goal {
@@ -54,9 +61,8 @@ struct Part {
     grid: SparseGrid,
     /// Motions and outputs at the grid's nodes: so many of them, then row by row, line by line, node by node.
     nodes: Vec<(usize, Vec<f64>)>,
-    /// Indices whose neighbours are not in the grid yet, and how much they taught.
-    unfollowed: Vec<(Vec<u8>, f64)>,
-    followed: Vec<Vec<u8>>,
+    /// What each index of the grid taught.
+    taught: FxHashMap<Vec<u8>, f64>,
     /// Samples that the surrogate is held against.
     points: Vec<Vec<f64>>,
     direct: Table,
@@ -73,13 +79,18 @@ pub(super) struct Adaptation<'a, 'r> {
     done: FleetRun,
     /// Whether the budget had no room for something.
     exhausted: bool,
+    /// Surrogates are held against samples in every so many rows.
+    every: usize,
+    seeker: Seeker,
 }
 
 impl<'a, 'r> Adaptation<'a, 'r> {
     /// Before the first simulation.
     pub fn new(run: &'r Run<'a>, goal: Goal) -> Self {
         let composer = Composer::new(&run.study.simulator);
-        Self { run, goal, begun: Instant::now(), composer, done: FleetRun::default(), exhausted: false }
+        let every = goal.rows.div_ceil(CHECKED).max(1);
+        let seeker = Seeker::new(run.study.domain.dimension());
+        Self { run, goal, begun: Instant::now(), composer, done: FleetRun::default(), exhausted: false, every, seeker }
     }
 
     /// Refines until the goal is met or the budget is spent. `points` and `direct` are held-out samples of the whole box.
@@ -91,10 +102,17 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         loop {
             let worst = (0..parts.len()).max_by(|&a, &b| parts[a].error.total_cmp(&parts[b].error)).unwrap_or(0);
             // Not a number is not met.
-            if parts[worst].error <= 1.0 || self.is_spent() || self.done.stop.is_some() {
-                break;
+            let met = parts[worst].error <= 1.0;
+            if met && self.every > 1 {
+                // Met at some rows: now look at all of them.
+                self.every = 1;
+                parts.iter_mut().try_for_each(|part| self.check(part))?;
+                continue;
             }
-            match self.axis_to_split(&parts[worst]) {
+            if met || self.is_spent() || self.done.stop.is_some() {
+                return self.conclude(&parts);
+            }
+            match parts[worst].axis_to_split() {
                 Some(axis) => {
                     let whole = parts.swap_remove(worst);
                     for half in halves(&whole.domain, axis) {
@@ -105,7 +123,6 @@ impl<'a, 'r> Adaptation<'a, 'r> {
                 None => self.refine(&mut parts[worst])?,
             }
         }
-        self.conclude(parts)
     }
 
     fn is_spent(&self) -> bool {
@@ -119,11 +136,8 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     fn part(&mut self, domain: ParameterBox, points: Vec<Vec<f64>>, direct: Table) -> Result<Part, SimulationError> {
         let grid = SparseGrid::new(&vec![HIGHEST; domain.dimension()]);
         let nodes = vec![self.simulate(&domain, &[grid.sample(0)])?];
-        let unfollowed = vec![(vec![0; domain.dimension()], f64::INFINITY)];
-        let mut part =
-            Part { domain, grid, nodes, unfollowed, followed: Vec::new(), points, direct, error: f64::INFINITY };
-        self.check(&mut part)?;
-        Ok(part)
+        let taught = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
+        Ok(Part { domain, grid, nodes, taught, points, direct, error: f64::INFINITY })
     }
 
     /// Samples of a part to hold its surrogate against.
@@ -131,7 +145,7 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         let mut points = probes(domain.dimension());
         points.extend(held_out(domain.dimension()));
         let samples: Vec<Vec<f64>> = points.iter().map(|xi| domain.point(xi)).collect();
-        let (direct, done) = Table::of(self.run, &samples)?;
+        let (direct, done) = Table::of(self.run, &samples, Observed::Motion)?;
         self.done.add(self.goal.spent, done);
         self.goal.spent += samples.len();
         Ok((points, direct))
@@ -147,53 +161,25 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         Ok((samples.len(), motions))
     }
 
-    /// The axis along which a part is to be split: one whose level can no longer rise where that would teach most.
-    fn axis_to_split(&self, part: &Part) -> Option<usize> {
-        let best = part.unfollowed.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        match best {
-            Some((levels, _)) => levels.iter().position(|&level| level == HIGHEST),
-            // Everything has been followed: split what reaches highest.
-            None => {
-                let highest = |axis: &usize| part.followed.iter().map(|levels| levels[*axis]).max();
-                (0..part.domain.dimension()).max_by_key(highest)
-            }
-        }
-    }
-
-    /// A round: the indices that taught most are followed.
+    /// A round: the indices that are expected to teach most are added.
     fn refine(&mut self, part: &mut Part) -> Result<(), SimulationError> {
-        let most = part.unfollowed.iter().map(|(_, taught)| *taught).fold(0.0, f64::max);
-        let (follow, rest): (Vec<_>, Vec<_>) =
-            std::mem::take(&mut part.unfollowed).into_iter().partition(|(_, taught)| *taught >= FOLLOWED * most);
-        part.unfollowed = rest;
-        part.followed.extend(follow.into_iter().map(|(levels, _)| levels));
         let before = Surrogate::sparse(&part.grid);
-        let motions = part.motions(self.lines());
+        let motions = part.motions(self.lines(), 0..part.rows(self.lines()));
         let first = part.grid.len();
-        let mut room = self.goal.budget.solves.saturating_sub(self.goal.spent);
-        let mut added = Vec::new();
-        for candidate in part.grid.candidates() {
-            if !part.is_followed_by(&candidate.levels) {
-                continue;
-            }
-            if candidate.cost > room {
-                self.exhausted = true;
-                continue;
-            }
-            room -= candidate.cost;
-            let nodes = part.grid.add(&candidate.levels);
-            added.push((candidate.levels, nodes));
-        }
+        let room = self.goal.budget.solves.saturating_sub(self.goal.spent);
+        let mut added = part.expected(part.grid.candidates());
+        let most = added.first().map_or(0.0, |(_, expected)| *expected);
+        added.retain(|(_, expected)| *expected >= ADDED * most);
+        self.exhausted |= added.len() > room;
+        added.truncate(room);
         if added.is_empty() {
             return Ok(());
         }
+        added.iter().for_each(|(levels, _)| part.grid.add(levels));
         let nodes: Vec<Vec<f64>> = (first..part.grid.len()).map(|node| part.grid.sample(node)).collect();
         let new = self.simulate(&part.domain, &nodes)?;
         let taught = self.errors_at(&before, &part.domain, &motions, &nodes, &new.1)?;
-        part.unfollowed.extend(added.into_iter().map(|(levels, range)| {
-            let taught = &taught[range.start - first..range.end - first];
-            (levels, largest(taught.iter().copied()))
-        }));
+        part.taught.extend(added.into_iter().map(|(levels, _)| levels).zip(taught));
         part.nodes.push(new);
         self.check(part)
     }
@@ -201,10 +187,6 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     /// Values a row and sample of what is observed.
     fn lines(&self) -> usize {
         Observed::Motion.count(&self.run.study.simulator)
-    }
-
-    fn times(&self, rows: usize) -> Vec<f64> {
-        (0..rows).map(|row| self.run.schedule.time(row)).collect()
     }
 
     /// Largest error of a surrogate at new nodes, over the one that is allowed: that of the outputs that follow from its
@@ -220,9 +202,9 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         let stride = self.lines() * surrogate.samples().len();
         let own_stride = self.lines() * nodes.len();
         let rows = self.goal.rows.min(motions.len() / stride).min(own.len() / own_stride);
-        let times = self.times(rows);
+        let times: Vec<f64> = (0..rows).map(|row| self.run.schedule.time(row)).collect();
         let allowed = &self.goal.allowed;
-        let look = |row: usize, composed: &Row| {
+        let look = |row: usize, composed: &Row, _: &mut Known| {
             let (expected, found) =
                 (composed.evaluate_motion(nodes, &own[row * own_stride..]), composed.evaluate(nodes));
             let mut errors = vec![0.0_f64; nodes.len()];
@@ -238,49 +220,37 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
-    /// Holds a part's surrogate against its held-out samples.
+    /// Finds a part's error in some rows.
     fn check(&mut self, part: &mut Part) -> Result<(), SimulationError> {
-        let surrogate = Surrogate::sparse(&part.grid);
-        let motions = part.motions(self.lines());
-        let stride = self.lines() * surrogate.samples().len();
-        let rows = self.goal.rows.min(motions.len() / stride);
-        let (times, allowed) = (self.times(rows), &self.goal.allowed);
-        let count = part.points.len();
-        let look = |row: usize, composed: &Row| {
-            let found = composed.evaluate(&part.points);
-            let errors = found.chunks_exact(count).zip(allowed).enumerate().map(|(output, (found, allowed))| {
-                SAFETY_OF_SURROGATE * surrogate_error(found, &part.direct.at(row, output)) / allowed
-            });
-            largest(errors)
-        };
-        let errors = self.composer.rows(&surrogate, &part.domain, &times, (&motions, stride), look)?;
-        part.error = largest(errors);
+        let rows: Vec<usize> = (0..self.goal.rows.min(part.rows(self.lines()))).rev().step_by(self.every).collect();
+        let found = self.bounds(part, &rows)?;
+        let allowed = self.goal.allowed.iter().cycle();
+        part.error =
+            largest(found.iter().zip(allowed).map(|((_, error), allowed)| SAFETY_OF_SURROGATE * error / allowed));
         Ok(())
     }
 
+    /// A part's ranges with their errors in some rows, output by output.
+    fn bounds(&mut self, part: &Part, rows: &[usize]) -> Result<Vec<(Range, f64)>, SimulationError> {
+        let surrogate = Surrogate::sparse(&part.grid);
+        let motions = part.motions(self.lines(), rows.iter().copied());
+        let stride = self.lines() * surrogate.samples().len();
+        let times: Vec<f64> = rows.iter().map(|&row| self.run.schedule.time(row)).collect();
+        let held_out = (part.points.as_slice(), &part.direct);
+        let look = |place: usize, row: &Row, known: &mut Known| row.bounds(&self.seeker, held_out, rows[place], known);
+        Ok(self.composer.rows(&surrogate, &part.domain, &times, (&motions, stride), look)?.concat())
+    }
+
     /// Ranges over all parts, with their errors.
-    fn conclude(mut self, parts: Vec<Part>) -> Result<Adapted, SimulationError> {
-        let outputs = self.run.outputs();
-        let seeker = Seeker::new(self.run.study.domain.dimension());
-        let mut found = vec![(EMPTY, 0.0); self.run.schedule.rows * outputs];
+    fn conclude(mut self, parts: &[Part]) -> Result<Adapted, SimulationError> {
+        let mut found = vec![(EMPTY, 0.0); self.run.schedule.rows * self.run.outputs()];
         let mut order = vec![0; self.run.study.domain.dimension()];
-        for part in &parts {
-            let surrogate = Surrogate::sparse(&part.grid);
-            for (order, &of_part) in order.iter_mut().zip(surrogate.basis().orders()) {
-                *order = usize::from(of_part).max(*order);
+        for part in parts {
+            for (axis, &degree) in (0..part.grid.len()).flat_map(|index| part.grid.levels(index).iter().enumerate()) {
+                order[axis] = order[axis].max(degree.into());
             }
-            let motions = part.motions(self.lines());
-            let stride = self.lines() * surrogate.samples().len();
-            let times = self.times(motions.len() / stride);
-            let look = |row: usize, composed: &Row| {
-                let at_points = composed.evaluate(&part.points);
-                let errors = at_points.chunks_exact(part.points.len()).enumerate();
-                let errors = errors.map(|(output, found)| surrogate_error(found, &part.direct.at(row, output)));
-                let with_gap = |(Extent { range, gap }, error)| (range, gap + error);
-                composed.ranges(&seeker).into_iter().zip(errors).map(with_gap).collect::<Vec<_>>()
-            };
-            let of_part = self.composer.rows(&surrogate, &part.domain, &times, (&motions, stride), look)?;
-            let of_part = of_part.into_iter().flatten().chain(std::iter::repeat((Range::UNKNOWN, f64::NAN)));
+            let rows: Vec<usize> = (0..part.rows(self.lines())).collect();
+            let of_part = self.bounds(part, &rows)?.into_iter().chain(std::iter::repeat((Range::UNKNOWN, f64::NAN)));
             found.iter_mut().zip(of_part).for_each(|(all, part)| *all = union(*all, part));
         }
         Ok(Adapted { found, solves: self.goal.spent, boxes: parts.len(), order, done: self.done })
@@ -288,12 +258,15 @@ impl<'a, 'r> Adaptation<'a, 'r> {
 }
 
 impl Part {
+    /// Rows that all nodes have reached.
+    fn rows(&self, lines: usize) -> usize {
+        self.nodes.iter().map(|(count, values)| values.len() / (lines * count)).min().unwrap_or(0)
+    }
+
     /// Motions and outputs of all nodes: row by row, line by line, node by node.
-    fn motions(&self, lines: usize) -> Vec<f64> {
-        let count: usize = self.nodes.iter().map(|(count, _)| count).sum();
-        let rows = self.nodes.iter().map(|(count, values)| values.len() / (lines * count)).min().unwrap_or(0);
-        let mut motions = Vec::with_capacity(rows * lines * count);
-        for line in 0..rows * lines {
+    fn motions(&self, lines: usize, rows: impl Iterator<Item = usize>) -> Vec<f64> {
+        let mut motions = Vec::new();
+        for line in rows.flat_map(|row| row * lines..(row + 1) * lines) {
             for (count, values) in &self.nodes {
                 motions.extend_from_slice(&values[line * count..][..*count]);
             }
@@ -301,13 +274,54 @@ impl Part {
         motions
     }
 
-    /// Whether all that come before an index have been followed.
-    fn is_followed_by(&self, levels: &[u8]) -> bool {
-        (0..levels.len()).filter(|&axis| levels[axis] > 0).all(|axis| {
+    /// What indices are expected to teach, the most first.
+    fn expected(&self, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
+        let expect = |levels: Vec<u8>| {
+            let expected = self.extrapolated(&levels);
+            (levels, expected)
+        };
+        let mut expected: Vec<(Vec<u8>, f64)> = indices.into_iter().map(expect).collect();
+        // Of equals, the first in the alphabet.
+        expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        expected
+    }
+
+    /// The least of what those before an index let expect, as of a power of Σ aᵢ ξᵢ: from ξ^(l − eᵢ) to ξ^l the multinomial
+    /// coefficient times the weights changes by aᵢ |l|/lᵢ.
+    fn extrapolated(&self, levels: &[u8]) -> f64 {
+        let k = levels.len();
+        let weight = |axis: usize| {
+            let mut first = vec![0; k];
+            first[axis] = 1;
+            self.taught.get(&first).copied()
+        };
+        let total: f64 = (0..k).filter_map(weight).sum();
+        let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();
+        let from = |axis: usize| {
             let mut before = levels.to_vec();
             before[axis] -= 1;
-            self.followed.contains(&before)
-        })
+            let share = weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
+            self.taught.get(&before).map(|taught| taught * share * degree / f64::from(levels[axis]))
+        };
+        (0..k).filter(|&axis| levels[axis] > 0).filter_map(from).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The axis along which the part is to be split: where its degree is as high as is allowed, and a higher one would teach
+    /// much more than whatever else can be added.
+    fn axis_to_split(&self) -> Option<usize> {
+        let beyond = |levels: &Vec<u8>| {
+            let axis = levels.iter().position(|&level| level == HIGHEST)?;
+            let mut higher = levels.clone();
+            higher[axis] += 1;
+            Some((axis, self.extrapolated(&higher)))
+        };
+        let most = self.taught.keys().filter_map(beyond).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        let candidates = self.grid.candidates();
+        let allowed = candidates.iter().map(|levels| self.extrapolated(levels)).fold(0.0, f64::max);
+        match most {
+            Some((axis, beyond)) if candidates.is_empty() || beyond > SPLIT * allowed => Some(axis),
+            _ => None,
+        }
     }
 }
 

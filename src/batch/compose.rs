@@ -5,7 +5,11 @@ use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use crate::bounds::{Extent, ExtremeSearch, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, extremes};
+use super::probe::Table;
+use crate::bounds::{
+    Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, extremes,
+    extremes_near, largest, surrogate_error,
+};
 use crate::integrate::{Closure, Points, SimulationError, Simulator, choose_independent};
 
 /// For so many parameters ranges are found on a grid; for more, by a search.
@@ -38,7 +42,7 @@ impl<'a> Composer<'a> {
         Self { simulator, closures: Vec::new() }
     }
 
-    /// Looks at rows, in parallel, given the motions of a surrogate's samples over a box (`stride` values a row, the first 2n
+    /// Looks at rows, in parallel block by block (a row is told what is known of the row before in its block), given the motions of a surrogate's samples over a box (`stride` values a row, the first 2n
     /// lines of samples).
     ///
     /// # Errors
@@ -49,19 +53,26 @@ impl<'a> Composer<'a> {
         domain: &ParameterBox,
         times: &[f64],
         (motions, stride): (&[f64], usize),
-        look: impl Fn(usize, &Row) -> T + Sync,
+        look: impl Fn(usize, &Row, &mut Known) -> T + Sync,
     ) -> Result<Vec<T>, SimulationError> {
         let lines = 2 * self.simulator.system.q.len() * surrogate.samples().len();
         let mut chosen = Vec::with_capacity(times.len());
         for (&time, motion) in times.iter().zip(motions.chunks_exact(stride)) {
             chosen.push(self.choose(surrogate, domain, time, &motion[..lines])?);
         }
-        let rows = times.par_iter().zip(motions.par_chunks_exact(stride)).zip(&chosen).enumerate();
-        let look = |work: &mut SurrogateWork, (row, ((&time, motion), &closure)): (usize, ((&f64, &[f64]), &usize))| {
-            let closure = &self.closures[closure];
-            look(row, &Row::new(self.simulator, surrogate, domain, closure, time, &motion[..lines], work))
+        let look_at_block = |(block, times): (usize, &[f64])| {
+            let (mut work, mut known) = (SurrogateWork::default(), Known::default());
+            let first = block * BLOCK;
+            let at = |(place, &time): (usize, &f64)| {
+                let row = first + place;
+                let (closure, motion) = (&self.closures[chosen[row]], &motions[row * stride..][..lines]);
+                let at = Row::new(self.simulator, surrogate, domain, closure, time, motion, &mut work);
+                look(row, &at, &mut known)
+            };
+            times.iter().enumerate().map(at).collect::<Vec<T>>()
         };
-        Ok(rows.map_init(SurrogateWork::default, look).collect())
+        let blocks: Vec<Vec<T>> = times.par_chunks(BLOCK).enumerate().map(look_at_block).collect();
+        Ok(blocks.into_iter().flatten().collect())
     }
 
     /// The closure over the coordinates that are best taken as independent at the middle sample's motion.
@@ -83,6 +94,13 @@ impl<'a> Composer<'a> {
         Ok(self.closures.len() - 1)
     }
 }
+
+/// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not depend
+/// on the number of threads.
+const BLOCK: usize = 16;
+
+/// The extremes in the row before; nothing at first.
+pub(super) type Known = Vec<Extremes>;
 
 /// How ranges over a box are found.
 pub(super) enum Seeker {
@@ -138,20 +156,94 @@ impl<'r> Row<'r> {
         if wanted.is_finite() { (least + wanted as usize).min(most) } else { least }
     }
 
-    /// Every output's range over the box.
-    pub fn ranges(&self, seeker: &Seeker) -> Vec<Extent> {
-        match seeker {
-            Seeker::Grid => extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate(points)),
-            Seeker::Search(search) => {
-                let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-                    values.copy_from_slice(&self.evaluate(points));
-                    Ok::<(), Infallible>(())
-                };
-                let Ok(found) = search.extremes(self.simulator.program.outputs.len(), &[], evaluate);
-                let extent = |range: Range| Extent { range, gap: ExtremeSearch::TOLERANCE * range.width() };
-                found.into_iter().map(|found| extent(found.range)).collect()
+    /// Every output's range over the box and its error: what the search may have missed, how far the coordinates' errors move
+    /// its ends, and how far held-out samples, `points` of which `direct` tells row `row`, lie outside.
+    pub fn bounds(
+        &self,
+        seeker: &Seeker,
+        (points, direct): (&[Vec<f64>], &Table),
+        row: usize,
+        known: &mut Known,
+    ) -> Vec<(Range, f64)> {
+        let found = self.seek(seeker, known);
+        if row >= direct.rows() {
+            return found.into_iter().map(|found| (found.range, f64::NAN)).collect();
+        }
+        let moved = self.sensitivity(seeker, &found, points, direct.motion(row));
+        let error = |(output, (found, moved)): (usize, (Extent, f64))| {
+            let outside = direct.at(row, output).into_iter().map(|value| found.range.distance(value));
+            (found.range, found.gap + largest(outside.chain([moved])))
+        };
+        found.into_iter().zip(moved).enumerate().map(error).collect()
+    }
+
+    /// How far the errors of the expanded coordinates move the ends of the outputs' ranges. `points` are held-out samples, and
+    /// `motion` is theirs.
+    ///
+    /// All independent coordinates, and their velocities, are moved together by their largest errors there, one way and the
+    /// other, and, where there are several, against each other.
+    fn sensitivity(&self, seeker: &Seeker, found: &[Extent], points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
+        let errors = self.coordinate_errors(points, motion);
+        let several = self.closure.independent().len() > 1;
+        let signs: &[[f64; 2]] =
+            if several { &[[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] } else { &[[1.0; 2], [-1.0; 2]] };
+        let mut moved = vec![0.0; found.len()];
+        for signs in signs {
+            let shift: Vec<(usize, f64)> =
+                errors.iter().enumerate().map(|(place, &(line, error))| (line, signs[place / 2 % 2] * error)).collect();
+            let shifted = self.seek_near(seeker, found, &shift);
+            for ((moved, found), shifted) in moved.iter_mut().zip(found).zip(&shifted) {
+                let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
+                *moved = largest(ends.into_iter().chain([*moved]));
             }
         }
+        moved
+    }
+
+    /// Ranges all over the box.
+    fn seek(&self, seeker: &Seeker, known: &mut Known) -> Vec<Extent> {
+        match seeker {
+            Seeker::Grid => {
+                extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate_shifted(points, &[]))
+            }
+            Seeker::Search(search) => {
+                *known = self.search(search, known, &[]);
+                known.iter().cloned().map(extent).collect()
+            }
+        }
+    }
+
+    /// Ranges with some lines shifted, near those that are known.
+    fn seek_near(&self, seeker: &Seeker, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
+        match seeker {
+            Seeker::Grid => extremes_near(near, |points| self.evaluate_shifted(points, shift)),
+            Seeker::Search(search) => {
+                let near: Vec<Extremes> =
+                    near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
+                self.search(search, &near, shift).into_iter().map(extent).collect()
+            }
+        }
+    }
+
+    fn search(&self, search: &ExtremeSearch, near: &[Extremes], shift: &[(usize, f64)]) -> Vec<Extremes> {
+        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+            values.copy_from_slice(&self.evaluate_shifted(points, shift));
+            Ok::<(), Infallible>(())
+        };
+        let Ok(found) = search.extremes(self.simulator.program.outputs.len(), near, evaluate);
+        found
+    }
+
+    /// Lines of the independent coordinates and their velocities, pairwise, with the largest errors of their polynomials at
+    /// held-out samples.
+    fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
+        let n = self.extent.len() / 2;
+        let expanded = self.expanded(points);
+        let error = |line: usize| {
+            let values = |lines: &[f64]| lines[line * points.len()..][..points.len()].to_vec();
+            (line, surrogate_error(&values(&expanded), &values(motion)))
+        };
+        self.closure.independent().iter().flat_map(|&i| [error(i), error(n + i)]).collect()
     }
 
     /// Every output at some ξ as it follows from the motion there: 2n lines of points.
@@ -162,17 +254,30 @@ impl<'r> Row<'r> {
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        let count = points.len();
-        let mut motion = vec![0.0; self.extent.len() * count];
-        self.surrogate.basis().values(points, &self.coefficients, &mut motion, &mut SparseWork::default());
+        self.evaluate_shifted(points, &[])
+    }
+
+    fn evaluate_shifted(&self, points: &[Vec<f64>], shift: &[(usize, f64)]) -> Vec<f64> {
+        let mut motion = self.expanded(points);
+        for &(line, shift) in shift {
+            motion[line * points.len()..][..points.len()].iter_mut().for_each(|value| *value += shift);
+        }
         // Dependent coordinates are only a guess, and are kept within what the samples have.
         let n = self.extent.len() / 2;
-        for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(&self.extent).enumerate() {
+        for (line, (values, &(low, high))) in motion.chunks_exact_mut(points.len().max(1)).zip(&self.extent).enumerate()
+        {
             if !self.closure.independent().contains(&(line % n)) && low <= high {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
         self.close(points, motion)
+    }
+
+    /// The polynomials' values: 2n lines of points.
+    fn expanded(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        let mut motion = vec![0.0; self.extent.len() * points.len()];
+        self.surrogate.basis().values(points, &self.coefficients, &mut motion, &mut SparseWork::default());
+        motion
     }
 
     fn close(&self, points: &[Vec<f64>], motion: Vec<f64>) -> Vec<f64> {
@@ -182,5 +287,14 @@ impl<'r> Row<'r> {
         let mut values = Vec::new();
         self.closure.outputs(self.time, &Points { count: points.len(), parameters, motion }, &mut values);
         values
+    }
+}
+
+/// What a search found, which it may have missed by its tolerance.
+fn extent(found: Extremes) -> Extent {
+    Extent {
+        range: found.range,
+        gap: ExtremeSearch::TOLERANCE * found.range.width(),
+        places: [found.lowest, found.highest],
     }
 }

@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
 use super::adapt::{Adaptation, Goal};
-use super::compose::{self, Composer, Row, Seeker};
+use super::compose::{Composer, Known, Row, Seeker};
 use super::probe::Probes;
 use super::study::Study;
 use crate::bounds::{
-    Extent, Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange, TensorGrid,
-    largest, surrogate_error,
+    Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange, TensorGrid, largest,
+    surrogate_error,
 };
 use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
 use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Expand, ScanRequest, TaylorRequest};
@@ -138,9 +138,8 @@ impl Run<'_> {
         let Degree::Fixed { order, nodes } = &request.degree else { return self.adapted(probes) };
         let surrogate = Surrogate::tensor(order, nodes);
         let samples: Vec<Vec<f64>> = surrogate.samples().iter().map(|xi| self.study.domain.point(xi)).collect();
-        let composed = compose::fits(&self.study.simulator, self.study.domain.dimension());
         let (lines, done) = match request.expand {
-            Expand::Coordinates if composed => self.composed(&surrogate, &samples, probes)?,
+            Expand::Coordinates if self.study.composes() => self.composed(&surrogate, &samples, probes)?,
             _ => {
                 let range = PolynomialRange::new(order, request.range);
                 self.expanded(&surrogate, range, &samples, probes)?
@@ -197,14 +196,14 @@ impl Run<'_> {
         let mut failure = None;
         let done = self.fleet(samples, Observed::Motion, |rows, values| {
             let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
-            let look = |_, row: &Row| (row.ranges(&seeker), row.evaluate(&probes.points));
+            let first = rows.start;
+            let held_out = (probes.points.as_slice(), &probes.direct);
+            let look = |place: usize, row: &Row, known: &mut Known| row.bounds(&seeker, held_out, first + place, known);
             match composer.rows(surrogate, &self.study.domain, &times, (values, stride), look) {
                 Ok(found) => {
-                    for (row, (ranges, at_probes)) in rows.zip(found) {
-                        let at_probes = at_probes.chunks_exact(probes.points.len());
-                        for (output, (Extent { range, gap }, at_probes)) in ranges.iter().zip(at_probes).enumerate() {
-                            let error = surrogate_error(at_probes, &probes.direct.at(row, output));
-                            lines.set(row, output, *range, error + gap);
+                    for (row, found) in rows.zip(found) {
+                        for (output, (range, error)) in found.into_iter().enumerate() {
+                            lines.set(row, output, range, error);
                         }
                     }
                 }

@@ -8,27 +8,42 @@ use crate::report::MethodSummary;
 /// A table of the values of all outputs at all rows, of a few samples.
 #[derive(Clone)]
 pub(super) struct Table {
+    /// Lines a row before the outputs': those of the motions, or none.
+    motions: usize,
     outputs: usize,
     samples: usize,
-    /// Row by row, output by output, sample by sample; rows that were not reached are missing.
+    /// Row by row, line by line, sample by sample; rows that were not reached are missing.
     values: Vec<f64>,
 }
 
 impl Table {
     /// Simulates samples with a run's schedule.
-    pub fn of(run: &Run, samples: &[Vec<f64>]) -> Result<(Self, FleetRun), SimulationError> {
+    pub fn of(run: &Run, samples: &[Vec<f64>], observed: Observed) -> Result<(Self, FleetRun), SimulationError> {
         let mut values = Vec::new();
-        let done = run.fleet(samples, Observed::Outputs, |_, block| values.extend_from_slice(block))?;
-        Ok((Self { outputs: run.outputs(), samples: samples.len(), values }, done))
+        let done = run.fleet(samples, observed, |_, block| values.extend_from_slice(block))?;
+        let outputs = run.outputs();
+        let motions = observed.count(&run.study.simulator) - outputs;
+        Ok((Self { motions, outputs, samples: samples.len(), values }, done))
     }
 
     /// One output's values in one row; not numbers where it was not reached.
     pub fn at(&self, row: usize, output: usize) -> Vec<f64> {
-        let first = (row * self.outputs + output) * self.samples;
+        let first = (row * (self.motions + self.outputs) + self.motions + output) * self.samples;
         match self.values.get(first..first + self.samples) {
             Some(values) => values.to_vec(),
             None => vec![f64::NAN; self.samples],
         }
+    }
+
+    /// The samples' motions in one row that was reached, where they were observed: line by line.
+    pub fn motion(&self, row: usize) -> &[f64] {
+        let first = row * (self.motions + self.outputs) * self.samples;
+        &self.values[first..][..self.motions * self.samples]
+    }
+
+    /// Rows that were reached.
+    pub fn rows(&self) -> usize {
+        self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
     /// From the least to the largest of one output's values in one row; unknown if one of them is.
@@ -43,7 +58,8 @@ impl Table {
 
     /// Largest less least value of an output in all rows and samples.
     pub fn span(&self, output: usize) -> f64 {
-        let lines = self.values.chunks_exact(self.samples).skip(output).step_by(self.outputs);
+        let lines = self.values.chunks_exact(self.samples);
+        let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
         let (least, largest) = lines.flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), &value| {
             (least.min(value), largest.max(value))
         });
@@ -66,18 +82,21 @@ pub(super) struct Probes {
 }
 
 impl Probes {
-    /// Simulates them.
-    pub fn run(run: &Run) -> Result<Self, SimulationError> {
+    /// Simulates them; `observed` is of those with the schedule's steps.
+    ///
+    /// # Errors
+    /// Where one cannot be assembled.
+    pub fn run(run: &Run, observed: Observed) -> Result<Self, SimulationError> {
         let begun = std::time::Instant::now();
         let domain = &run.study.domain;
         let mut points = probes(domain.dimension());
         let halved = points.len();
         points.extend(held_out(domain.dimension()));
         let samples: Vec<Vec<f64>> = points.iter().map(|xi| domain.point(xi)).collect();
-        let (direct, done) = Table::of(run, &samples)?;
+        let (direct, done) = Table::of(run, &samples, observed)?;
         let schedule: Schedule = run.schedule.refined(2);
         let finer = Run { schedule: &schedule, tolerance: None, ..*run };
-        let (fine, finely) = Table::of(&finer, &samples[..halved])?;
+        let (fine, finely) = Table::of(&finer, &samples[..halved], Observed::Outputs)?;
         let counters = Counters {
             iterations: done.counters.iterations + finely.counters.iterations,
             rank_revealing: done.counters.rank_revealing + finely.counters.rank_revealing,

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
+use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
 use super::step_search::StepSearch;
@@ -10,9 +11,9 @@ use crate::bounds::{
     Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes, time_error,
     time_error_certified,
 };
-use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
+use crate::integrate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
-use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, MOST_SOLVES, ScanRequest, Stepping};
+use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, Expand, MOST_SOLVES, ScanRequest, Stepping};
 use crate::report::{ErrorSummary, MethodSummary, ParameterSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
@@ -147,6 +148,17 @@ impl<'a> Study<'a> {
         Ok(Results { schedule, nominal, probes, methods, halved })
     }
 
+    /// What is to be known of the probes.
+    fn observed(&self) -> Observed {
+        let composed = |request: &ChebyshevRequest| request.expand == Expand::Coordinates && self.composes();
+        if self.request.chebyshev.as_ref().is_some_and(composed) { Observed::Motion } else { Observed::Outputs }
+    }
+
+    /// Whether outputs can follow from expanded coordinates.
+    pub(super) fn composes(&self) -> bool {
+        compose::fits(&self.simulator, self.domain.dimension())
+    }
+
     /// The probes, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
     fn balance(
         &self,
@@ -157,7 +169,7 @@ impl<'a> Study<'a> {
         let mut steps = StepSearch::new(schedule);
         loop {
             let schedule = steps.schedule();
-            let probes = Probes::run(&Run { study: self, schedule: &schedule, tolerance, progress })?;
+            let probes = Probes::run(&Run { study: self, schedule: &schedule, tolerance, progress }, self.observed())?;
             let Some(allowed) = self.request.tolerance else { return Ok((schedule, probes)) };
             let outputs = 0..self.simulator.program.outputs.len();
             let share = |output: usize| {

@@ -4,6 +4,9 @@ use super::peak::Peak;
 use super::range::Range;
 use super::samples::TensorGrid;
 
+/// First distance of neighbours in the search near a known extreme.
+const NEAR: f64 = 0.1;
+
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 
@@ -13,12 +16,15 @@ const SETTLED: f64 = 1e-6;
 /// Most steps of the search for an end.
 const ROUNDS: usize = 10;
 
-/// A function's range, and how far the search may have missed its ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A function's range.
+#[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Extent {
     pub range: Range,
+    /// How far the search may have missed its ends.
     pub gap: f64,
+    /// ξ of the least and of the largest value.
+    pub places: [Vec<f64>; 2],
 }
 
 /// Extremes of many functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The grid
@@ -29,6 +35,20 @@ pub fn extremes(k: usize, points: usize, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f
     let values = evaluate(&samples);
     let mut ends: Vec<End> =
         values.chunks_exact(grid.len()).flat_map(|line| SIGNS.map(|sign| End::on_grid(line, &grid, sign))).collect();
+    climb(&mut ends, &evaluate);
+    ends.chunks_exact(2).map(extent).collect()
+}
+
+/// Extremes of other functions, not far from those of similar ones.
+pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    let near = |extent: &Extent| [0, 1].map(|end| End::near(extent.places[end].clone(), SIGNS[end]));
+    let mut ends: Vec<End> = known.iter().flat_map(near).collect();
+    climb(&mut ends, &evaluate);
+    ends.chunks_exact(2).map(extent).collect()
+}
+
+/// Searches until all ends are found.
+fn climb(ends: &mut [End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     for _ in 0..ROUNDS {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
         let around: Vec<Vec<Vec<f64>>> = searched.iter().map(|&end| ends[end].points()).collect();
@@ -44,11 +64,14 @@ pub fn extremes(k: usize, points: usize, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f
             first += around.len();
         }
     }
-    let both = |ends: &[End]| Extent {
+}
+
+fn extent(ends: &[End]) -> Extent {
+    Extent {
         range: Range { lower: ends[0].best, upper: ends[1].best },
         gap: ends[0].gap.max(ends[1].gap),
-    };
-    ends.chunks_exact(2).map(both).collect()
+        places: [0, 1].map(|end| ends[end].best_xi.clone()),
+    }
 }
 
 /// One end of a function's range, as it is found.
@@ -78,6 +101,12 @@ impl End {
         let stencil: Vec<f64> = peak.stencil().iter().map(|offsets| values[grid.beside(middle, offsets)]).collect();
         let xi = peak.vertex(&stencil, sign);
         Self { sign, around: peak.next(&xi), xi, best, best_xi: grid.sample(place), gap: 0.0, found: unknown }
+    }
+
+    /// Not far from a place; nothing is known of the function.
+    fn near(xi: Vec<f64>, sign: f64) -> Self {
+        let around = Peak::new(xi.clone(), vec![NEAR; xi.len()]);
+        Self { sign, around, best_xi: xi.clone(), xi, best: -sign * f64::INFINITY, gap: f64::NAN, found: false }
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.
@@ -113,7 +142,7 @@ mod tests {
     use super::*;
 
     fn range(k: usize, points: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
-        extremes(k, points, |points| points.iter().map(|xi| f(xi)).collect())[0]
+        extremes(k, points, |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
     }
 
     #[test]
@@ -135,6 +164,22 @@ mod tests {
         let found = range(3, 7, f);
         let truth = (0..=40).map(|i| least(-1.0 + 0.01 * f64::from(i))).fold(f64::INFINITY, f64::min);
         assert!((found.range.lower - truth).abs() < 1e-3 * found.range.width(), "{found:?}, {truth}");
+    }
+
+    #[test]
+    fn a_function_that_is_shifted_has_its_extremes_nearby() {
+        let wave = |shift: f64| {
+            move |points: &[Vec<f64>]| points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect()
+        };
+        let known: Vec<Extent> = extremes(2, 25, wave(0.0));
+        let shifted = extremes_near(&known, wave(0.4));
+        assert!(
+            (shifted[0].range.upper - 1.1).abs() < 1e-6 && (shifted[0].range.lower + 1.1).abs() < 1e-6,
+            "{shifted:?}"
+        );
+        let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
+        let shifted = extremes_near(&extremes(1, 5, slope(0.0)), slope(0.4));
+        assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
     }
 
     #[test]

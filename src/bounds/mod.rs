@@ -9,13 +9,12 @@
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
-mod adaptive;
 mod bernstein;
 mod chebyshev;
 mod domain;
 mod error;
 mod extremes;
-mod lobatto;
+mod leja;
 mod peak;
 mod range;
 mod result;
@@ -25,17 +24,15 @@ mod search;
 mod shares;
 mod sparse_basis;
 mod sparse_grid;
-mod sparse_range;
 mod sparse_transform;
 mod surrogate;
 mod taylor;
 mod tensor;
 
-pub use adaptive::{choose, contributions, expected};
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
 pub use error::{BandError, SAFETY_OF_SURROGATE, largest, surrogate_error, time_error, time_error_certified};
-pub use extremes::{Extent, extremes};
+pub use extremes::{Extent, extremes, extremes_near};
 pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Method, OutputBounds};
 pub use samples::{TensorGrid, corners, held_out, probes};
@@ -43,8 +40,7 @@ pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
 pub use shares::{Shares, VarianceShares};
 pub use sparse_basis::{SparseBasis, SparseWork};
-pub use sparse_grid::{Candidate, SparseGrid};
-pub use sparse_range::{ProvenRange, SparseRange};
+pub use sparse_grid::SparseGrid;
 pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;

@@ -56,6 +56,13 @@ pub struct ExtremeSearch {
     design: Vec<Vec<f64>>,
 }
 
+impl Extremes {
+    /// Known from elsewhere.
+    pub fn at(range: Range, [lowest, highest]: [Vec<f64>; 2]) -> Self {
+        Self { range, lowest, highest, others: Vec::new() }
+    }
+}
+
 impl ExtremeSearch {
     /// A climb ends where a round neither promises nor brings this share of the range.
     pub const TOLERANCE: f64 = 2e-4;

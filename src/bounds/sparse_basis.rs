@@ -56,9 +56,9 @@ pub struct SparseWork {
 }
 
 impl SparseBasis {
-    /// The polynomials that values at a grid's nodes determine; term i has the degrees that [`SparseGrid`] numbers node i by.
+    /// The polynomials that values at a grid's nodes determine; term i has the degrees of node i's index.
     pub fn new(grid: &SparseGrid) -> Self {
-        let degrees = (0..grid.len()).flat_map(|index| grid.numbers(index)).copied().collect();
+        let degrees = (0..grid.len()).flat_map(|index| grid.levels(index)).copied().collect();
         Self::closed(grid.dimension(), grid.len(), degrees)
     }
 

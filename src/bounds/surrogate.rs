@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn both_kinds_give_back_a_polynomial_of_their_degree() {
         let f = |xi: &[f64]| 1.0 + 2.0 * xi[0] - xi[1] * xi[1] + 0.5 * xi[0] * xi[0] * xi[1];
-        for surrogate in [Surrogate::tensor(&[3, 2], &[4, 5]), Surrogate::sparse(&SparseGrid::tensor(&[2, 1]))] {
+        for surrogate in [Surrogate::tensor(&[3, 2], &[4, 5]), Surrogate::sparse(&SparseGrid::tensor(&[3, 2]))] {
             let values: Vec<f64> = surrogate.samples().iter().map(|xi| f(xi)).collect();
             let twice: Vec<f64> = values.iter().copied().chain(values.iter().map(|value| 2.0 * value)).collect();
             let coefficients = surrogate.coefficients(&twice, &mut SurrogateWork::default());
