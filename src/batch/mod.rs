@@ -12,6 +12,7 @@ use crate::bounds::{Bounds, Method};
 use crate::integrate::{SimulationError, Simulator};
 use crate::mechanics::{self, BuildError};
 use crate::model::{Description, Stepping};
+use crate::program::Scheme;
 use crate::report::Summary;
 
 use study::Study;
@@ -62,7 +63,12 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 /// As for [`run`].
 pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
     let system = mechanics::build(description)?;
-    Ok(Simulator::new(system, description.simulation.alpha, first_step(description))?)
+    Ok(Simulator::new(system, scheme(description), first_step(description))?)
+}
+
+/// The model's scheme.
+fn scheme(description: &Description) -> Scheme {
+    Scheme::Hht { alpha: description.simulation.alpha }
 }
 
 /// Step size for what is computed before the first step.

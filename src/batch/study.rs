@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::methods::{Outcome, Run, TAYLOR_WORK};
-use super::{Options, RunError, first_step};
+use super::{Options, RunError, first_step, scheme};
 use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
 use crate::integrate::{Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
@@ -35,7 +35,7 @@ impl<'a> Study<'a> {
             upper: collect(|parameter| parameter.upper),
         };
         let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension())?;
-        let simulator = Simulator::new(system, description.simulation.alpha, first_step(description))?;
+        let simulator = Simulator::new(system, scheme(description), first_step(description))?;
         Ok(Self { description, simulator, domain, request, progress: options.progress })
     }
 
