@@ -29,10 +29,19 @@ pub(super) struct Composition<'a> {
 }
 
 impl<'a> Composition<'a> {
-    /// `None` where there are too many parameters or coordinates for it, or nothing is uncertain.
+    /// Whether so many parameters and coordinates can be composed: some, and not too many.
+    pub fn fits(parameters: usize, coordinates: usize) -> bool {
+        (1..=MOST_PARAMETERS).contains(&parameters) && coordinates <= MOST_COORDINATES
+    }
+
+    /// `None` where it does not fit.
     pub fn new(simulator: &'a Simulator, domain: &'a ParameterBox, basis: &'a ChebyshevBasis) -> Option<Self> {
-        let fits = (1..=MOST_PARAMETERS).contains(&domain.dimension()) && simulator.system.q.len() <= MOST_COORDINATES;
-        fits.then(|| Self { simulator, domain, basis, closures: Vec::new() })
+        Self::fits(domain.dimension(), simulator.system.q.len()).then(|| Self {
+            simulator,
+            domain,
+            basis,
+            closures: Vec::new(),
+        })
     }
 
     /// Ranges of the outputs, row by row, output by output, from the samples' motions (`stride` values a row: 2n lines of

@@ -2,9 +2,11 @@
 //!
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
-//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates.
+//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates. `cost` runs one model with many
+//! settings, to tell what accuracy costs.
 
 mod compose;
+mod cost;
 mod methods;
 mod study;
 
@@ -16,6 +18,8 @@ use crate::program::Scheme;
 use crate::report::Summary;
 
 use study::Study;
+
+pub use cost::{CostError, CostOptions, cost};
 
 /// How to run.
 pub struct Options<'a> {

@@ -45,7 +45,7 @@ fn columns(bounds: &Bounds) -> Vec<Column<'_>> {
 }
 
 /// The shortest decimal that reads back as `x`: `0.1`, `2`, `1e-7`, `NaN`, `inf`.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     // Debug is the shortest form with an exponent where that is shorter to read; Display would write 1e-300 in full.
     let mut text = format!("{x:?}");
     if text.ends_with(".0") {

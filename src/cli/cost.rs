@@ -1,0 +1,189 @@
+//! `mbint cost`: what accuracy costs in time.
+
+use std::path::{Path, PathBuf};
+
+use super::args::CostArgs;
+use super::console::{BOLD, Console, count};
+use super::progress::Progress;
+use super::run::set_once;
+use super::table::{Align, Table};
+use super::{Failure, Status, load};
+use crate::batch::{self, CostOptions};
+use crate::model::{Description, Stepping};
+use crate::report::{CostPoint, CostStudy, Deviation, file_stem, methods, pareto, prepare_folder, write_cost};
+
+/// Error that is wanted where nobody says otherwise.
+const TOLERANCE: f64 = 1e-3;
+
+pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
+    set_once(&args.set)?;
+    let Some(model) = load::load(&args.model, &args.set, console) else {
+        return Ok(Status::Wrong);
+    };
+    let folder = args.output.clone().unwrap_or_else(|| Path::new("results").join(file_stem(&model.name)));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+
+    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));
+    let progress = Progress::new(&model.name, !args.quiet);
+    let options = CostOptions {
+        tolerance: wanted(&args, &model),
+        budget: args.budget,
+        threads: args.threads.map(usize::from),
+        progress: &|fraction| progress.set(fraction),
+    };
+    let study = batch::cost(&model, &options).map_err(|error| failed(&error))?;
+    drop(progress);
+    let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
+    if !args.quiet {
+        console.print(&overview(&study, &folder, &files))?;
+    }
+    Ok(Status::Done)
+}
+
+/// The error that is wanted: the command's, else the model's own once it has one, else the default.
+fn wanted(args: &CostArgs, _model: &Description) -> f64 {
+    args.tolerance.unwrap_or(TOLERANCE)
+}
+
+/// Each method's front in a table, what the errors are measured against, what was left out, and the choice.
+fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
+    let mut text = format!("{BOLD}{}{BOLD:#}: what accuracy costs\n\n", study.model);
+    if !study.bounds.is_empty() {
+        text += &format!("{}\n", bounds(study).render(2));
+    }
+    text += &format!("{}\n", trajectories(study).render(2));
+    text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
+    text += "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n";
+    text += &reference(study);
+    for left_out in &study.left_out {
+        text += &format!("  left out: {left_out}\n");
+    }
+    text += &format!("\n{BOLD}{}{BOLD:#}\n", choice(study));
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
+    text
+}
+
+/// The settings that none of the same method betters, method by method, from cheap to dear.
+fn fronts(points: &[CostPoint], own: f64) -> Vec<&CostPoint> {
+    let front = |method| {
+        let of: Vec<&CostPoint> = points.iter().filter(|point| point.method == method).collect();
+        let places: Vec<(f64, f64)> = of.iter().map(|point| point.place(own)).collect();
+        pareto(&places).into_iter().rev().map(move |place| of[place]).collect::<Vec<_>>()
+    };
+    methods(points).into_iter().flat_map(front).collect()
+}
+
+fn bounds(study: &CostStudy) -> Table<8> {
+    let mut table = Table::new([
+        ("bounds", Align::Left),
+        ("order", Align::Right),
+        ("points", Align::Right),
+        ("step", Align::Right),
+        ("solves", Align::Right),
+        ("seconds", Align::Right),
+        ("too wide", Align::Right),
+        ("too narrow", Align::Right),
+    ]);
+    let own = study.reference.bounds_error;
+    for point in fronts(&study.bounds, own) {
+        let Deviation::Bounds { over_width, under_coverage } = point.deviation else { continue };
+        let whole = |count: Option<usize>| count.map_or_else(String::new, |count| count.to_string());
+        table.row([
+            format!("{}{}", if point.front { "* " } else { "  " }, point.method.label()),
+            whole(point.order),
+            whole(point.points),
+            step(point.step),
+            point.solves.to_string(),
+            format!("{:.3}", point.seconds),
+            error(over_width, own),
+            error(under_coverage, own),
+        ]);
+    }
+    table
+}
+
+fn trajectories(study: &CostStudy) -> Table<5> {
+    let mut table = Table::new([
+        ("nominal trajectory", Align::Left),
+        ("step", Align::Right),
+        ("steps", Align::Right),
+        ("seconds", Align::Right),
+        ("error", Align::Right),
+    ]);
+    let own = study.reference.trajectory_error;
+    for point in fronts(&study.trajectories, own) {
+        table.row([
+            format!("{}{}", if point.front { "* " } else { "  " }, point.method.label()),
+            step(point.step),
+            point.steps.to_string(),
+            format!("{:.1e}", point.seconds),
+            error(point.deviation.largest(), own),
+        ]);
+    }
+    table
+}
+
+/// An error, or the reference's own where it is smaller; nothing is there only where nothing was found.
+fn error(error: f64, own: f64) -> String {
+    match error {
+        0.0 => "0".to_owned(),
+        error if error < own => format!("≤ {own:.1e}"),
+        error => format!("{error:.1e}"),
+    }
+}
+
+/// A step size, or a tolerance in its place.
+fn step(stepping: Stepping) -> String {
+    match stepping {
+        Stepping::Fixed(step) => format!("{step:.3e} s"),
+        Stepping::Tolerance(tolerance) => format!("tolerance {tolerance:.1e}"),
+    }
+}
+
+/// What errors are measured against, and how well it is known.
+fn reference(study: &CostStudy) -> String {
+    let reference = &study.reference;
+    let [finest, _, coarsest] = reference.steps.map(step);
+    let parts = reference.parts.iter().map(|(source, size)| format!("{source} {size:.1e}"));
+    format!(
+        "  reference: {} of order {}, steps from {finest} to {coarsest}; its own error {:.1e} ({}), of the trajectory {:.1e}\n",
+        reference.method.label(),
+        reference.order,
+        reference.bounds_error,
+        parts.collect::<Vec<_>>().join(", "),
+        reference.trajectory_error,
+    )
+}
+
+/// The one sentence: the cheapest setting that meets the tolerance.
+fn choice(study: &CostStudy) -> String {
+    let wanted = study.tolerance;
+    let told = |point: &CostPoint| {
+        let mut text = point.method.label();
+        if let Some(order) = point.order {
+            text += &format!(" of order {order}");
+        }
+        if let Some(points) = point.points {
+            text += &format!(" of {points} points a parameter");
+        }
+        let solves = count(point.solves, "solve", "solves");
+        text + &format!(
+            ", {}: {solves}, {:.3} s, error {:.1e}",
+            step(point.step),
+            point.seconds,
+            point.deviation.largest()
+        )
+    };
+    let own = if study.bounds.is_empty() { study.reference.trajectory_error } else { study.reference.bounds_error };
+    match (study.cheapest(), study.nearest()) {
+        _ if own > wanted => {
+            format!(
+                "Nothing can be said of {wanted:e}: the reference itself is only known to {own:.1e}; allow a larger budget."
+            )
+        }
+        (Some(point), _) => format!("The cheapest within {wanted:e} is {}.", told(point)),
+        (None, Some(point)) => format!("No setting tried is within {wanted:e}; the nearest is {}.", told(point)),
+        (None, None) => format!("No setting tried has come to its end, so none is within {wanted:e}."),
+    }
+}

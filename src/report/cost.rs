@@ -1,0 +1,303 @@
+//! `cost.csv`: what accuracy costs in time, a row a setting.
+
+use std::path::{Path, PathBuf};
+
+use csv::WriterBuilder;
+
+use super::cost_plot::cost_svg;
+use super::csv::number;
+use super::files::{ReportError, prepare_folder, write_whole};
+use crate::model::Stepping;
+use crate::program::Scheme;
+
+/// A work-precision study of one model. Errors are relative to each output's scale: the widest that the reference's band
+/// gets over the run (of an output without a band: how far its nominal course reaches).
+#[derive(Clone, Debug)]
+pub struct CostStudy {
+    /// The model's name.
+    pub model: String,
+    /// The error that is wanted, at most.
+    pub tolerance: f64,
+    /// What errors are measured against.
+    pub reference: CostReference,
+    /// Bounding methods, in the order in which they were run.
+    pub bounds: Vec<CostPoint>,
+    /// Schemes on the nominal trajectory, likewise.
+    pub trajectories: Vec<CostPoint>,
+    /// What was not looked at, and why.
+    pub left_out: Vec<String>,
+}
+
+impl CostStudy {
+    /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
+    fn choices(&self) -> impl Iterator<Item = &CostPoint> {
+        let own = |point: &&CostPoint| matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }));
+        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.bounds.is_empty());
+        self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
+    }
+
+    /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance.
+    pub fn cheapest(&self) -> Option<&CostPoint> {
+        let good = self.choices().filter(|point| point.deviation.largest() <= self.tolerance);
+        good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// The most accurate setting, the cheaper of equals.
+    pub fn nearest(&self) -> Option<&CostPoint> {
+        let key = |point: &CostPoint| (point.deviation.largest(), point.seconds);
+        let finite = self.choices().filter(|point| point.deviation.largest().is_finite());
+        finite.min_by(|a, b| {
+            let ((error, seconds), (other, others)) = (key(a), key(b));
+            error.total_cmp(&other).then(seconds.total_cmp(&others))
+        })
+    }
+}
+
+/// What errors are measured against: runs with three step sizes, extrapolated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostReference {
+    /// How it bounds.
+    pub method: CostMethod,
+    /// Its degree.
+    pub order: usize,
+    /// From fine to coarse.
+    pub steps: [Stepping; 3],
+    /// Its own error in the bounds, estimated.
+    pub bounds_error: f64,
+    /// Its own error in the nominal trajectory, estimated.
+    pub trajectory_error: f64,
+    /// What the first of them is made of: where it comes from, and its size.
+    pub parts: Vec<(String, f64)>,
+}
+
+/// A setting, its error and its price.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostPoint {
+    /// What is varied within a curve are order, points and steps.
+    pub method: CostMethod,
+    /// Degree of a polynomial in the parameters.
+    pub order: Option<usize>,
+    /// Points of a scan, a parameter.
+    pub points: Option<usize>,
+    /// Step size, s, or the tolerance of step-size control.
+    pub step: Stepping,
+    /// Simulations.
+    pub solves: usize,
+    /// Steps of each.
+    pub steps: usize,
+    /// The best of a few runs, s; compiling the model is not in it.
+    pub seconds: f64,
+    /// How far the bounds are off; infinite where they are not known at all.
+    pub deviation: Deviation,
+    /// Whether the error is smaller than the reference's own, and therefore not known.
+    pub limited: bool,
+    /// Whether nothing of its kind is both as cheap and as accurate.
+    pub front: bool,
+    /// Why it has no result.
+    pub failure: Option<String>,
+}
+
+/// A setting's largest error over all outputs and rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Deviation {
+    /// Of bounds.
+    Bounds {
+        /// How far they lie outside of the reference's.
+        over_width: f64,
+        /// How far they lie inside: what they leave out.
+        under_coverage: f64,
+    },
+    /// Of a trajectory.
+    Trajectory(f64),
+}
+
+/// The points' methods, in the order in which they first appear.
+pub fn methods(points: &[CostPoint]) -> Vec<CostMethod> {
+    let mut methods: Vec<CostMethod> = Vec::new();
+    for point in points {
+        if !methods.contains(&point.method) {
+            methods.push(point.method);
+        }
+    }
+    methods
+}
+
+impl CostPoint {
+    /// (error, seconds) with the reference's `own` error for what is below it: no better is known.
+    pub fn place(&self, own: f64) -> (f64, f64) {
+        (self.deviation.largest().max(own), self.seconds)
+    }
+
+    /// Of a setting that has not been run, or in vain.
+    pub fn without_result(method: CostMethod, step: Stepping) -> Self {
+        let deviation = match method {
+            CostMethod::Scheme(_) => Deviation::Trajectory(f64::INFINITY),
+            _ => Deviation::Bounds { over_width: f64::INFINITY, under_coverage: f64::INFINITY },
+        };
+        Self {
+            method,
+            order: None,
+            points: None,
+            step,
+            solves: 0,
+            steps: 0,
+            seconds: f64::INFINITY,
+            deviation,
+            limited: false,
+            front: false,
+            failure: None,
+        }
+    }
+}
+
+impl Deviation {
+    /// How far bounds lie outside; of a trajectory, its error.
+    pub fn over_width(self) -> f64 {
+        match self {
+            Self::Bounds { over_width, .. } => over_width,
+            Self::Trajectory(error) => error,
+        }
+    }
+
+    /// The larger.
+    pub fn largest(self) -> f64 {
+        match self {
+            Self::Bounds { over_width, under_coverage } => over_width.max(under_coverage),
+            Self::Trajectory(error) => error,
+        }
+    }
+
+    /// Whether it is more that bounds leave out than that they are too wide.
+    pub fn is_narrow(self) -> bool {
+        matches!(self, Self::Bounds { over_width, under_coverage } if under_coverage > over_width)
+    }
+}
+
+/// A curve of the study.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CostMethod {
+    /// Chebyshev, outputs composed from expanded coordinates.
+    Composed,
+    /// Chebyshev of the outputs, the polynomials' own ranges.
+    Tight,
+    /// Chebyshev of the outputs, Σ|c|: the paper's.
+    Interval,
+    /// Taylor, tight.
+    Taylor,
+    /// Full-factorial scan.
+    Scan,
+    /// One simulation, by this scheme.
+    Scheme(Scheme),
+}
+
+impl CostMethod {
+    /// In files.
+    pub fn name(self) -> String {
+        match self {
+            Self::Composed => "chebyshev.coordinates".to_owned(),
+            Self::Tight => "chebyshev.tight".to_owned(),
+            Self::Interval => "chebyshev.interval".to_owned(),
+            Self::Taylor => "taylor".to_owned(),
+            Self::Scan => "scan".to_owned(),
+            Self::Scheme(Scheme::Hht { alpha }) => format!("hht({alpha})"),
+            Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
+                format!("generalised_alpha({spectral_radius})")
+            }
+            Self::Scheme(Scheme::TrapezoidalIndex2) => "trapezoidal".to_owned(),
+        }
+    }
+
+    /// For people.
+    pub fn label(self) -> String {
+        match self {
+            Self::Composed => "Chebyshev, composed".to_owned(),
+            Self::Tight => "Chebyshev, tight".to_owned(),
+            Self::Interval => "Chebyshev, Σ|c|".to_owned(),
+            Self::Taylor => "Taylor".to_owned(),
+            Self::Scan => "Scan".to_owned(),
+            Self::Scheme(Scheme::Hht { alpha }) => format!("HHT-I3, α = −{}", alpha.abs()),
+            Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
+                format!("Generalised-α, ρ∞ = {spectral_radius}")
+            }
+            Self::Scheme(Scheme::TrapezoidalIndex2) => "Trapezoidal, index 2".to_owned(),
+        }
+    }
+}
+
+/// Headings of the table.
+const COLUMNS: [&str; 14] = [
+    "of",
+    "method",
+    "order",
+    "points",
+    "step",
+    "tolerance",
+    "solves",
+    "steps",
+    "seconds",
+    "over_width",
+    "under_coverage",
+    "error",
+    "below_reference",
+    "front",
+];
+
+/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. What does not apply is
+/// empty; a setting without a result has the error `inf`.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn cost_csv(study: &CostStudy) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = WriterBuilder::new().from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    for (of, points) in [("bounds", &study.bounds), ("trajectory", &study.trajectories)] {
+        for point in points {
+            writer.write_record(record(of, point))?;
+        }
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
+    let whole = |count: Option<usize>| count.map_or_else(String::new, |count| count.to_string());
+    let (step, tolerance) = match point.step {
+        Stepping::Fixed(step) => (number(step), String::new()),
+        Stepping::Tolerance(tolerance) => (String::new(), number(tolerance)),
+    };
+    let (over_width, under_coverage) = match point.deviation {
+        Deviation::Bounds { over_width, under_coverage } => (number(over_width), number(under_coverage)),
+        Deviation::Trajectory(_) => (String::new(), String::new()),
+    };
+    [
+        of.to_owned(),
+        point.method.name(),
+        whole(point.order),
+        whole(point.points),
+        step,
+        tolerance,
+        point.solves.to_string(),
+        point.steps.to_string(),
+        number(point.seconds),
+        over_width,
+        under_coverage,
+        number(point.deviation.largest()),
+        point.limited.to_string(),
+        point.front.to_string(),
+    ]
+}
+
+/// Writes `cost.csv` and `cost.svg` into `dir`, each whole or not at all. They hold seconds, and so differ from run to run.
+///
+/// # Errors
+/// At the first file that cannot be written.
+pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ReportError> {
+    prepare_folder(dir)?;
+    let plot = cost_svg(study).map_err(|message| ReportError::Plot { output: "cost".to_owned(), message })?;
+    let mut written = Vec::new();
+    for (name, contents) in [("cost.csv", cost_csv(study)?), ("cost.svg", plot.into_bytes())] {
+        let path = dir.join(name);
+        write_whole(&path, &contents).map_err(|source| ReportError::Write { path: path.clone(), source })?;
+        written.push(path);
+    }
+    Ok(written)
+}
