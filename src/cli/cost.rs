@@ -136,7 +136,11 @@ fn error(error: f64, own: f64) -> String {
 /// A step size, or a tolerance in its place.
 fn step(stepping: Stepping) -> String {
     match stepping {
-        Stepping::Fixed(step) => format!("{step:.3e} s"),
+        Stepping::Fixed(step) => {
+            let digits = format!("{step:.3e}");
+            let (mantissa, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));
+            format!("{}e{exponent} s", mantissa.trim_end_matches('0').trim_end_matches('.'))
+        }
         Stepping::Tolerance(tolerance) => format!("tolerance {tolerance:.1e}"),
     }
 }
@@ -158,29 +162,25 @@ fn reference(study: &CostStudy) -> String {
 
 /// The one sentence: the cheapest setting that meets the tolerance.
 fn choice(study: &CostStudy) -> String {
-    let wanted = study.tolerance;
+    let (wanted, own) = (study.tolerance, study.own_error());
     let told = |point: &CostPoint| {
-        let mut text = point.method.label();
-        if let Some(order) = point.order {
-            text += &format!(" of order {order}");
-        }
-        if let Some(points) = point.points {
-            text += &format!(" of {points} points a parameter");
-        }
-        let solves = count(point.solves, "solve", "solves");
-        text + &format!(
-            ", {}: {solves}, {:.3} s, error {:.1e}",
-            step(point.step),
-            point.seconds,
-            point.deviation.largest()
-        )
+        let count_of = match (point.order, point.points) {
+            (Some(order), _) => format!(" of order {order}"),
+            (_, Some(points)) => format!(" of {points} points a parameter"),
+            _ => String::new(),
+        };
+        let off = match point.deviation {
+            Deviation::Bounds { over_width, under_coverage } => {
+                format!("too wide by {}, too narrow by {}", error(over_width, own), error(under_coverage, own))
+            }
+            Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
+        };
+        let (label, step, solves) = (point.method.label(), step(point.step), count(point.solves, "solve", "solves"));
+        format!("{label}{count_of}, steps of {step}: {solves} in {:.3} s, {off}", point.seconds)
     };
-    let own = if study.bounds.is_empty() { study.reference.trajectory_error } else { study.reference.bounds_error };
     match (study.cheapest(), study.nearest()) {
-        _ if own > wanted => {
-            format!(
-                "Nothing can be said of {wanted:e}: the reference itself is only known to {own:.1e}; allow a larger budget."
-            )
+        _ if own >= wanted => {
+            format!("Nothing can be said of {wanted:e}: the reference itself is only known to {own:.1e}.")
         }
         (Some(point), _) => format!("The cheapest within {wanted:e} is {}.", told(point)),
         (None, Some(point)) => format!("No setting tried is within {wanted:e}; the nearest is {}.", told(point)),

@@ -36,9 +36,16 @@ impl CostStudy {
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
 
-    /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance.
+    /// The reference's own error in what is chosen from.
+    pub fn own_error(&self) -> f64 {
+        if self.bounds.is_empty() { self.reference.trajectory_error } else { self.reference.bounds_error }
+    }
+
+    /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own error
+    /// counted in.
     pub fn cheapest(&self) -> Option<&CostPoint> {
-        let good = self.choices().filter(|point| point.deviation.largest() <= self.tolerance);
+        let own = self.own_error();
+        let good = self.choices().filter(|point| point.deviation.largest() + own <= self.tolerance);
         good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
@@ -300,4 +307,103 @@ pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ReportE
         written.push(path);
     }
     Ok(written)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
+        let deviation = Deviation::Bounds { over_width, under_coverage };
+        let point = CostPoint::without_result(method, Stepping::Fixed(1e-3));
+        CostPoint { order: Some(5), solves: 36, steps: 2000, seconds, deviation, ..point }
+    }
+
+    fn study(bounds: Vec<CostPoint>) -> CostStudy {
+        let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
+        let trapezoidal = CostMethod::Scheme(Scheme::TrapezoidalIndex2);
+        let trajectory = |method, seconds, error| CostPoint {
+            seconds,
+            deviation: Deviation::Trajectory(error),
+            ..CostPoint::without_result(method, Stepping::Tolerance(1e-6))
+        };
+        CostStudy {
+            model: "crank".into(),
+            tolerance: 1e-3,
+            reference: CostReference {
+                method: CostMethod::Composed,
+                order: 12,
+                steps: [1e-4, 2e-4, 4e-4].map(Stepping::Fixed),
+                bounds_error: 1e-5,
+                trajectory_error: 1e-6,
+                parts: vec![("its steps".into(), 1e-5)],
+            },
+            bounds,
+            trajectories: vec![trajectory(hht, 2e-3, 5e-4), trajectory(trapezoidal, 1e-3, 2e-4)],
+            left_out: vec![],
+        }
+    }
+
+    fn sample() -> CostStudy {
+        study(vec![
+            point(CostMethod::Interval, 0.01, 0.4, 0.0),
+            // Too narrow is no better than too wide.
+            point(CostMethod::Scan, 0.02, 0.0, 2e-3),
+            point(CostMethod::Composed, 0.05, 3e-4, 8e-4),
+            point(CostMethod::Tight, 0.04, 9.95e-4, 0.0),
+            CostPoint { failure: Some("it locks".into()), ..point(CostMethod::Taylor, 0.001, 0.0, 0.0) },
+        ])
+    }
+
+    #[test]
+    fn the_cheapest_is_within_the_tolerance_in_both_directions() {
+        let mut study = sample();
+        // The tight one is within it only if the reference is exact.
+        assert_eq!(study.cheapest().unwrap().method, CostMethod::Composed);
+        study.reference.bounds_error = 0.0;
+        assert_eq!(study.cheapest().unwrap().method, CostMethod::Tight);
+        study.tolerance = 1e-4;
+        assert_eq!(study.cheapest(), None);
+        assert_eq!(study.nearest().unwrap().method, CostMethod::Composed);
+    }
+
+    #[test]
+    fn without_bounds_the_models_own_scheme_is_chosen_from() {
+        let study = study(vec![]);
+        assert_eq!(study.cheapest().unwrap().method, CostMethod::Scheme(Scheme::Hht { alpha: -0.1 }));
+    }
+
+    #[test]
+    fn a_row_a_setting() {
+        let mut study = sample();
+        study.bounds.truncate(1);
+        study
+            .bounds
+            .push(CostPoint { points: Some(5), ..CostPoint::without_result(CostMethod::Scan, Stepping::Fixed(0.01)) });
+        study.bounds[0].front = true;
+        let text = String::from_utf8(cost_csv(&study).unwrap()).unwrap();
+        assert_eq!(
+            text,
+            "of,method,order,points,step,tolerance,solves,steps,seconds,over_width,under_coverage,error,below_reference,front\n\
+             bounds,chebyshev.interval,5,,0.001,,36,2000,0.01,0.4,0,0.4,false,true\n\
+             bounds,scan,,5,0.01,,0,0,inf,inf,inf,inf,false,false\n\
+             trajectory,hht(-0.1),,,,1e-6,0,0,0.002,,,0.0005,false,false\n\
+             trajectory,trapezoidal,,,,1e-6,0,0,0.001,,,0.0002,false,false\n"
+        );
+    }
+
+    #[test]
+    fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
+        let mut whole = sample();
+        whole.bounds.push(CostPoint::without_result(CostMethod::Composed, Stepping::Fixed(1e-2)));
+        for study in [whole, study(vec![])] {
+            let svg = cost_svg(&study).unwrap();
+            assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"));
+            for point in study.bounds.iter().chain(&study.trajectories) {
+                assert!(svg.contains(&point.method.label()), "{}", point.method.label());
+            }
+            assert_eq!(svg.contains("too narrow"), !study.bounds.is_empty());
+        }
+    }
 }

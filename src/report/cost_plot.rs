@@ -26,7 +26,7 @@ const RIGHT: f64 = 18.0;
 /// From one line of the legend to the next, px.
 const LINE: f64 = 18.0;
 /// From one column of the legend to the next, px.
-const COLUMN: f64 = 166.0;
+const COLUMN: f64 = 214.0;
 /// A dot's radius, px.
 const DOT: f64 = 3.4;
 const FRONT: RGBColor = RGBColor(190, 190, 190);
@@ -41,11 +41,13 @@ fn color(method: CostMethod) -> RGBColor {
         CostMethod::Scan => RGBColor(130, 25, 80),
         CostMethod::Scheme(Scheme::Hht { .. }) => RGBColor(0, 114, 178),
         CostMethod::Scheme(Scheme::TrapezoidalIndex2) => RGBColor(130, 25, 80),
-        // By how much is damped: the less, the paler.
-        CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
-            let pale = |from: f64, to: f64| (from + (to - from) * spectral_radius.clamp(0.0, 1.0).powi(2)) as u8;
-            RGBColor(pale(150.0, 250.0), pale(70.0, 200.0), pale(0.0, 110.0))
+        CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.65 => {
+            RGBColor(0, 158, 115)
         }
+        CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.85 => {
+            RGBColor(240, 160, 20)
+        }
+        CostMethod::Scheme(Scheme::GeneralisedAlpha { .. }) => RGBColor(86, 180, 233),
     }
 }
 

@@ -52,20 +52,20 @@ pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
     steppings
 }
 
-/// Every setting, composed ones only if outputs can be.
+/// Every setting, method by method, composed ones only if outputs can be.
 pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting> {
+    let composed = composable.then_some((CostMethod::Composed, &CHEBYSHEV_ORDERS[..]));
+    let others: [(CostMethod, &[usize]); 4] = [
+        (CostMethod::Tight, &CHEBYSHEV_ORDERS),
+        (CostMethod::Interval, &CHEBYSHEV_ORDERS),
+        (CostMethod::Taylor, &TAYLOR_ORDERS),
+        (CostMethod::Scan, &SCAN_POINTS),
+    ];
     let mut settings = Vec::new();
-    for stepping in steppings(simulation) {
-        let mut add = |method, counts: &[usize]| {
-            settings.extend(counts.iter().map(|&count| Setting { method, count, stepping }));
-        };
-        if composable {
-            add(CostMethod::Composed, &CHEBYSHEV_ORDERS);
+    for (method, counts) in composed.into_iter().chain(others) {
+        for &count in counts {
+            settings.extend(steppings(simulation).into_iter().map(|stepping| Setting { method, count, stepping }));
         }
-        add(CostMethod::Tight, &CHEBYSHEV_ORDERS);
-        add(CostMethod::Interval, &CHEBYSHEV_ORDERS);
-        add(CostMethod::Taylor, &TAYLOR_ORDERS);
-        add(CostMethod::Scan, &SCAN_POINTS);
     }
     settings
 }

@@ -74,8 +74,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         if !composable {
             left_out.push("outputs composed from coordinates: the parameters or coordinates are too many".to_owned());
         }
-        let mut settings = settings(&model.simulation, composable);
-        settings.sort_by(|a, b| a.work(k).total_cmp(&b.work(k)));
+        let settings = settings(&model.simulation, composable);
         let skipped;
         (bounds, skipped) = run_settings(model, &settings, &reference, options, begun);
         left_out.extend(skipped.into_iter().map(|(method, count)| {
@@ -100,8 +99,8 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     })
 }
 
-/// Runs settings in the order given, as long as the budget lasts: what a method's last run took tells what its next will.
-/// Also how many settings of which method were skipped.
+/// Runs settings by rising work as long as the budget lasts: what a method's last run took tells what its next will. The
+/// points are in the settings' order; also how many settings of which method were skipped.
 fn run_settings(
     model: &Description,
     settings: &[Setting],
@@ -110,28 +109,31 @@ fn run_settings(
     begun: Instant,
 ) -> (Vec<CostPoint>, Vec<(CostMethod, usize)>) {
     let k = uncertain(model);
+    let mut by_work: Vec<usize> = (0..settings.len()).collect();
+    by_work.sort_by(|&a, &b| settings[a].work(k).total_cmp(&settings[b].work(k)));
     let total: f64 = settings.iter().map(|setting| setting.work(k)).sum();
     let mut done = 0.0;
     let mut rates: Vec<(CostMethod, f64)> = Vec::new();
-    let (mut points, mut skipped) = (Vec::new(), Vec::new());
-    for setting in settings {
+    let (mut points, mut skipped) = (vec![None; settings.len()], Vec::new());
+    for place in by_work {
+        let setting = &settings[place];
         let work = setting.work(k);
         let progress = |fraction: f64| {
             let share = (done + fraction * work) / total;
             (options.progress)(REFERENCE_DONE + (BOUNDS_DONE - REFERENCE_DONE) * share);
         };
-        let expected = entry(&mut rates, setting.method, 0.0);
-        let late = begun.elapsed().as_secs_f64() + *expected * work > options.budget;
+        let rate = entry(&mut rates, setting.method, 0.0);
+        let late = begun.elapsed().as_secs_f64() + *rate * work > options.budget;
         if late || setting.solves(k) > MOST_SOLVES {
             *entry(&mut skipped, setting.method, 0) += 1;
         } else {
             let point = point(model, setting, reference, options, &progress);
-            *expected = point.seconds / work;
-            points.push(point);
+            *rate = point.seconds / work;
+            points[place] = Some(point);
         }
         done += work;
     }
-    (points, skipped)
+    (points.into_iter().flatten().collect(), skipped)
 }
 
 /// A method's value in a list, put there if it is missing.

@@ -8,7 +8,7 @@ use crate::model::Description;
 use crate::report::CostMethod;
 
 /// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that the solves allow.
-const ORDERS: [usize; 3] = [20, 12, 8];
+const ORDERS: [usize; 3] = [24, 16, 10];
 const FEW: usize = 7;
 
 /// The order is not lowered below this for the time's sake.
