@@ -95,7 +95,7 @@ fn bounds(study: &CostStudy) -> Table<8> {
             whole(point.points),
             step(point.step),
             point.solves.to_string(),
-            format!("{:.3}", point.seconds),
+            format!("{:.4}", point.seconds),
             error(over_width, own),
             error(under_coverage, own),
         ]);

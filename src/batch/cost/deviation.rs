@@ -3,7 +3,7 @@
 //! Each output has its scale: the widest that its known band gets, or, without a band, how far its course reaches. What
 //! deviates is divided by it.
 
-use crate::bounds::{Bounds, OutputBounds};
+use crate::bounds::OutputBounds;
 use crate::report::Deviation;
 
 /// An output that moves (or whose band gets wider) by no more than this share of its size has no scale to measure by.
@@ -11,13 +11,13 @@ const AT_REST: f64 = 1e-9;
 
 /// Bands (one an output, or none) and nominal courses, with the outputs' scales.
 pub(super) struct Known {
-    pub(super) outputs: Vec<OutputBounds>,
+    outputs: Vec<OutputBounds>,
     /// Not a number for outputs that have none.
-    pub(super) scales: Vec<f64>,
+    scales: Vec<f64>,
 }
 
 /// A distance relative to a scale: infinite where it is unknown, and zero where there is no scale.
-pub(super) fn apart(distance: f64, scale: f64) -> f64 {
+fn apart(distance: f64, scale: f64) -> f64 {
     let relative = distance / scale;
     match relative.is_nan() {
         _ if scale.is_nan() => 0.0,
@@ -51,6 +51,15 @@ impl Known {
         Self { outputs, scales: self.scales.clone() }
     }
 
+    /// The largest of several errors each output has, relative to its scale.
+    pub(super) fn worst<const N: usize>(&self, absolute: &[[f64; N]]) -> [f64; N] {
+        let mut worst = [0.0_f64; N];
+        for (errors, &scale) in absolute.iter().zip(&self.scales) {
+            worst.iter_mut().zip(errors).for_each(|(worst, &error)| *worst = worst.max(apart(error, scale)));
+        }
+        worst
+    }
+
     /// Names of the outputs that are not looked at.
     pub(super) fn at_rest(&self) -> impl Iterator<Item = &str> {
         let outputs = self.outputs.iter().zip(&self.scales).filter(|(_, scale)| scale.is_nan());
@@ -59,9 +68,9 @@ impl Known {
 
     /// How far the first band of each output lies outside of the known one, and inside: a bound that is not known is
     /// infinitely far outside. Rows without a known bound are not compared.
-    pub(super) fn of_bounds(&self, bounds: &Bounds) -> Deviation {
+    pub(super) fn of_bounds(&self, outputs: &[OutputBounds]) -> Deviation {
         let (mut over_width, mut under_coverage) = (0.0_f64, 0.0_f64);
-        for ((known, &scale), output) in self.outputs.iter().zip(&self.scales).zip(&bounds.outputs) {
+        for ((known, &scale), output) in self.outputs.iter().zip(&self.scales).zip(outputs) {
             for row in 0..known.nominal.len() {
                 let [lower, upper] = ends(known, row);
                 if !(lower.is_finite() && upper.is_finite()) {
@@ -101,15 +110,11 @@ mod tests {
         OutputBounds { name: "x".into(), unit: "m".into(), nominal: vec![0.5; 3], bands: vec![band] }
     }
 
-    fn bounds(lower: &[f64], upper: &[f64]) -> Bounds {
-        Bounds { times: vec![0.0, 1.0, 2.0], outputs: vec![output(lower, upper)] }
-    }
-
     #[test]
     fn outside_and_inside_are_told_apart() {
         let known = Known::new(vec![output(&[0.5, 0.0, f64::NAN], &[0.5, 2.0, 3.0])]);
         assert_eq!(known.scales, [2.0]);
-        let of = |lower: &[f64], upper: &[f64]| known.of_bounds(&bounds(lower, upper));
+        let of = |lower: &[f64], upper: &[f64]| known.of_bounds(&[output(lower, upper)]);
         let is = |over_width, under_coverage| Deviation::Bounds { over_width, under_coverage };
         assert_eq!(of(&[0.5, 0.0, 9.0], &[0.5, 2.0, 9.0]), is(0.0, 0.0));
         assert_eq!(of(&[0.4, 0.2, 9.0], &[0.5, 2.3, 9.0]), is((2.3 - 2.0) / 2.0, 0.1));

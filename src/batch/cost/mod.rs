@@ -160,7 +160,7 @@ fn point(
         Ok(((bounds, summary), seconds)) => {
             let spent = method(&summary, setting);
             let (solves, steps) = (spent.solves, spent.steps);
-            let deviation = reference.known.of_bounds(&bounds);
+            let deviation = reference.known.of_bounds(&bounds.outputs);
             CostPoint { solves, steps, seconds, deviation, failure: summary.failure, ..point }
         }
         Err(error) => CostPoint { failure: Some(error.to_string()), ..point },

@@ -15,19 +15,19 @@ const FEW: usize = 7;
 const LEAST_ORDER: usize = 4;
 
 /// Simulations of one run of the reference.
-const MOST_SOLVES: f64 = 2e4;
+const MOST_SOLVES: f64 = 1e4;
 
-/// How much finer the reference's finest steps may be than the model's; it takes steps twice and four times as long too.
+/// How much finer the reference's finest steps may be than the model's.
 const FINEST: [f64; 3] = [16.0, 8.0, 4.0];
 
 /// Points of the dense scan, a parameter, for one and two.
-const DENSE: [usize; 2] = [401, 41];
+const DENSE: [usize; 2] = [101, 21];
 
 /// Share of the budget that the reference may take, and of that, the scan.
 const SHARE: f64 = 1.0 / 3.0;
 const SCAN_SHARE: f64 = 0.5;
 
-/// What is to be run for the reference.
+/// What is run for the reference: with three step sizes, each twice the one before.
 pub(super) struct Plan {
     pub(super) method: CostMethod,
     pub(super) order: usize,
@@ -59,7 +59,7 @@ impl Plan {
         let solves = |order| setting(order, 1.0).solves(k);
         let highest = ORDERS.get(k - 1).copied();
         let highest =
-            highest.unwrap_or_else(|| (2..FEW).rev().find(|&order| solves(order) <= MOST_SOLVES).unwrap_or(2));
+            highest.unwrap_or_else(|| (2..=FEW).rev().find(|&order| solves(order) <= MOST_SOLVES).unwrap_or(2));
         if solves(highest) > MOST_SOLVES {
             return Err(CostError::TooMany { parameters: k, solves: solves(highest) });
         }
@@ -67,13 +67,12 @@ impl Plan {
         // Seconds are a constant, which is the composition's, and a rate times the work.
         let probe =
             |setting: Setting| timed(model, &setting, options, &|_| {}).map(|(_, seconds)| (setting.work(k), seconds));
-        let [short, long] = [probe(setting(2, 0.25))?, probe(setting(2, 1.0))?];
+        let [short, long] = [probe(setting(2, 1.0))?, probe(setting(2, 4.0))?];
         let rate = ((long.1 - short.1) / (long.0 - short.0)).max(0.0);
         let constant = (short.1 - rate * short.0).max(0.0);
-        let runs =
-            |order, parts| [(order, parts), (order, parts / 2.0), (order, parts / 4.0), (order, 1.0), (order - 2, 1.0)];
+        let halved = |parts: f64| [parts, parts / 2.0, parts / 4.0];
         let seconds = |order, parts| {
-            runs(order, parts).map(|(order, parts)| constant + rate * setting(order, parts).work(k)).iter().sum::<f64>()
+            halved(parts).map(|parts| constant + rate * setting(order, parts).work(k)).iter().sum::<f64>()
         };
 
         let affordable = SHARE * options.budget;
@@ -83,8 +82,16 @@ impl Plan {
         let (order, parts) = choices
             .find(|&(order, parts)| seconds(order, parts) <= affordable)
             .unwrap_or((least, FINEST[FINEST.len() - 1]));
-        let of_scan = |points: usize| rate * Setting { method: CostMethod::Scan, ..setting(points, 1.0) }.work(k);
+        let of_scan = |points: usize| {
+            let work = |parts| Setting { method: CostMethod::Scan, ..setting(points, parts) }.work(k);
+            rate * halved(parts).map(work).iter().sum::<f64>()
+        };
         let scan = DENSE.get(k - 1).copied().filter(|&points| of_scan(points) <= SCAN_SHARE * affordable);
         Ok(Self { method, order, parts, scan })
+    }
+
+    /// The order that tells how far the reference's is off, where it has one.
+    pub(super) fn lower_order(&self) -> Option<usize> {
+        (self.order > 1).then(|| self.order.saturating_sub(2).max(1))
     }
 }
