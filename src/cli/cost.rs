@@ -10,7 +10,7 @@ use super::table::{Align, Table};
 use super::{Failure, Status, load};
 use crate::batch::{self, CostOptions};
 use crate::model::{Description, Stepping};
-use crate::report::{CostPoint, CostStudy, Deviation, file_stem, methods, pareto, prepare_folder, write_cost};
+use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, file_stem, pareto, prepare_folder, write_cost};
 
 /// Error that is wanted where nobody says otherwise.
 const TOLERANCE: f64 = 1e-3;
@@ -71,7 +71,7 @@ fn fronts(points: &[CostPoint], own: f64) -> Vec<&CostPoint> {
         let places: Vec<(f64, f64)> = of.iter().map(|point| point.place(own)).collect();
         pareto(&places).into_iter().rev().map(move |place| of[place]).collect::<Vec<_>>()
     };
-    methods(points).into_iter().flat_map(front).collect()
+    cost_curves(points).into_iter().flat_map(front).collect()
 }
 
 fn bounds(study: &CostStudy) -> Table<8> {
@@ -95,7 +95,7 @@ fn bounds(study: &CostStudy) -> Table<8> {
             whole(point.points),
             step(point.step),
             point.solves.to_string(),
-            format!("{:.4}", point.seconds),
+            format!("{:.1e}", point.seconds),
             error(over_width, own),
             error(under_coverage, own),
         ]);
@@ -133,6 +133,10 @@ fn error(error: f64, own: f64) -> String {
     }
 }
 
+fn seconds(seconds: f64) -> String {
+    if seconds < 0.1 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
+}
+
 /// A step size, or a tolerance in its place.
 fn step(stepping: Stepping) -> String {
     match stepping {
@@ -148,16 +152,18 @@ fn step(stepping: Stepping) -> String {
 /// What errors are measured against, and how well it is known.
 fn reference(study: &CostStudy) -> String {
     let reference = &study.reference;
-    let [finest, _, coarsest] = reference.steps.map(step);
-    let parts = reference.parts.iter().map(|(source, size)| format!("{source} {size:.1e}"));
-    format!(
-        "  reference: {} of order {}, steps from {finest} to {coarsest}; its own error {:.1e} ({}), of the trajectory {:.1e}\n",
-        reference.method.label(),
-        reference.order,
-        reference.bounds_error,
-        parts.collect::<Vec<_>>().join(", "),
-        reference.trajectory_error,
-    )
+    let [finest, middle, _] = reference.steps.map(step);
+    let mut text = format!("  reference: {}", reference.method.label());
+    if reference.order > 0 {
+        text += &format!(" of order {}", reference.order);
+    }
+    text += &format!(", steps of {finest} and {middle}; its own error {:.1e}", study.own_error());
+    if !reference.parts.is_empty() {
+        let parts = reference.parts.iter().map(|(source, size)| format!("{source} {size:.1e}"));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        text += &format!(" ({parts}), of the trajectory {:.1e}", reference.trajectory_error);
+    }
+    text + "\n"
 }
 
 /// The one sentence: the cheapest setting that meets the tolerance.
@@ -176,7 +182,7 @@ fn choice(study: &CostStudy) -> String {
             Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
         };
         let (label, step, solves) = (point.method.label(), step(point.step), count(point.solves, "solve", "solves"));
-        format!("{label}{count_of}, steps of {step}: {solves} in {:.3} s, {off}", point.seconds)
+        format!("{label}{count_of}, steps of {step}: {solves} in {}, {off}", seconds(point.seconds))
     };
     match (study.cheapest(), study.nearest()) {
         _ if own >= wanted => {

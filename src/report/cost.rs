@@ -119,7 +119,7 @@ pub enum Deviation {
 }
 
 /// The points' methods, in the order in which they first appear.
-pub fn methods(points: &[CostPoint]) -> Vec<CostMethod> {
+pub fn cost_curves(points: &[CostPoint]) -> Vec<CostMethod> {
     let mut methods: Vec<CostMethod> = Vec::new();
     for point in points {
         if !methods.contains(&point.method) {

@@ -6,7 +6,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::cost::{CostMethod, CostPoint, CostStudy, methods};
+use super::cost::{CostMethod, CostPoint, CostStudy, cost_curves};
 use super::front::pareto;
 use super::log_axis::LogAxis;
 use super::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, text_style};
@@ -145,7 +145,7 @@ impl Panel<'_, '_> {
     fn curves(&self, points: &[CostPoint], reference: f64) -> Drawn {
         let all = || points.iter().filter(|point| is_shown(point));
         self.front(&all().map(|point| point.place(reference)).collect::<Vec<Point>>(), FRONT, 7.0)?;
-        for (entry, method) in methods(points).into_iter().enumerate() {
+        for (entry, method) in cost_curves(points).into_iter().enumerate() {
             let own = || all().filter(|point| point.method == method);
             self.front(&own().map(|point| point.place(reference)).collect::<Vec<Point>>(), color(method), 1.6)?;
             for point in own() {

@@ -14,7 +14,7 @@ mod summary;
 mod view;
 
 pub use self::csv::bounds_csv;
-pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, methods, write_cost};
+pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, write_cost};
 pub use cost_plot::cost_svg;
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, prepare_folder, write_results};

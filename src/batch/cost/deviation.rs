@@ -51,13 +51,19 @@ impl Known {
         Self { outputs, scales: self.scales.clone() }
     }
 
-    /// The largest of several errors each output has, relative to its scale.
-    pub(super) fn worst<const N: usize>(&self, absolute: &[[f64; N]]) -> [f64; N] {
-        let mut worst = [0.0_f64; N];
-        for (errors, &scale) in absolute.iter().zip(&self.scales) {
-            worst.iter_mut().zip(errors).for_each(|(worst, &error)| *worst = worst.max(apart(error, scale)));
+    /// Widens the known bands, where there are any, to the first of other outputs.
+    pub(super) fn widen(&mut self, outputs: &[OutputBounds]) {
+        for (known, output) in self.outputs.iter_mut().zip(outputs) {
+            for row in 0..known.nominal.len() {
+                let ([lower, upper], [of_lower, of_upper]) = (ends(known, row), ends(output, row));
+                if of_lower < lower {
+                    known.bands[0].lower[row] = of_lower;
+                }
+                if of_upper > upper {
+                    known.bands[0].upper[row] = of_upper;
+                }
+            }
         }
-        worst
     }
 
     /// Names of the outputs that are not looked at.
@@ -86,12 +92,11 @@ impl Known {
         Deviation::Bounds { over_width, under_coverage }
     }
 
-    /// How far nominal courses lie off (values row by row, output by output); rows that are missing, infinitely far.
-    pub(super) fn of_trajectory(&self, rows: &[f64]) -> Deviation {
+    /// How far courses lie off the nominal ones, output by output; rows that are missing, infinitely far.
+    pub(super) fn of_courses<'c>(&self, courses: impl Iterator<Item = &'c [f64]>) -> Deviation {
         let mut error = 0.0_f64;
-        for (place, (known, &scale)) in self.outputs.iter().zip(&self.scales).enumerate() {
-            let values =
-                rows.iter().skip(place).step_by(self.outputs.len()).copied().chain(std::iter::repeat(f64::NAN));
+        for ((known, &scale), course) in self.outputs.iter().zip(&self.scales).zip(courses) {
+            let values = course.iter().copied().chain(std::iter::repeat(f64::NAN));
             for (exact, value) in known.nominal.iter().zip(values) {
                 error = error.max(apart((value - exact).abs(), scale));
             }
@@ -129,7 +134,17 @@ mod tests {
         let moving = OutputBounds { name: "y".into(), nominal: vec![0.0, 1.0, 4.0], ..still.clone() };
         let known = Known::new(vec![still, moving]);
         assert_eq!(known.at_rest().collect::<Vec<_>>(), ["x"]);
-        assert_eq!(known.of_trajectory(&[9.0, 0.0, 9.0, 1.0, 9.0, 3.0]), Deviation::Trajectory(0.25));
-        assert_eq!(known.of_trajectory(&[9.0, 0.0, 9.0, 1.0]), Deviation::Trajectory(f64::INFINITY));
+        let of = |course: &[f64]| known.of_courses([&[9.0; 3], course].into_iter());
+        assert_eq!(of(&[0.0, 1.0, 3.0]), Deviation::Trajectory(0.25));
+        assert_eq!(of(&[0.0, 1.0]), Deviation::Trajectory(f64::INFINITY));
+    }
+
+    #[test]
+    fn bands_are_widened_where_they_are_known() {
+        let mut known = Known::new(vec![output(&[0.0, 0.0, f64::NAN], &[1.0, 2.0, f64::NAN])]);
+        known.widen(&[output(&[-1.0, 0.5, 0.0], &[0.5, 3.0, 0.0])]);
+        let is = |lower: &[f64], upper: &[f64]| known.of_bounds(&[output(lower, upper)]);
+        let exact = Deviation::Bounds { over_width: 0.0, under_coverage: 0.0 };
+        assert_eq!(is(&[-1.0, 0.0, 7.0], &[1.0, 3.0, 7.0]), exact, "a row that is not known stays so");
     }
 }

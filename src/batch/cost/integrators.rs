@@ -38,7 +38,7 @@ pub(super) fn trajectories(
                 solves: 1,
                 steps: run.steps,
                 seconds,
-                deviation: known.of_trajectory(&run.rows),
+                deviation: known.of_courses(run.outputs.iter().map(Vec::as_slice)),
                 failure: run.failure,
                 ..CostPoint::without_result(CostMethod::Scheme(scheme), stepping)
             });
@@ -48,9 +48,10 @@ pub(super) fn trajectories(
     Ok(points)
 }
 
-/// The nominal sample's outputs: row by row, output by output, up to where it stopped.
+/// The nominal sample's course.
 struct Course {
-    rows: Vec<f64>,
+    /// Each output's, up to where it stopped.
+    outputs: Vec<Vec<f64>>,
     steps: usize,
     failure: Option<String>,
 }
@@ -69,20 +70,20 @@ impl Course {
         };
         let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
         let mut stepper = Stepper::new(&simulator.program, &start);
-        let outputs = simulator.program.outputs.len();
-        let mut rows = vec![0.0; schedule.rows * outputs];
+        let mut values = vec![0.0; simulator.program.outputs.len()];
+        let mut outputs = vec![Vec::with_capacity(schedule.rows); values.len()];
         let mut steps = 0;
         for row in 0..schedule.rows {
             for (h, end) in schedule.steps_to(row) {
                 if let Some(stuck) = stepper.step(h, end).first() {
                     failure = Some(format!("did not converge at t = {} s", stuck.time));
-                    rows.truncate(row * outputs);
-                    return Ok(Self { rows, steps, failure });
+                    return Ok(Self { outputs, steps, failure });
                 }
                 steps += 1;
             }
-            stepper.observe(&mut rows[row * outputs..][..outputs]);
+            stepper.observe(&mut values);
+            outputs.iter_mut().zip(&values).for_each(|(course, &value)| course.push(value));
         }
-        Ok(Self { rows, steps, failure })
+        Ok(Self { outputs, steps, failure })
     }
 }

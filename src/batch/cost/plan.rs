@@ -20,12 +20,15 @@ const MOST_SOLVES: f64 = 1e4;
 /// How much finer the reference's finest steps may be than the model's.
 const FINEST: [f64; 3] = [16.0, 8.0, 4.0];
 
-/// Points of the dense scan, a parameter, for one and two.
-const DENSE: [usize; 2] = [101, 21];
+/// Points of the dense scan, a parameter, for one, two and three: odd, so that every second of them makes a scan too.
+const DENSE: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]];
 
-/// Share of the budget that the reference may take, and of that, the scan.
-const SHARE: f64 = 1.0 / 3.0;
-const SCAN_SHARE: f64 = 0.5;
+/// Points of a scan that tells what many samples take.
+const SCAN_PROBE: [usize; 3] = [64, 8, 4];
+
+/// Shares of the budget that the reference's surrogate and its scan may take.
+const SHARE: f64 = 0.25;
+const SCAN_SHARE: f64 = 0.25;
 
 /// What is run for the reference: with three step sizes, each twice the one before.
 pub(super) struct Plan {
@@ -65,33 +68,46 @@ impl Plan {
         }
 
         // Seconds are a constant, which is the composition's, and a rate times the work.
-        let probe =
-            |setting: Setting| timed(model, &setting, options, &|_| {}).map(|(_, seconds)| (setting.work(k), seconds));
-        let [short, long] = [probe(setting(2, 1.0))?, probe(setting(2, 4.0))?];
-        let rate = ((long.1 - short.1) / (long.0 - short.0)).max(0.0);
-        let constant = (short.1 - rate * short.0).max(0.0);
-        let halved = |parts: f64| [parts, parts / 2.0, parts / 4.0];
-        let seconds = |order, parts| {
-            halved(parts).map(|parts| constant + rate * setting(order, parts).work(k)).iter().sum::<f64>()
+        let probes = [setting(2, 1.0), setting(2, 4.0)];
+        let [short, long] = [measured(model, &probes[0], options)?, measured(model, &probes[1], options)?];
+        let rate = ((long - short) / (probes[1].work(k) - probes[0].work(k))).max(0.0);
+        let constant = (short - rate * probes[0].work(k)).max(0.0);
+        let seconds = |order, parts: f64| {
+            [parts, parts / 2.0, parts / 4.0]
+                .map(|parts| constant + rate * setting(order, parts).work(k))
+                .iter()
+                .sum::<f64>()
         };
-
-        let affordable = SHARE * options.budget;
         let least = LEAST_ORDER.min(highest);
         let orders = (least..=highest).rev().step_by(2);
-        let mut choices = orders.flat_map(|order| FINEST.map(|parts| (order, parts)));
-        let (order, parts) = choices
-            .find(|&(order, parts)| seconds(order, parts) <= affordable)
+        let (order, parts) = orders
+            .flat_map(|order| FINEST.map(|parts| (order, parts)))
+            .find(|&(order, parts)| seconds(order, parts) <= SHARE * options.budget)
             .unwrap_or((least, FINEST[FINEST.len() - 1]));
-        let of_scan = |points: usize| {
-            let work = |parts| Setting { method: CostMethod::Scan, ..setting(points, parts) }.work(k);
-            rate * halved(parts).map(work).iter().sum::<f64>()
-        };
-        let scan = DENSE.get(k - 1).copied().filter(|&points| of_scan(points) <= SCAN_SHARE * affordable);
-        Ok(Self { method, order, parts, scan })
+        Ok(Self { method, order, parts, scan: dense_scan(model, parts, options)? })
     }
 
     /// The order that tells how far the reference's is off, where it has one.
     pub(super) fn lower_order(&self) -> Option<usize> {
         (self.order > 1).then(|| self.order.saturating_sub(2).max(1))
     }
+}
+
+/// What a setting takes, s.
+fn measured(model: &Description, setting: &Setting, options: &CostOptions) -> Result<f64, CostError> {
+    Ok(timed(model, setting, options, &|_| {})?.1)
+}
+
+/// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many parameters.
+fn dense_scan(model: &Description, parts: f64, options: &CostOptions) -> Result<Option<usize>, CostError> {
+    let k = uncertain(model);
+    let (Some(&few), Some(dense)) = (SCAN_PROBE.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
+    let scan = |count, parts| Setting { method: CostMethod::Scan, count, stepping: finer(&model.simulation, parts) };
+    let probe = scan(few, 1.0);
+    let rate = measured(model, &probe, options)? / probe.work(k);
+    let seconds = |points: usize| {
+        let runs = [(points, parts), (points, parts / 2.0), (points / 2 + 1, parts), (points / 2 + 1, parts / 2.0)];
+        runs.map(|(points, parts)| rate * scan(points, parts).work(k)).iter().sum::<f64>()
+    };
+    Ok(dense.iter().copied().find(|&points| seconds(points) <= SCAN_SHARE * options.budget))
 }

@@ -13,7 +13,7 @@ use crate::report::{MethodSummary, Summary};
 const LONG_ENOUGH: f64 = 0.15;
 
 /// … or there were so many of them.
-const OFTEN_ENOUGH: usize = 10;
+const OFTEN_ENOUGH: usize = 5;
 
 /// Something done at least once: its last result, and the shortest time, s, that `seconds` makes of a result and of the time
 /// it took.
