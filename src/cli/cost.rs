@@ -193,3 +193,88 @@ fn choice(study: &CostStudy) -> String {
         (None, None) => format!("No setting tried has come to its end, so none is within {wanted:e}."),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Scheme;
+    use crate::report::{CostMethod, CostReference};
+
+    fn study() -> CostStudy {
+        let point = |method, order, points, seconds, over_width, under_coverage| CostPoint {
+            order,
+            points,
+            solves: 36,
+            steps: 2000,
+            seconds,
+            deviation: Deviation::Bounds { over_width, under_coverage },
+            ..CostPoint::without_result(method, Stepping::Fixed(1e-3))
+        };
+        let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
+        let trajectory = CostPoint {
+            steps: 6000,
+            seconds: 2e-3,
+            deviation: Deviation::Trajectory(2e-5),
+            ..CostPoint::without_result(hht, Stepping::Fixed(0.01 / 30.0))
+        };
+        let reference = CostReference {
+            method: CostMethod::Composed,
+            order: 16,
+            steps: [1e-4, 2e-4, 4e-4].map(Stepping::Fixed),
+            bounds_error: 1e-5,
+            trajectory_error: 1e-6,
+            parts: vec![("steps".into(), 1e-6), ("order 16 for 14".into(), 9e-6)],
+        };
+        let composed = point(CostMethod::Composed, Some(5), None, 0.025, 4e-4, 1e-6);
+        CostStudy {
+            model: "crank".into(),
+            tolerance: 1e-3,
+            reference,
+            bounds: vec![
+                CostPoint { front: true, ..composed.clone() },
+                CostPoint { order: Some(8), seconds: 0.1, ..composed },
+                point(CostMethod::Scan, None, Some(5), 0.01, 0.0, 2e-3),
+            ],
+            trajectories: vec![trajectory],
+            left_out: vec!["Scan: 3 of its settings".into()],
+        }
+    }
+
+    fn plain(text: &str) -> String {
+        anstream::adapter::strip_str(text).to_string()
+    }
+
+    #[test]
+    fn the_overview_is_aligned_and_ends_with_the_choice() {
+        let files = ["cost.csv", "cost.svg"].map(|name| Path::new("results/crank").join(name));
+        let text = overview(&study(), Path::new("results/crank"), &files);
+        insta::assert_snapshot!(plain(&text), @r"
+        crank: what accuracy costs
+
+          bounds                 order  points    step  solves  seconds  too wide  too narrow
+          * Chebyshev, composed      5          1e-3 s      36   2.5e-2    4.0e-4    ≤ 1.0e-5
+            Scan                             5  1e-3 s      36   1.0e-2         0      2.0e-3
+
+          nominal trajectory        step  steps  seconds   error
+            HHT-I3, α = −0.1  3.333e-4 s   6000   2.0e-3  2.0e-5
+
+          Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.
+          Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.
+          reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
+          left out: Scan: 3 of its settings
+
+        The cheapest within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+          results/crank: cost.csv, cost.svg
+        ");
+    }
+
+    #[test]
+    fn the_sentence_says_when_nothing_can_be_chosen() {
+        let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
+        insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
+        The cheapest within 3e-3 is Scan of 5 points a parameter, steps of 1e-3 s: 36 solves in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
+        No setting tried is within 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        Nothing can be said of 1e-5: the reference itself is only known to 1.0e-5.
+        ");
+    }
+}

@@ -2,7 +2,7 @@
 
 use mbint::integrate::{Fleet, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
 use mbint::mechanics;
-use mbint::model::{Description, Stepping};
+use mbint::model::Description;
 use mbint::program::Scheme;
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;

@@ -1,6 +1,6 @@
 //! A plot's logarithmic axis: whole decades at its ends, labels such as 10⁻³.
 
-use super::axis::superscript;
+use crate::report::axis::superscript;
 
 /// A tick: its place, and its label where it has one.
 pub(super) type Tick = (f64, Option<String>);

@@ -1,12 +1,5 @@
-//! `cost.csv`: what accuracy costs in time, a row a setting.
+//! The study as data, and the choice from it.
 
-use std::path::{Path, PathBuf};
-
-use csv::WriterBuilder;
-
-use super::cost_plot::cost_svg;
-use super::csv::number;
-use super::files::{ReportError, prepare_folder, write_whole};
 use crate::model::Stepping;
 use crate::program::Scheme;
 
@@ -222,7 +215,7 @@ impl CostMethod {
             Self::Interval => "Chebyshev, Σ|c|".to_owned(),
             Self::Taylor => "Taylor".to_owned(),
             Self::Scan => "Scan".to_owned(),
-            Self::Scheme(Scheme::Hht { alpha }) => format!("HHT-I3, α = −{}", alpha.abs()),
+            Self::Scheme(Scheme::Hht { alpha }) => format!("HHT-I3, α = −{}", (1e3 * alpha.abs()).round() / 1e3),
             Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
                 format!("Generalised-α, ρ∞ = {spectral_radius}")
             }
@@ -231,95 +224,17 @@ impl CostMethod {
     }
 }
 
-/// Headings of the table.
-const COLUMNS: [&str; 14] = [
-    "of",
-    "method",
-    "order",
-    "points",
-    "step",
-    "tolerance",
-    "solves",
-    "steps",
-    "seconds",
-    "over_width",
-    "under_coverage",
-    "error",
-    "below_reference",
-    "front",
-];
-
-/// The table of all settings as CSV: those that bound, then those that simulate the nominal sample. What does not apply is
-/// empty; a setting without a result has the error `inf`.
-///
-/// # Errors
-/// Only if memory cannot be written to.
-pub fn cost_csv(study: &CostStudy) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = WriterBuilder::new().from_writer(Vec::new());
-    writer.write_record(COLUMNS)?;
-    for (of, points) in [("bounds", &study.bounds), ("trajectory", &study.trajectories)] {
-        for point in points {
-            writer.write_record(record(of, point))?;
-        }
-    }
-    writer.into_inner().map_err(|e| e.into_error().into())
-}
-
-fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
-    let whole = |count: Option<usize>| count.map_or_else(String::new, |count| count.to_string());
-    let (step, tolerance) = match point.step {
-        Stepping::Fixed(step) => (number(step), String::new()),
-        Stepping::Tolerance(tolerance) => (String::new(), number(tolerance)),
-    };
-    let (over_width, under_coverage) = match point.deviation {
-        Deviation::Bounds { over_width, under_coverage } => (number(over_width), number(under_coverage)),
-        Deviation::Trajectory(_) => (String::new(), String::new()),
-    };
-    [
-        of.to_owned(),
-        point.method.name(),
-        whole(point.order),
-        whole(point.points),
-        step,
-        tolerance,
-        point.solves.to_string(),
-        point.steps.to_string(),
-        number(point.seconds),
-        over_width,
-        under_coverage,
-        number(point.deviation.largest()),
-        point.limited.to_string(),
-        point.front.to_string(),
-    ]
-}
-
-/// Writes `cost.csv` and `cost.svg` into `dir`, each whole or not at all. They hold seconds, and so differ from run to run.
-///
-/// # Errors
-/// At the first file that cannot be written.
-pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ReportError> {
-    prepare_folder(dir)?;
-    let plot = cost_svg(study).map_err(|message| ReportError::Plot { output: "cost".to_owned(), message })?;
-    let mut written = Vec::new();
-    for (name, contents) in [("cost.csv", cost_csv(study)?), ("cost.svg", plot.into_bytes())] {
-        let path = dir.join(name);
-        write_whole(&path, &contents).map_err(|source| ReportError::Write { path: path.clone(), source })?;
-        written.push(path);
-    }
-    Ok(written)
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
+    pub fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
         let deviation = Deviation::Bounds { over_width, under_coverage };
         let point = CostPoint::without_result(method, Stepping::Fixed(1e-3));
         CostPoint { order: Some(5), solves: 36, steps: 2000, seconds, deviation, ..point }
     }
 
-    fn study(bounds: Vec<CostPoint>) -> CostStudy {
+    pub fn study(bounds: Vec<CostPoint>) -> CostStudy {
         let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
         let trapezoidal = CostMethod::Scheme(Scheme::TrapezoidalIndex2);
         let trajectory = |method, seconds, error| CostPoint {
@@ -344,7 +259,8 @@ mod tests {
         }
     }
 
-    fn sample() -> CostStudy {
+    /// One of each kind.
+    pub fn sample() -> CostStudy {
         study(vec![
             point(CostMethod::Interval, 0.01, 0.4, 0.0),
             // Too narrow is no better than too wide.
@@ -371,39 +287,5 @@ mod tests {
     fn without_bounds_the_models_own_scheme_is_chosen_from() {
         let study = study(vec![]);
         assert_eq!(study.cheapest().unwrap().method, CostMethod::Scheme(Scheme::Hht { alpha: -0.1 }));
-    }
-
-    #[test]
-    fn a_row_a_setting() {
-        let mut study = sample();
-        study.bounds.truncate(1);
-        study
-            .bounds
-            .push(CostPoint { points: Some(5), ..CostPoint::without_result(CostMethod::Scan, Stepping::Fixed(0.01)) });
-        study.bounds[0].front = true;
-        let text = String::from_utf8(cost_csv(&study).unwrap()).unwrap();
-        assert_eq!(
-            text,
-            "of,method,order,points,step,tolerance,solves,steps,seconds,over_width,under_coverage,error,below_reference,front\n\
-             bounds,chebyshev.interval,5,,0.001,,36,2000,0.01,0.4,0,0.4,false,true\n\
-             bounds,scan,,5,0.01,,0,0,inf,inf,inf,inf,false,false\n\
-             trajectory,hht(-0.1),,,,1e-6,0,0,0.002,,,0.0005,false,false\n\
-             trajectory,trapezoidal,,,,1e-6,0,0,0.001,,,0.0002,false,false\n"
-        );
-    }
-
-    #[test]
-    fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
-        let mut whole = sample();
-        whole.bounds.push(CostPoint::without_result(CostMethod::Composed, Stepping::Fixed(1e-2)));
-        for study in [whole, study(vec![])] {
-            let svg = cost_svg(&study).unwrap();
-            assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));
-            assert!(!svg.contains("NaN") && !svg.contains("inf"));
-            for point in study.bounds.iter().chain(&study.trajectories) {
-                assert!(svg.contains(&point.method.label()), "{}", point.method.label());
-            }
-            assert_eq!(svg.contains("too narrow"), !study.bounds.is_empty());
-        }
     }
 }

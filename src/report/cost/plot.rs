@@ -6,12 +6,12 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::cost::{CostMethod, CostPoint, CostStudy, cost_curves};
 use super::front::pareto;
 use super::log_axis::LogAxis;
-use super::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, text_style};
-use super::polyline::Point;
+use super::study::{CostMethod, CostPoint, CostStudy, cost_curves};
 use crate::program::Scheme;
+use crate::report::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, text_style};
+use crate::report::polyline::Point;
 
 /// Size on the page, px.
 const SIZE: (u32, u32) = (1100, 540);
@@ -202,5 +202,27 @@ impl Panel<'_, '_> {
 
     fn text(&self, text: &str, at: Point, horizontal: HPos, vertical: VPos) -> Drawn {
         self.canvas.draw_text(text, &text_style(horizontal, vertical), pixel(at))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::study::tests::{sample, study};
+    use super::*;
+    use crate::model::Stepping;
+
+    #[test]
+    fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
+        let mut whole = sample();
+        whole.bounds.push(CostPoint::without_result(CostMethod::Composed, Stepping::Fixed(1e-2)));
+        for study in [whole, study(vec![])] {
+            let svg = cost_svg(&study).unwrap();
+            assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"));
+            for point in study.bounds.iter().chain(&study.trajectories) {
+                assert!(svg.contains(&point.method.label()), "{}", point.method.label());
+            }
+            assert_eq!(svg.contains("too narrow"), !study.bounds.is_empty());
+        }
     }
 }
