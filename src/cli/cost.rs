@@ -53,7 +53,12 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     }
     text += &format!("{}\n", trajectories(study).render(2));
     text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
-    text += "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n";
+    text += match study.bounds.is_empty() {
+        false => {
+            "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n"
+        }
+        true => "  Errors are shares of how far an output's course reaches.\n",
+    };
     text += &reference(study);
     for left_out in &study.left_out {
         text += &format!("  left out: {left_out}\n");

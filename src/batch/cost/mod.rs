@@ -128,7 +128,9 @@ fn run_settings(
             *entry(&mut skipped, setting.method, 0) += 1;
         } else {
             let point = point(model, setting, reference, options, &progress);
-            *rate = point.seconds / work;
+            if point.seconds.is_finite() {
+                *rate = point.seconds / work;
+            }
             points[place] = Some(point);
         }
         done += work;

@@ -71,11 +71,14 @@ pub fn cost_svg(study: &CostStudy) -> Result<String, String> {
 fn draw(canvas: &Canvas, study: &CostStudy) -> Drawn {
     canvas.fill(&WHITE)?;
     let half = f64::from(SIZE.0) / 2.0;
+    let scale = if study.bounds.is_empty() { "error / reach of the course" } else { "error / widest band" };
     let panels = [
-        ("Bounds", &study.bounds, study.reference.bounds_error, 0.0),
-        ("Nominal trajectory", &study.trajectories, study.reference.trajectory_error, half),
+        ("Bounds", &study.bounds, study.reference.bounds_error),
+        ("Nominal trajectory", &study.trajectories, study.reference.trajectory_error),
     ];
-    for (title, points, reference, left) in panels {
+    let shown = panels.into_iter().filter(|(_, points, _)| !points.is_empty());
+    for (place, (title, points, reference)) in shown.enumerate() {
+        let left = place as f64 * half;
         let shown = || points.iter().filter(|point| is_shown(point));
         let errors = shown().map(|point| point.deviation.largest()).chain([study.tolerance]);
         let panel = Panel {
@@ -89,8 +92,11 @@ fn draw(canvas: &Canvas, study: &CostStudy) -> Drawn {
         };
         panel.mesh()?;
         panel.threshold(study.tolerance, "tolerance")?;
+        if points.iter().any(|point| point.limited) {
+            panel.threshold(reference, "reference")?;
+        }
         panel.curves(points, reference)?;
-        panel.frame(title)?;
+        panel.frame(title, scale)?;
     }
     Ok(())
 }
@@ -167,12 +173,12 @@ impl Panel<'_, '_> {
         Ok(())
     }
 
-    fn frame(&self, title: &str) -> Drawn {
+    fn frame(&self, title: &str, scale: &str) -> Drawn {
         let Self { left, right, top, bottom, .. } = *self;
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], FRAME, 1.0)?;
         let middle = (left + right) / 2.0;
         self.text(title, (middle, 12.0), HPos::Center, VPos::Center)?;
-        self.text("error / widest band", (middle, bottom + 28.0), HPos::Center, VPos::Top)?;
+        self.text(scale, (middle, bottom + 28.0), HPos::Center, VPos::Top)?;
         let upright = text_style(HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
         self.canvas.draw_text("seconds", &upright, pixel((left - 62.0, (top + bottom) / 2.0)))
     }
