@@ -33,7 +33,7 @@ pub enum Scheme {
     /// The trapezoidal rule (Newmark's with β = ¼, γ = ½), index 2: velocities fulfil the constraints, positions drift from
     /// them by O(h²): 5e-6 of a pendulum's length squared in 10 s at h = 1e-3. Nothing is damped: an error that a step
     /// makes in reactions and accelerations alternates from then on, O(h²), 8e-7 of the pendulum's tension.
-    /// Through singular positions, where drift weighs more, it loses its order.
+    /// Near singular positions its energy may jump, and its order is lost.
     TrapezoidalIndex2,
 }
 

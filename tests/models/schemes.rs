@@ -264,11 +264,11 @@ fn redundancy_and_singular_positions_are_passed_by_every_scheme() {
             let [coarse, fine, _] = errors(description, scheme, 2.5e-4, exact);
             let order = order(coarse, fine);
             println!("{scheme:?}, {name}: {coarse:.2e}, {fine:.2e}, order {order:.3}");
-            // Where constraints lose their independence, a drift from them is worth its square root, and what it does to the
-            // trapezoidal rule is not damped: measured 2.5e-6 m and, with half the step, 9.0e-5 m.
-            let drifts = scheme == Scheme::TrapezoidalIndex2 && name == "loops";
-            let fine = if drifts { coarse.max(fine) < 2e-4 } else { (order - 2.0).abs() < 0.2 };
-            assert!(fine, "{scheme:?}, {name}: order {order}");
+            // Some steps bring the trapezoidal rule so near to the singular position that the energy jumps, by up to 1e-4 J of
+            // 36 J, and its order is lost: measured 2.5e-6 m at h = 2.5e-4, 9.0e-5 m at half of it, 5.0e-5 m at a quarter.
+            let jumps = scheme == Scheme::TrapezoidalIndex2 && name == "loops";
+            let passed = if jumps { coarse.max(fine) < 2e-4 } else { (order - 2.0).abs() < 0.2 };
+            assert!(passed, "{scheme:?}, {name}: order {order}");
         }
     }
 }
