@@ -128,7 +128,7 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
 }
 
 #[test]
-fn without_uncertainty_the_schemes_are_compared() {
+fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     let place = tempfile::tempdir().unwrap();
     let certain = OSCILLATOR.replace(", tolerance: 40%", "").replace("tolerance", "");
     fs::write(place.path().join("certain.yaml"), certain).unwrap();
@@ -143,6 +143,12 @@ fn without_uncertainty_the_schemes_are_compared() {
     assert!(place.path().join("here/cost.csv").exists() && place.path().join("here/cost.svg").exists());
     let (text, status) = run("cost certain.yaml --tolerance 1e-12 --quiet");
     assert_eq!((text.as_str(), status), ("", Some(0)));
+    fs::write(place.path().join("uncertain.yaml"), OSCILLATOR).unwrap();
+    let (text, status) = run("cost uncertain.yaml --budget 1e-6 --tolerance 0.9");
+    assert_eq!(status, Some(0), "{text}");
+    for told in ["left out: Taylor: 18 of its settings", "No setting tried has come to its end"] {
+        assert!(text.contains(told), "{told} in\n{text}");
+    }
     for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {
         assert_eq!(run(wrong).1, Some(2), "{wrong}");
     }

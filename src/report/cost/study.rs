@@ -22,16 +22,21 @@ pub struct CostStudy {
 }
 
 impl CostStudy {
+    /// Whether nothing is uncertain, so that there is nothing to bound.
+    pub fn is_certain(&self) -> bool {
+        matches!(self.reference.method, CostMethod::Scheme(_))
+    }
+
     /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
     fn choices(&self) -> impl Iterator<Item = &CostPoint> {
         let own = |point: &&CostPoint| matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }));
-        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.bounds.is_empty());
+        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_certain());
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
 
     /// The reference's own error in what is chosen from.
     pub fn own_error(&self) -> f64 {
-        if self.bounds.is_empty() { self.reference.trajectory_error } else { self.reference.bounds_error }
+        if self.is_certain() { self.reference.trajectory_error } else { self.reference.bounds_error }
     }
 
     /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own error
@@ -285,7 +290,11 @@ pub(super) mod tests {
 
     #[test]
     fn without_bounds_the_models_own_scheme_is_chosen_from() {
-        let study = study(vec![]);
-        assert_eq!(study.cheapest().unwrap().method, CostMethod::Scheme(Scheme::Hht { alpha: -0.1 }));
+        let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
+        let mut study = study(vec![]);
+        // Bounds that the budget did not allow are another matter.
+        assert_eq!((study.cheapest(), study.nearest()), (None, None));
+        study.reference.method = hht;
+        assert_eq!(study.cheapest().unwrap().method, hht);
     }
 }
