@@ -58,7 +58,8 @@ impl Place {
 fn help_tells_of_every_command_and_of_the_exit_status() {
     let place = Place::new();
     let (help, errors) = place.run("--help", 0);
-    for text in ["run", "check", "explain", "schema", "new", "completions", "--color", "Exit status:", "mbint new NAME"]
+    for text in
+        ["run", "check", "cost", "explain", "schema", "new", "completions", "--color", "Exit status:", "mbint new NAME"]
     {
         assert!(help.contains(text), "{text} in\n{help}");
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::probe::Table;
 use crate::bounds::{
-    Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, extremes,
+    Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, corners, extremes,
     extremes_near, largest, surrogate_error,
 };
 use crate::integrate::{Closure, Points, SimulationError, Simulator, choose_independent};
@@ -24,9 +24,9 @@ const RESOLUTION: f64 = 0.15;
 /// Fewest and most points of the grid along an axis, by the number of parameters.
 const POINTS: [(usize, usize); MOST_PARAMETERS] = [(9, 129), (9, 33), (7, 15)];
 
-/// Whether outputs of a mechanism can be composed over so many parameters.
-pub(super) fn fits(simulator: &Simulator, k: usize) -> bool {
-    k > 0 && simulator.system.q.len() <= MOST_COORDINATES
+/// Whether outputs can be composed: of some parameters, and not too many coordinates.
+pub(super) fn fits(parameters: usize, coordinates: usize) -> bool {
+    parameters > 0 && coordinates <= MOST_COORDINATES
 }
 
 /// One mechanism's closures, and what is evaluated through them.
@@ -42,8 +42,8 @@ impl<'a> Composer<'a> {
         Self { simulator, closures: Vec::new() }
     }
 
-    /// Looks at rows, in parallel block by block (a row is told what is known of the row before in its block), given the motions of a surrogate's samples over a box (`stride` values a row, the first 2n
-    /// lines of samples).
+    /// Looks at rows, in parallel block by block (a row is told what is known of the one before in its block), given the motions
+    /// of a surrogate's samples over a box (`stride` values a row, the first 2n lines of samples).
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -94,6 +94,10 @@ impl<'a> Composer<'a> {
         Ok(self.closures.len() - 1)
     }
 }
+
+/// Corners of the box at which a search looks first: all of eight parameters', and of more such that any two meet at all
+/// their ends.
+const CORNERS: usize = 256;
 
 /// Rows looked at one after the other, so that each can begin where the one before ended. Fixed, so that results do not depend
 /// on the number of threads.
@@ -207,7 +211,7 @@ impl<'r> Row<'r> {
                 extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate_shifted(points, &[]))
             }
             Seeker::Search(search) => {
-                *known = self.search(search, known, &[]);
+                *known = self.search(search, &self.starts(known), &[]);
                 known.iter().cloned().map(extent).collect()
             }
         }
@@ -223,6 +227,21 @@ impl<'r> Row<'r> {
                 self.search(search, &near, shift).into_iter().map(extent).collect()
             }
         }
+    }
+
+    /// For each output the best of the box's corners and of what was best in the row before: where a search may begin.
+    fn starts(&self, known: &[Extremes]) -> Vec<Extremes> {
+        let mut places = corners(self.domain.dimension(), CORNERS);
+        places.extend(known.iter().flat_map(|known| [known.lowest.clone(), known.highest.clone()]));
+        let values = self.evaluate_shifted(&places, &[]);
+        let of_output = |values: &[f64]| {
+            let best =
+                |sign: f64| (0..values.len()).fold(0, |a, b| if sign * values[b] > sign * values[a] { b } else { a });
+            let (lowest, highest) = (best(-1.0), best(1.0));
+            let range = Range { lower: values[lowest], upper: values[highest] };
+            Extremes::at(range, [places[lowest].clone(), places[highest].clone()])
+        };
+        values.chunks_exact(places.len()).map(of_output).collect()
     }
 
     fn search(&self, search: &ExtremeSearch, near: &[Extremes], shift: &[(usize, f64)]) -> Vec<Extremes> {

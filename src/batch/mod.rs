@@ -2,10 +2,12 @@
 //!
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
-//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates.
+//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates. `cost` runs one model with many
+//! settings, to tell what accuracy costs.
 
 mod adapt;
 mod compose;
+mod cost;
 mod methods;
 mod probe;
 mod step_search;
@@ -15,9 +17,12 @@ use crate::bounds::{Bounds, Method};
 use crate::integrate::{SimulationError, Simulator};
 use crate::mechanics::{self, BuildError};
 use crate::model::{Description, Stepping};
+use crate::program::Scheme;
 use crate::report::Summary;
 
 use study::Study;
+
+pub use cost::{CostError, CostOptions, cost};
 
 /// How to run.
 pub struct Options<'a> {
@@ -74,7 +79,12 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 /// As for [`run`].
 pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
     let system = mechanics::build(description)?;
-    Ok(Simulator::new(system, description.simulation.alpha, first_step(description))?)
+    Ok(Simulator::new(system, scheme(description), first_step(description))?)
+}
+
+/// The model's scheme.
+fn scheme(description: &Description) -> Scheme {
+    Scheme::Hht { alpha: description.simulation.alpha }
 }
 
 /// Step size for what is computed before the first step.

@@ -6,7 +6,7 @@ use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
 use super::step_search::StepSearch;
-use super::{Options, RunError, first_step};
+use super::{Options, RunError, first_step, scheme};
 use crate::bounds::{
     Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes, time_error,
     time_error_certified,
@@ -73,7 +73,7 @@ impl<'a> Study<'a> {
             upper: collect(|parameter| parameter.upper),
         };
         let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension())?;
-        let simulator = Simulator::new(system, description.simulation.alpha, first_step(description))?;
+        let simulator = Simulator::new(system, scheme(description), first_step(description))?;
         let Options { certify_time, progress, .. } = *options;
         Ok(Self { description, simulator, domain, request, certify_time, progress })
     }
@@ -156,7 +156,7 @@ impl<'a> Study<'a> {
 
     /// Whether outputs can follow from expanded coordinates.
     pub(super) fn composes(&self) -> bool {
-        compose::fits(&self.simulator, self.domain.dimension())
+        compose::fits(self.domain.dimension(), self.simulator.system.q.len())
     }
 
     /// The probes, and the schedule whose steps take their share of the bounds' tolerance, where there is one.

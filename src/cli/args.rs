@@ -36,6 +36,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Read and assemble models, and count: coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
+    /// Tell what accuracy costs in time: error against seconds for methods, orders and steps.
+    Cost(CostArgs),
     /// Tell what a model is compiled to, and what is left out.
     Explain(ExplainArgs),
     /// Print the JSON Schema of model files, for editors.
@@ -92,6 +94,43 @@ output, and which are unresolved),
 summary.json, and a plot NAME.svg of each output.";
 
 #[derive(Debug, Args)]
+#[command(after_help = COST_HELP)]
+pub(super) struct CostArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Folder for the results [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Error that is wanted, as a share of the widest that an output's bounds get [default: 1e-3].
+    #[arg(short, long, value_name = "SHARE", value_parser = positive)]
+    pub tolerance: Option<f64>,
+
+    /// Seconds to spend, about; settings that take longer are left out.
+    #[arg(short, long, value_name = "SECONDS", value_parser = positive, default_value_t = 60.0)]
+    pub budget: f64,
+
+    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
+    pub set: Vec<Override>,
+
+    /// Threads [default: one a core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+const COST_HELP: &str = "\
+Runs the model with many methods, orders and steps, and compares their bounds with those of a
+reference that it computes itself. Writes cost.csv (a row a setting) and cost.svg; both hold
+seconds, and so differ from run to run.";
+
+#[derive(Debug, Args)]
 pub(super) struct CheckArgs {
     /// Model files.
     #[arg(required = true, value_name = "MODEL")]
@@ -144,6 +183,11 @@ pub(super) enum Color {
 fn methods() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("it must be positive".to_owned()) }
 }
 
 fn parse_override(text: &str) -> Result<Override, String> {

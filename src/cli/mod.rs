@@ -7,6 +7,7 @@
 mod args;
 mod check;
 mod console;
+mod cost;
 mod explain;
 mod load;
 mod new;
@@ -85,6 +86,7 @@ fn carry_out(command: Command, console: &mut Console) -> Result<Status, Failure>
     match command {
         Command::Run(args) => run::run(args, console),
         Command::Check(args) => check::check(&args, console),
+        Command::Cost(args) => cost::cost(args, console),
         Command::Explain(args) => explain::explain(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),

@@ -101,12 +101,7 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
 
 impl Request {
     fn check(args: RunArgs) -> Result<Self, Failure> {
-        let wrong = |message: String| Err(Failure::Wrong(message));
-        for (i, setting) in args.set.iter().enumerate() {
-            if args.set[..i].iter().any(|earlier| earlier.name == setting.name) {
-                return wrong(format!("parameter `{}` is set twice", setting.name));
-            }
-        }
+        set_once(&args.set)?;
         let mut methods = args.method;
         methods.sort_unstable();
         methods.dedup();
@@ -120,6 +115,15 @@ impl Request {
             timings: args.timings,
             certify_time: args.certify_time,
         })
+    }
+}
+
+/// Every parameter is set once at most.
+pub(super) fn set_once(overrides: &[Override]) -> Result<(), Failure> {
+    let twice = |&(i, setting): &(usize, &Override)| overrides[..i].iter().any(|earlier| earlier.name == setting.name);
+    match overrides.iter().enumerate().find(twice) {
+        Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
+        None => Ok(()),
     }
 }
 

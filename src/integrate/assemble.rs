@@ -146,7 +146,7 @@ impl<'p> Assembly<'p> {
         self.correct_until_settled(self.program.acceleration(), self.program.layout.w.start);
     }
 
-    /// a = w(t + αh) to first order: the accelerations of the state moved there.
+    /// a = w(t + shift) to first order: the accelerations of the state moved there.
     pub fn shift_accelerations(&mut self, shift: f64) {
         let layout = &self.program.layout;
         let state: Vec<f64> =

@@ -1,4 +1,4 @@
-//! One step of HHT-I3 for a tile of samples.
+//! One step of HHT-I3, or of another scheme of its family, for a tile of samples.
 
 use symdiff::Tile;
 
@@ -148,7 +148,7 @@ impl<'p> Stepper<'p> {
         }
     }
 
-    /// Runs the step-size stage where h differs, and moves a ≈ w(t + αh) to the new αh, along the line through a and w.
+    /// Runs the step-size stage where h differs, and moves a ≈ w(t + Δh) to the new Δh, along the line through a and w.
     pub fn set_step_size(&mut self, h: f64) {
         let layout = &self.program.layout;
         if self.step_size.is_finite() && self.step_size != h {
@@ -207,7 +207,7 @@ impl<'p> Stepper<'p> {
     }
 
     /// Largest local position error of each running lane in the step just taken, relative to max(1, |q|) and the
-    /// coordinate's scale: (β + α/2 − 1/6) h² (a₊ − a), with the state before the step given, saved after
+    /// coordinate's scale: (β + Δ/2 − 1/6) h² (a₊ − a), with the state before the step given, saved after
     /// [`set_step_size`](Self::set_step_size).
     pub fn local_error(&self, before: &[f64], h: f64) -> Vec<f64> {
         let layout = &self.program.layout;

@@ -175,8 +175,8 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         }
     };
     accelerate(memory);
-    // a = w(t + αh), as for tiles.
-    let shift = simulator.program.coefficients.alpha * first_step;
+    // a = w(t + Δh), as for tiles.
+    let shift = simulator.program.coefficients.shift() * first_step;
     let saved: Vec<Vec<f64>> = layout.state().map(|slot| memory.jet(slot).to_vec()).collect();
     let state = |slot: usize| &saved[slot - layout.q.start];
     for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {

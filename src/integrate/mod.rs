@@ -1,4 +1,4 @@
-//! Program → trajectories: a consistent start, and HHT-I3 steps over tiles of samples.
+//! Program → trajectories: a consistent start, and a scheme's steps over tiles of samples.
 
 mod assemble;
 mod closure;

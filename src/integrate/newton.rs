@@ -202,7 +202,7 @@ impl Newton {
     /// also settle where they cannot be fulfilled.
     fn reject_gaps(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
-        let gain = program.coefficients.position_gain(h);
+        let gain = program.coefficients.constraint_gain(h);
         let allowed = allowed_gap(&program.scale);
         for &slot in &program.residual[program.scale.len()..] {
             for (lane, residual) in tile.lane(slot).iter().enumerate() {

@@ -5,7 +5,7 @@ use symdiff::Tile;
 use super::assemble::{Assembly, Gap};
 use super::rank::dependent_rows;
 use crate::mechanics::System;
-use crate::program::{Layout, PROBES, Probe, Program, Singular, StartProgram, compile, compile_start};
+use crate::program::{Layout, PROBES, Probe, Program, Scheme, Singular, StartProgram, compile, compile_start};
 
 /// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
 const DEPENDENT: f64 = 1e-8;
@@ -99,11 +99,11 @@ fn assembly_message(
 }
 
 impl Simulator {
-    /// Assembles and compiles. `h` is the step size that the first probes use.
+    /// Assembles, and compiles for a scheme. `h` is the step size that the first probes use.
     ///
     /// # Errors
     /// Where no consistent start exists, or the equations are singular there.
-    pub fn new(system: System, alpha: f64, h: f64) -> Result<Self, SimulationError> {
+    pub fn new(system: System, scheme: Scheme, h: f64) -> Result<Self, SimulationError> {
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
         let singular =
@@ -112,7 +112,7 @@ impl Simulator {
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|gap| assembly_error(&system, &gap, &parameters))?;
-            assembly.shift_accelerations(alpha * h);
+            assembly.shift_accelerations(scheme.coefficients().shift() * h);
             Ok(assembly.tile().values()[..layout.slots()].to_vec())
         };
         let mut start = compile_start(&system, &[], &probe).map_err(singular)?;
@@ -123,7 +123,7 @@ impl Simulator {
             nominal = assembled(&start)?;
         }
         let probes = probes(&system, &layout, &nominal, h);
-        let program = compile(&system, alpha, &mobility.redundant, &probes).map_err(singular)?;
+        let program = compile(&system, scheme, &mobility.redundant, &probes).map_err(singular)?;
         Ok(Self { system, start, program, nominal, mobility })
     }
 
@@ -135,7 +135,7 @@ impl Simulator {
         let samples: Vec<Vec<f64>> = (0..width).map(sample).collect();
         let mut assembly = Assembly::new(&self.start, &self.system, width, |parameter, lane| samples[lane][parameter]);
         assembly.assemble_from(&self.nominal).map_err(|gap| assembly_error(&self.system, &gap, &samples[gap.lane]))?;
-        assembly.shift_accelerations(self.program.coefficients.alpha * h);
+        assembly.shift_accelerations(self.program.coefficients.shift() * h);
         Ok(assembly.tile().clone())
     }
 

@@ -3,7 +3,8 @@
 use symdiff::{Expr, Graph, Input, Lowered, Stages, Tape, lower};
 
 use super::layout::Layout;
-use super::newton_matrix::{Coefficients, ITERATION, NewtonSystem, STEP_SIZE, newton_system};
+use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
+use super::scheme::{Coefficients, Scheme};
 use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
 use crate::mechanics::System;
 
@@ -31,12 +32,12 @@ const PIVOT_LOSS: f64 = 1e-10;
 /// the others see to, so its multiplier stays near the zero from which every step starts it.
 const REDUNDANT_WEIGHT: f64 = 1.0;
 
-/// Compiled form of a system for HHT-I3 at one α. A tile of samples has [`Program::slots`] slots.
+/// Compiled form of a system for one scheme. A tile of samples has [`Program::slots`] slots.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Where states stand.
     pub layout: Layout,
-    /// HHT's coefficients.
+    /// The scheme's numbers.
     pub coefficients: Coefficients,
     /// Typical size of each coordinate, n.
     pub scale: Vec<f64>,
@@ -128,14 +129,15 @@ impl Program {
 /// [`Singular`] where the Newton matrix has no acceptable pivots at the probes.
 pub fn compile(
     system: &System,
-    alpha: f64,
+    scheme: Scheme,
     redundant: &[usize],
     probes: &[Probe; PROBES],
 ) -> Result<Program, Singular> {
     let (n, m) = (system.q.len(), system.lambda.len());
     let layout = Layout::new(system.parameters.len(), n, m);
+    let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
-    let (newton, mut inputs) = newton_system(system, &mut graph, &layout, alpha);
+    let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
     let mut numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
     let equilibration = equilibrate(&newton, &numbers, n);
 
@@ -214,7 +216,7 @@ pub fn compile(
     let matrix_entries =
         newton.matrix.entries().zip(places).map(|((row, column, _), &slot)| (row, column, slot as usize)).collect();
     Ok(Program {
-        coefficients: Coefficients::new(alpha),
+        coefficients,
         scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
         outputs: lowered.outputs[OBSERVE].iter().map(|&slot| slot as usize).collect(),
         matrix_entries,

@@ -1,13 +1,15 @@
-//! System → [`Program`]: tapes for the start, for one HHT-I3 step, and for what is observed.
+//! System → [`Program`]: tapes for the start, for one step of a scheme, and for what is observed.
 
 mod compile;
+mod equations;
 mod layout;
 mod newton_matrix;
+mod scheme;
 mod sparse_lu;
 mod start;
 
 pub use compile::{Probe, Program, WatchedPivot, compile};
 pub use layout::Layout;
-pub use newton_matrix::Coefficients;
+pub use scheme::{Coefficients, ConstraintLevel, Scheme};
 pub use sparse_lu::{PROBES, Singular};
 pub use start::{StartProgram, compile_start};

@@ -1,4 +1,4 @@
-//! The HHT-I3 step as expressions: residual, Newton matrix, and the state at its end.
+//! A step of HHT-I3, or of another scheme of its family, as expressions: residual, Newton matrix, and the state at its end.
 //!
 //! Negrut, Rampalli, Ottarsson & Sajdak, J. Comput. Nonlinear Dynam. 2 (2007) 73, in the form of Arnold & Brüls,
 //! Multibody Syst. Dyn. 18 (2007) 185, which keeps the algorithmic acceleration a apart from the true one, w = v̇:
@@ -10,13 +10,16 @@
 //! β = (1−α)²/4,   γ = 1/2 − α
 //! ```
 //!
-//! With x = w₊: q₊ = q̂ + b x and v₊ = v̂ + c x, b = βh²(1+α), c = γh(1+α), where q̂, v̂ are known when the step begins.
-//! The constraint is divided by b so that the matrix does not degenerate as h → 0.
+//! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂ + b x
+//! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂, v̂ are known when the step begins. The constraint is divided
+//! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};
 
+use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
+use super::scheme::{Coefficients, ConstraintLevel};
 use crate::mechanics::System;
 
 /// Stage of what changes with the sample only.
@@ -28,36 +31,10 @@ pub const STEP: usize = 2;
 /// Stage of what changes in Newton's iteration.
 pub const ITERATION: usize = 3;
 
-/// HHT's coefficients for a given α (Negrut et al. 2007, eq. 9).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Coefficients {
-    pub alpha: f64,
-    pub beta: f64,
-    pub gamma: f64,
-}
-
-impl Coefficients {
-    /// α ∈ [−1/3, 0).
-    pub fn new(alpha: f64) -> Self {
-        Self { alpha, beta: (1.0 - alpha) * (1.0 - alpha) / 4.0, gamma: 0.5 - alpha }
-    }
-
-    /// b = βh²(1+α): what a change of w₊ does to q₊.
-    pub fn position_gain(self, h: f64) -> f64 {
-        self.beta * h * h * (1.0 + self.alpha)
-    }
-
-    /// Local position error per a₊ − a: (β + α/2 − 1/6) h².
-    pub fn error_gain(self, h: f64) -> f64 {
-        (self.beta + self.alpha / 2.0 - 1.0 / 6.0) * h * h
-    }
-}
-
 /// A step's equations over the symbols of [`step_inputs`].
 #[derive(Clone, Debug)]
 pub struct NewtonSystem {
-    /// n + m residuals: equations of motion, then constraints over b.
+    /// n + m residuals: equations of motion, then constraints over b (their rates over c).
     pub residual: Vec<Expr>,
     /// ∂residual/∂(w₊, λ₊), (n + m)².
     pub matrix: SparseMatrix,
@@ -117,51 +94,42 @@ impl StepSymbols {
     }
 }
 
-/// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
-pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
-    let n = system.q.len();
-    let mut rows: Vec<Expr> = system.force.iter().map(|&force| graph.neg(force)).collect();
-    debug_assert_eq!(rows.len(), n);
-    let slopes = graph.jacobian(&system.constraint, &system.q);
-    for (constraint, coordinate, slope) in slopes.entries() {
-        let pull = graph.mul(slope, system.lambda[constraint]);
-        rows[coordinate] = graph.add(rows[coordinate], pull);
-    }
-    for &(row, column, mass) in &system.mass {
-        let inertia = graph.mul(mass, system.w[column]);
-        rows[row] = graph.add(rows[row], inertia);
-    }
-    (rows, slopes)
-}
-
 /// The equations of a step and their inputs.
-pub fn newton_system(system: &System, graph: &mut Graph, layout: &Layout, alpha: f64) -> (NewtonSystem, Vec<Input>) {
+pub fn newton_system(
+    system: &System,
+    graph: &mut Graph,
+    layout: &Layout,
+    coefficients: Coefficients,
+) -> (NewtonSystem, Vec<Input>) {
     let (n, m) = (system.q.len(), system.lambda.len());
-    let Coefficients { beta, gamma, .. } = Coefficients::new(alpha);
+    let Coefficients { beta, gamma, .. } = coefficients;
+    let (of_new, of_old, of_algorithmic) =
+        (coefficients.of_new(), coefficients.of_old(), coefficients.of_algorithmic());
     let symbols = StepSymbols::new(graph, n);
     let h = symbols.h;
     let h2 = graph.mul(h, h);
-    let b = graph.scale(beta * (1.0 + alpha), h2);
-    let c = graph.scale(gamma * (1.0 + alpha), h);
+    let b = graph.scale(beta * of_new, h2);
+    let c = graph.scale(gamma * of_new, h);
 
     // q₊ and v₊, step by step in the paper's order.
     let (mut position, mut velocity, mut algorithmic) = (Vec::new(), Vec::new(), Vec::new());
-    let (q_a, q_w) = (graph.scale(0.5 - beta, h2), graph.scale(beta * alpha, h2));
-    let (v_a, v_w) = (graph.scale(1.0 - gamma, h), graph.scale(gamma * alpha, h));
+    let (q_a, q_w) = (graph.scale(0.5 - beta * (1.0 + of_algorithmic), h2), graph.scale(beta * of_old, h2));
+    let (v_a, v_w) = (graph.scale(1.0 - gamma * (1.0 + of_algorithmic), h), graph.scale(gamma * of_old, h));
     for i in 0..n {
         let (q, v, a, w, x) = (symbols.q[i], symbols.v[i], symbols.a[i], symbols.w[i], symbols.x[i]);
         let drift = graph.mul(h, v);
         let predicted = graph.add(q, drift);
         let (from_a, from_w, from_x) = (graph.mul(q_a, a), graph.mul(q_w, w), graph.mul(b, x));
         let known = graph.add(predicted, from_a);
-        let known = graph.sub(known, from_w);
+        let known = graph.add(known, from_w);
         position.push(graph.add(known, from_x));
         let (from_a, from_w, from_x) = (graph.mul(v_a, a), graph.mul(v_w, w), graph.mul(c, x));
         let known = graph.add(v, from_a);
-        let known = graph.sub(known, from_w);
+        let known = graph.add(known, from_w);
         velocity.push(graph.add(known, from_x));
-        let (new, old) = (graph.scale(1.0 + alpha, x), graph.scale(alpha, w));
-        algorithmic.push(graph.sub(new, old));
+        let (new, old, before) = (graph.scale(of_new, x), graph.scale(of_old, w), graph.scale(of_algorithmic, a));
+        let true_ones = graph.add(new, old);
+        algorithmic.push(graph.sub(true_ones, before));
     }
 
     let (motion, slopes) = equations_of_motion(system, graph);
@@ -188,8 +156,18 @@ pub fn newton_system(system: &System, graph: &mut Graph, layout: &Layout, alpha:
         matrix.add(graph, n + row, column, value);
     }
     let mut residual = motion;
-    for &constraint in &system.constraint {
-        residual.push(graph.div(constraint, b));
+    match coefficients.level {
+        ConstraintLevel::Position => residual.extend(system.constraint.iter().map(|&gap| graph.div(gap, b))),
+        ConstraintLevel::Velocity => {
+            let rates = time_derivative(system, graph, &system.constraint);
+            // ∂Φ̇/∂v₊ = Φ_q stands there already.
+            let ratio = graph.div(b, c);
+            for (row, column, slope) in graph.jacobian(&rates, &system.q).entries() {
+                let value = graph.mul(ratio, slope);
+                matrix.add(graph, n + row, column, value);
+            }
+            residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
+        }
     }
 
     // Everything at t₊: the system's symbols become the step's expressions.

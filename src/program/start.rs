@@ -15,8 +15,8 @@
 
 use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
+use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
-use super::newton_matrix::equations_of_motion;
 use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
 use crate::mechanics::System;
 
@@ -179,19 +179,6 @@ fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     add(&system.w, layout.w.start, 1);
     add(&system.lambda, layout.lambda.start, 1);
     inputs
-}
-
-/// d/dt of expressions of t, q and v, along v and w.
-fn time_derivative(system: &System, graph: &mut Graph, of: &[Expr]) -> Vec<Expr> {
-    let along = [(&system.q, &system.v), (&system.v, &system.w)];
-    let mut rates: Vec<Expr> = of.iter().map(|&value| graph.derivative(value, system.time)).collect();
-    for (coordinates, speeds) in along {
-        for (row, column, slope) in graph.jacobian(of, coordinates).entries() {
-            let change = graph.mul(slope, speeds[column]);
-            rates[row] = graph.add(rates[row], change);
-        }
-    }
-    rates
 }
 
 struct Builder<'s> {

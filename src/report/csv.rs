@@ -62,7 +62,7 @@ fn unresolved(bands: &[(String, &Band)], row: usize) -> String {
 }
 
 /// The shortest decimal that reads back as `x`: `0.1`, `2`, `1e-7`, `NaN`, `inf`.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     // Debug is the shortest form with an exponent where that is shorter to read; Display would write 1e-300 in full.
     let mut text = format!("{x:?}");
     if text.ends_with(".0") {

@@ -73,7 +73,7 @@ pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
 }
 
 /// Writes a file under a temporary name in the same folder, then renames it into place.
-fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
+pub(super) fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     let dir = path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".mbint-").suffix(".tmp");

@@ -1,6 +1,7 @@
 //! Bounds → files: CSV, summary and plots.
 
 mod axis;
+mod cost;
 mod csv;
 mod explanation;
 mod files;
@@ -10,6 +11,9 @@ mod summary;
 mod view;
 
 pub use self::csv::bounds_csv;
+pub use cost::{
+    CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
+};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, prepare_folder, write_results};
 pub use plot::plot_svg;

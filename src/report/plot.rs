@@ -19,7 +19,7 @@ use crate::bounds::{Band, Method, OutputBounds};
 const SIZE: (u32, u32) = (900, 560);
 /// plotters draws on whole pixels, which makes stairs of slanted lines: draw this much larger and let the SVG's view
 /// box scale it back.
-const FINE: f64 = 10.0;
+pub(super) const FINE: f64 = 10.0;
 /// Space for the legend, px.
 const TOP: f64 = 40.0;
 /// Space for the time axis, px.
@@ -29,17 +29,17 @@ const BETWEEN: f64 = 22.0;
 /// Space on the right, px.
 const RIGHT: f64 = 20.0;
 
-const TEXT: f64 = 13.0;
+pub(super) const TEXT: f64 = 13.0;
 const TEXT_COLOR: RGBColor = RGBColor(34, 34, 34);
-const FRAME: RGBColor = RGBColor(102, 102, 102);
-const GRID: RGBColor = RGBColor(228, 228, 228);
+pub(super) const FRAME: RGBColor = RGBColor(102, 102, 102);
+pub(super) const GRID: RGBColor = RGBColor(228, 228, 228);
 const NOMINAL: RGBColor = BLACK;
 /// Opacity of what a band's error adds, over the band's own.
 const LIGHTER: f64 = 0.5;
 /// From one line of a hatched band to the next, and how far each leans over, px.
 const HATCH: (f64, f64) = (7.0, 5.0);
 
-type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// How a method is drawn. The colours are apart for every colour vision and in grey. Where bands coincide the earlier
 /// method shows through the gaps of the later one's dashes.
@@ -144,7 +144,7 @@ struct Panel<'a, 'b> {
     y: &'a Axis,
 }
 
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 impl Panel<'_, '_> {
     /// Grid and labels of the y axis.
@@ -298,19 +298,19 @@ fn short(time: f64) -> String {
     format!("{text}")
 }
 
-fn text_style(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+pub(super) fn text_style(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     // plotters sets a font of size s at s/1.24.
     let style = TextStyle::from(("Helvetica, Arial, sans-serif", TEXT * 1.24 * FINE).into_font());
     style.color(&TEXT_COLOR).pos(Pos::new(horizontal, vertical))
 }
 
 /// px → pixels of the finer canvas.
-fn pixel((x, y): Point) -> (i32, i32) {
+pub(super) fn pixel((x, y): Point) -> (i32, i32) {
     ((x * FINE).round() as i32, (y * FINE).round() as i32)
 }
 
 /// The same for a line, without the steps in place that many points a pixel make.
-fn pixels(points: &[Point]) -> Vec<(i32, i32)> {
+pub(super) fn pixels(points: &[Point]) -> Vec<(i32, i32)> {
     let mut pixels: Vec<_> = points.iter().map(|p| pixel(*p)).collect();
     if pixels.len() > 2 {
         pixels.dedup();
@@ -319,12 +319,12 @@ fn pixels(points: &[Point]) -> Vec<(i32, i32)> {
 }
 
 /// A width in px → of the finer canvas.
-fn fine(width: f64) -> u32 {
+pub(super) fn fine(width: f64) -> u32 {
     (width * FINE).round() as u32
 }
 
 /// About the width of a text, px; a digit is 0.56 to 0.64 of the text's size in sans-serif fonts.
-fn text_width(text: &str) -> f64 {
+pub(super) fn text_width(text: &str) -> f64 {
     0.6 * TEXT * text.chars().count() as f64
 }
 

@@ -198,7 +198,7 @@ fn the_pendulum_has_its_period() {
 }
 
 /// t, x, y: `iftomm/pendulum.csv` (Jacobi's elliptic functions, 40 digits).
-const PENDULUM: [(f64, f64, f64); 5] = [
+pub const PENDULUM: [(f64, f64, f64); 5] = [
     (0.5, -0.391048791550546, -0.920369948785192),
     (1.0, 0.986291751131875, -0.165010853125541),
     (2.5, -0.996334403958282, -0.0855438804888806),

@@ -16,6 +16,7 @@ mod invariants;
 mod linkages;
 mod reproducibility;
 mod run_all;
+mod schemes;
 mod singular;
 mod slider_crank;
 mod snapshots;

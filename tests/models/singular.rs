@@ -6,7 +6,7 @@ use mbint::bounds::Method;
 use super::common::{band, curve, output, read, run_methods};
 
 /// Cranks at whole distances, a bar along all their ends; every angle and its rate as given.
-fn parallelogram(cranks: usize, angle: f64, rate: f64) -> String {
+pub fn parallelogram(cranks: usize, angle: f64, rate: f64) -> String {
     let names = |f: &dyn Fn(usize) -> String| (0..cranks).map(f).collect::<Vec<_>>().join("\n  ");
     let middle = (cranks - 1) as f64 / 2.0;
     format!(
@@ -42,7 +42,7 @@ bounds: {{ chebyshev: {{ order: 3 }}, taylor: {{ order: 2 }}, scan: {{ points: 5
 
 /// The one crank that three parallel ones on a bar that only shifts amount to: θ̈ = −m_g g cos θ / I, by fourth-order
 /// Runge–Kutta with small steps.
-fn one_crank(cranks: f64, angle: f64, rate: f64) -> f64 {
+pub fn one_crank(cranks: f64, angle: f64, rate: f64) -> f64 {
     let (mass, inertia) = (0.5 * cranks + 1.0, cranks * (0.1 + 0.25) + 1.0);
     let slope = |[angle, rate]: [f64; 2]| [rate, -mass * 9.81 * angle.cos() / inertia];
     let along = |x: [f64; 2], k: [f64; 2], h: f64| [x[0] + h * k[0], x[1] + h * k[1]];

@@ -1,0 +1,282 @@
+//! `mbint cost`: what accuracy costs in time.
+
+use std::path::{Path, PathBuf};
+
+use super::args::CostArgs;
+use super::console::{BOLD, Console, count};
+use super::progress::Progress;
+use super::run::set_once;
+use super::table::{Align, Table};
+use super::{Failure, Status, load};
+use crate::batch::{self, CostOptions};
+use crate::model::{BoundsRequest, Description, Stepping};
+use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, file_stem, pareto, prepare_folder, write_cost};
+
+pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
+    set_once(&args.set)?;
+    let Some(model) = load::load(&args.model, &args.set, console) else {
+        return Ok(Status::Wrong);
+    };
+    let folder = args.output.clone().unwrap_or_else(|| Path::new("results").join(file_stem(&model.name)));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+
+    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));
+    let progress = Progress::new(&model.name, !args.quiet);
+    let options = CostOptions {
+        tolerance: wanted(&args, &model),
+        budget: args.budget,
+        threads: args.threads.map(usize::from),
+        progress: &|fraction| progress.set(fraction),
+    };
+    let study = batch::cost(&model, &options).map_err(|error| failed(&error))?;
+    drop(progress);
+    let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
+    if !args.quiet {
+        console.print(&overview(&study, &folder, &files))?;
+    }
+    Ok(Status::Done)
+}
+
+/// The error that is wanted: the command's, else the model's own, else the default.
+fn wanted(args: &CostArgs, model: &Description) -> f64 {
+    args.tolerance.or(model.bounds.tolerance).unwrap_or(BoundsRequest::TOLERANCE)
+}
+
+/// Each method's front in a table, what the errors are measured against, what was left out, and the choice.
+fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
+    let mut text = format!("{BOLD}{}{BOLD:#}: what accuracy costs\n\n", study.model);
+    if !study.bounds.is_empty() {
+        text += &format!("{}\n", bounds(study).render(2));
+    }
+    text += &format!("{}\n", trajectories(study).render(2));
+    text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
+    text += match study.is_certain() {
+        false => {
+            "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n"
+        }
+        true => "  Errors are shares of how far an output's course reaches.\n",
+    };
+    text += &reference(study);
+    for left_out in &study.left_out {
+        text += &format!("  left out: {left_out}\n");
+    }
+    text += &format!("\n{BOLD}{}{BOLD:#}\n", choice(study));
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
+    text
+}
+
+/// The settings that none of the same method betters, method by method, from cheap to dear.
+fn fronts(points: &[CostPoint], own: f64) -> Vec<&CostPoint> {
+    let front = |method| {
+        let of: Vec<&CostPoint> = points.iter().filter(|point| point.method == method).collect();
+        let places: Vec<(f64, f64)> = of.iter().map(|point| point.place(own)).collect();
+        pareto(&places).into_iter().rev().map(move |place| of[place]).collect::<Vec<_>>()
+    };
+    cost_curves(points).into_iter().flat_map(front).collect()
+}
+
+fn bounds(study: &CostStudy) -> Table<8> {
+    let mut table = Table::new([
+        ("bounds", Align::Left),
+        ("order", Align::Right),
+        ("points", Align::Right),
+        ("step", Align::Right),
+        ("solves", Align::Right),
+        ("seconds", Align::Right),
+        ("too wide", Align::Right),
+        ("too narrow", Align::Right),
+    ]);
+    let own = study.reference.bounds_error;
+    for point in fronts(&study.bounds, own) {
+        let Deviation::Bounds { over_width, under_coverage } = point.deviation else { continue };
+        let whole = |count: Option<usize>| count.map_or_else(String::new, |count| count.to_string());
+        table.row([
+            format!("{}{}", if point.front { "* " } else { "  " }, point.method.label()),
+            whole(point.order),
+            whole(point.points),
+            step(point.step),
+            point.solves.to_string(),
+            format!("{:.1e}", point.seconds),
+            error(over_width, own),
+            error(under_coverage, own),
+        ]);
+    }
+    table
+}
+
+fn trajectories(study: &CostStudy) -> Table<5> {
+    let mut table = Table::new([
+        ("nominal trajectory", Align::Left),
+        ("step", Align::Right),
+        ("steps", Align::Right),
+        ("seconds", Align::Right),
+        ("error", Align::Right),
+    ]);
+    let own = study.reference.trajectory_error;
+    for point in fronts(&study.trajectories, own) {
+        table.row([
+            format!("{}{}", if point.front { "* " } else { "  " }, point.method.label()),
+            step(point.step),
+            point.steps.to_string(),
+            format!("{:.1e}", point.seconds),
+            error(point.deviation.largest(), own),
+        ]);
+    }
+    table
+}
+
+/// An error, or the reference's own where it is smaller; nothing is there only where nothing was found.
+fn error(error: f64, own: f64) -> String {
+    match error {
+        0.0 => "0".to_owned(),
+        error if error < own => format!("≤ {own:.1e}"),
+        error => format!("{error:.1e}"),
+    }
+}
+
+fn seconds(seconds: f64) -> String {
+    if seconds < 0.1 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
+}
+
+/// A step size, or a tolerance in its place.
+fn step(stepping: Stepping) -> String {
+    match stepping {
+        Stepping::Fixed(step) => {
+            let digits = format!("{step:.3e}");
+            let (mantissa, exponent) = digits.split_once('e').unwrap_or((&digits, "0"));
+            format!("{}e{exponent} s", mantissa.trim_end_matches('0').trim_end_matches('.'))
+        }
+        Stepping::Tolerance(tolerance) => format!("tolerance {tolerance:.1e}"),
+    }
+}
+
+/// What errors are measured against, and how well it is known.
+fn reference(study: &CostStudy) -> String {
+    let reference = &study.reference;
+    let [finest, middle, _] = reference.steps.map(step);
+    let mut text = format!("  reference: {}", reference.method.label());
+    if reference.order > 0 {
+        text += &format!(" of order {}", reference.order);
+    }
+    text += &format!(", steps of {finest} and {middle}; its own error {:.1e}", study.own_error());
+    if !reference.parts.is_empty() {
+        let parts = reference.parts.iter().map(|(source, size)| format!("{source} {size:.1e}"));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        text += &format!(" ({parts}), of the trajectory {:.1e}", reference.trajectory_error);
+    }
+    text + "\n"
+}
+
+/// The one sentence: the cheapest setting that meets the tolerance.
+fn choice(study: &CostStudy) -> String {
+    let (wanted, own) = (study.tolerance, study.own_error());
+    let told = |point: &CostPoint| {
+        let count_of = match (point.order, point.points) {
+            (Some(order), _) => format!(" of order {order}"),
+            (_, Some(points)) => format!(" of {points} points a parameter"),
+            _ => String::new(),
+        };
+        let off = match point.deviation {
+            Deviation::Bounds { over_width, under_coverage } => {
+                format!("too wide by {}, too narrow by {}", error(over_width, own), error(under_coverage, own))
+            }
+            Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
+        };
+        let (label, step, solves) = (point.method.label(), step(point.step), count(point.solves, "solve", "solves"));
+        format!("{label}{count_of}, steps of {step}: {solves} in {}, {off}", seconds(point.seconds))
+    };
+    match (study.cheapest(), study.nearest()) {
+        _ if own >= wanted => {
+            format!("Nothing can be said of {wanted:e}: the reference itself is only known to {own:.1e}.")
+        }
+        (Some(point), _) => format!("The cheapest within {wanted:e} is {}.", told(point)),
+        (None, Some(point)) => format!("No setting tried is within {wanted:e}; the nearest is {}.", told(point)),
+        (None, None) => format!("No setting tried has come to its end, so none is within {wanted:e}."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Scheme;
+    use crate::report::{CostMethod, CostReference};
+
+    fn study() -> CostStudy {
+        let point = |method, order, points, seconds, over_width, under_coverage| CostPoint {
+            order,
+            points,
+            solves: 36,
+            steps: 2000,
+            seconds,
+            deviation: Deviation::Bounds { over_width, under_coverage },
+            ..CostPoint::without_result(method, Stepping::Fixed(1e-3))
+        };
+        let hht = CostMethod::Scheme(Scheme::Hht { alpha: -0.1 });
+        let trajectory = CostPoint {
+            steps: 6000,
+            seconds: 2e-3,
+            deviation: Deviation::Trajectory(2e-5),
+            ..CostPoint::without_result(hht, Stepping::Fixed(0.01 / 30.0))
+        };
+        let reference = CostReference {
+            method: CostMethod::Composed,
+            order: 16,
+            steps: [1e-4, 2e-4, 4e-4].map(Stepping::Fixed),
+            bounds_error: 1e-5,
+            trajectory_error: 1e-6,
+            parts: vec![("steps".into(), 1e-6), ("order 16 for 14".into(), 9e-6)],
+        };
+        let composed = point(CostMethod::Composed, Some(5), None, 0.025, 4e-4, 1e-6);
+        CostStudy {
+            model: "crank".into(),
+            tolerance: 1e-3,
+            reference,
+            bounds: vec![
+                CostPoint { front: true, ..composed.clone() },
+                CostPoint { order: Some(8), seconds: 0.1, ..composed },
+                point(CostMethod::Scan, None, Some(5), 0.01, 0.0, 2e-3),
+            ],
+            trajectories: vec![trajectory],
+            left_out: vec!["Scan: 3 of its settings".into()],
+        }
+    }
+
+    fn plain(text: &str) -> String {
+        anstream::adapter::strip_str(text).to_string()
+    }
+
+    #[test]
+    fn the_overview_is_aligned_and_ends_with_the_choice() {
+        let files = ["cost.csv", "cost.svg"].map(|name| Path::new("results/crank").join(name));
+        let text = overview(&study(), Path::new("results/crank"), &files);
+        insta::assert_snapshot!(plain(&text), @r"
+        crank: what accuracy costs
+
+          bounds                 order  points    step  solves  seconds  too wide  too narrow
+          * Chebyshev, composed      5          1e-3 s      36   2.5e-2    4.0e-4    ≤ 1.0e-5
+            Scan                             5  1e-3 s      36   1.0e-2         0      2.0e-3
+
+          nominal trajectory        step  steps  seconds   error
+            HHT-I3, α = −0.1  3.333e-4 s   6000   2.0e-3  2.0e-5
+
+          Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.
+          Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.
+          reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
+          left out: Scan: 3 of its settings
+
+        The cheapest within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+          results/crank: cost.csv, cost.svg
+        ");
+    }
+
+    #[test]
+    fn the_sentence_says_when_nothing_can_be_chosen() {
+        let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
+        insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
+        The cheapest within 3e-3 is Scan of 5 points a parameter, steps of 1e-3 s: 36 solves in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
+        No setting tried is within 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        Nothing can be said of 1e-5: the reference itself is only known to 1.0e-5.
+        ");
+    }
+}

@@ -1,0 +1,155 @@
+//! `mbint cost` on a small model: errors fall with order, points and step as they must, and too wide is told from too narrow.
+
+use std::collections::HashMap;
+use std::fs;
+use std::process::Command;
+
+/// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so that
+/// bounds are reached at inner points of the interval.
+const OSCILLATOR: &str = "
+model: oscillator
+parameters:
+  k: { value: 100, unit: N/m, tolerance: 40% }
+bodies: { mass: { mass: 1, coordinates: [x] } }
+effects: { spring: { spring_damper: { between: [ground, mass], along: x, stiffness: k, free_length: 0 m } } }
+initial: { mass.x: 1, mass.vx: 0 }
+outputs: { x: mass.x }
+simulation: { duration: 1, step: 5e-3, output_step: 0.05 }
+";
+
+/// Rows by heading.
+type Rows = Vec<HashMap<String, String>>;
+
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+}
+
+/// The one row of a method with this order or these points, and this many steps in the second.
+fn row<'r>(rows: &'r Rows, method: &str, count: &str, steps: usize) -> &'r HashMap<String, String> {
+    let is = |row: &&HashMap<String, String>| {
+        row["method"] == method
+            && (row["order"] == count || row["points"] == count)
+            && row["steps"] == steps.to_string()
+    };
+    let found: Vec<_> = rows.iter().filter(is).collect();
+    assert_eq!(found.len(), 1, "{method} {count} {steps}");
+    found[0]
+}
+
+/// Every element that is opened is closed, in order.
+fn assert_well_formed(svg: &str) {
+    let mut open = Vec::new();
+    for part in svg.split('<').skip(1) {
+        let (tag, _) = part.split_once('>').unwrap_or_else(|| panic!("no end of <{part}"));
+        let name = |tag: &str| tag.split_whitespace().next().unwrap_or("").to_owned();
+        assert_eq!(tag.matches('"').count() % 2, 0, "<{tag}>");
+        match tag.strip_prefix('/') {
+            Some(closed) => assert_eq!(open.pop(), Some(name(closed)), "<{tag}>"),
+            None if tag.ends_with('/') => {}
+            None => open.push(name(tag)),
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn errors_fall_as_they_must_and_have_the_right_sign() {
+    let place = tempfile::tempdir().unwrap();
+    fs::write(place.path().join("oscillator.yaml"), OSCILLATOR).unwrap();
+    let output = Command::new(assert_cmd::cargo::cargo_bin!("mbint"))
+        .args(["cost", "oscillator.yaml", "--tolerance", "2e-3"])
+        .current_dir(place.path())
+        .output()
+        .unwrap();
+    let (text, errors) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(output.status.success() && errors.is_empty(), "{errors}");
+
+    let mut reader = csv::Reader::from_path(place.path().join("results/oscillator/cost.csv")).unwrap();
+    let all: Rows = reader.deserialize().collect::<Result<_, _>>().unwrap();
+    let (rows, trajectories): (Rows, Rows) = all.into_iter().partition(|row| row["of"] == "bounds");
+    // 3 × 4 orders of Chebyshev, 3 of Taylor, 3 scans; five schemes; six steps each.
+    assert_eq!((rows.len(), trajectories.len()), (18 * 6, 5 * 6));
+    let finest = 800;
+    let error = |method, count, steps| number(row(&rows, method, count, steps), "error");
+    let sides = |method, count| {
+        let row = row(&rows, method, count, finest);
+        [number(row, "over_width"), number(row, "under_coverage")]
+    };
+
+    // With fine steps the order is what counts: each is at least twice as good as the one before, down to what composition
+    // misses of extremes between the points of its grid (measured: 1.9e-3), and to what the steps leave of the tight range.
+    for (method, least) in [("chebyshev.coordinates", 2.5e-3), ("chebyshev.tight", 7e-4)] {
+        let errors = ["2", "3", "5", "8"].map(|order| error(method, order, finest));
+        assert!(errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0] || pair[1] < least), "{method}: {errors:?}");
+        assert!(errors[2] < 0.05 * errors[0] && errors[3] <= least, "{method}: {errors:?}");
+    }
+    // With a high order it is the step: an error of second order.
+    let falling = [200, 400, 800].map(|steps| error("chebyshev.tight", "8", steps));
+    assert!(falling.windows(2).all(|pair| (pair[0] / pair[1] - 4.0).abs() < 0.5), "{falling:?}");
+
+    // The paper's Σ|c| is too wide by a third of the band, however high the order, and leaves nothing out.
+    let [wide, narrow] = sides("chebyshev.interval", "8");
+    assert!((wide - 0.36).abs() < 0.02 && narrow < 1e-3, "{wide}, {narrow}");
+    // A scan leaves out what is between its points, and is never too wide; denser ones leave out less.
+    let scans = ["5", "10", "30"].map(|points| sides("scan", points));
+    assert!(scans.iter().all(|[wide, narrow]| *wide < 1e-4 && narrow > wide), "{scans:?}");
+    assert!(scans[0][1] > 0.05 && scans.windows(2).all(|pair| pair[1][1] < 0.5 * pair[0][1]), "{scans:?}");
+    // Taylor's series about the middle does not get here.
+    assert!(["1", "2", "3"].iter().all(|order| error("taylor", order, finest) > 0.1));
+
+    // Every scheme is of second order on the nominal trajectory; the trapezoidal rule, with nothing damped, is the best.
+    let off = |method: &str, steps| number(row(&trajectories, method, "", steps), "error");
+    let schemes =
+        ["hht(-0.1)", "generalised_alpha(0.5)", "generalised_alpha(0.8)", "generalised_alpha(0.9)", "trapezoidal"];
+    for scheme in schemes {
+        let [coarse, fine] = [400, 800].map(|steps| off(scheme, steps));
+        assert!((coarse / fine - 4.0).abs() < 0.2, "{scheme}: {coarse}, {fine}");
+        assert!(off("trapezoidal", 800) <= fine, "{scheme}");
+    }
+
+    for rows in [&rows, &trajectories] {
+        let place = |row: &HashMap<String, String>| (number(row, "error"), number(row, "seconds"));
+        let front: Vec<_> = rows.iter().filter(|row| row["front"] == "true").map(place).collect();
+        assert!(!front.is_empty() && rows.iter().all(|row| number(row, "seconds") > 0.0));
+        for (error, seconds) in rows.iter().map(place) {
+            let bettered = front.iter().filter(|point| error < point.0 && seconds < point.1).count();
+            assert_eq!(bettered, 0, "({error}, {seconds}) is better than a part of the front");
+        }
+    }
+    let svg = fs::read_to_string(place.path().join("results/oscillator/cost.svg")).unwrap();
+    assert_well_formed(&svg);
+    for text in ["Chebyshev, composed", "Scan", "HHT-I3, α = −0.1", "tolerance"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    for what in ["too wide", "too narrow", "reference: Chebyshev, composed", "The cheapest within 2e-3 is ", "cost.csv"]
+    {
+        assert!(text.contains(what), "{what} in\n{text}");
+    }
+}
+
+#[test]
+fn without_uncertainty_or_time_only_the_schemes_are_compared() {
+    let place = tempfile::tempdir().unwrap();
+    let certain = OSCILLATOR.replace(", tolerance: 40%", "").replace("tolerance", "");
+    fs::write(place.path().join("certain.yaml"), certain).unwrap();
+    let run = |arguments: &str| {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("mbint"));
+        let output = command.args(arguments.split(' ')).current_dir(place.path()).output().unwrap();
+        (String::from_utf8(output.stdout).unwrap(), output.status.code())
+    };
+    let (text, status) = run("cost certain.yaml --output here --tolerance 1e-4");
+    assert_eq!(status, Some(0), "{text}");
+    assert!(!text.contains("too wide  ") && text.contains("The cheapest within 1e-4 is HHT-I3, α = −0.1, "), "{text}");
+    assert!(place.path().join("here/cost.csv").exists() && place.path().join("here/cost.svg").exists());
+    let (text, status) = run("cost certain.yaml --tolerance 1e-12 --quiet");
+    assert_eq!((text.as_str(), status), ("", Some(0)));
+    fs::write(place.path().join("uncertain.yaml"), OSCILLATOR).unwrap();
+    let (text, status) = run("cost uncertain.yaml --budget 1e-6 --tolerance 0.9");
+    assert_eq!(status, Some(0), "{text}");
+    for told in ["left out: Taylor: 18 of its settings", "No setting tried has come to its end"] {
+        assert!(text.contains(told), "{told} in\n{text}");
+    }
+    for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {
+        assert_eq!(run(wrong).1, Some(2), "{wrong}");
+    }
+}
