@@ -11,7 +11,9 @@ use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
+use super::apportion::Apportion;
 use super::compose::{Composer, Known, Row, Seeker};
+use super::finding::{Finder, Finding};
 use super::methods::{FleetRun, Run};
 use super::probe::Table;
 use crate::bounds::{ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, held_out, largest, probes};
@@ -43,8 +45,8 @@ pub(super) struct Goal {
 
 /// What was found of every output in every row, row by row.
 pub(super) struct Adapted {
-    /// Range and error of the surrogate.
-    pub found: Vec<(Range, f64)>,
+    /// Parts only where the box was not split.
+    pub found: Vec<Finding>,
     /// Simulations of these and those before.
     pub solves: usize,
     /// Boxes that the whole was split into.
@@ -223,35 +225,45 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     /// Finds a part's error in some rows.
     fn check(&mut self, part: &mut Part) -> Result<(), SimulationError> {
         let rows: Vec<usize> = (0..self.goal.rows.min(part.rows(self.lines()))).rev().step_by(self.every).collect();
-        let found = self.bounds(part, &rows)?;
+        let found = self.findings(part, &rows, false)?;
         let allowed = self.goal.allowed.iter().cycle();
-        part.error =
-            largest(found.iter().zip(allowed).map(|((_, error), allowed)| SAFETY_OF_SURROGATE * error / allowed));
+        let share = |(found, allowed): (&Finding, &f64)| SAFETY_OF_SURROGATE * found.error / allowed;
+        part.error = largest(found.iter().zip(allowed).map(share));
         Ok(())
     }
 
-    /// A part's ranges with their errors in some rows, output by output.
-    fn bounds(&mut self, part: &Part, rows: &[usize]) -> Result<Vec<(Range, f64)>, SimulationError> {
+    /// What is found of a part in some rows, output by output.
+    fn findings(&mut self, part: &Part, rows: &[usize], apportion: bool) -> Result<Vec<Finding>, SimulationError> {
         let surrogate = Surrogate::sparse(&part.grid);
         let motions = part.motions(self.lines(), rows.iter().copied());
         let stride = self.lines() * surrogate.samples().len();
         let times: Vec<f64> = rows.iter().map(|&row| self.run.schedule.time(row)).collect();
-        let held_out = (part.points.as_slice(), &part.direct);
-        let look = |place: usize, row: &Row, known: &mut Known| row.bounds(&self.seeker, held_out, rows[place], known);
+        let finder = Finder {
+            seeker: &self.seeker,
+            held_out: (&part.points, &part.direct),
+            apportion: apportion.then(|| Apportion::new(&part.domain, &surrogate)),
+        };
+        let look = |place: usize, row: &Row, known: &mut Known| finder.find(row, rows[place], known);
         Ok(self.composer.rows(&surrogate, &part.domain, &times, (&motions, stride), look)?.concat())
     }
 
     /// Ranges over all parts, with their errors.
     fn conclude(mut self, parts: &[Part]) -> Result<Adapted, SimulationError> {
-        let mut found = vec![(EMPTY, 0.0); self.run.schedule.rows * self.run.outputs()];
+        let nothing = Finding { range: EMPTY, error: 0.0, parts: None };
+        let mut found = vec![nothing; self.run.schedule.rows * self.run.outputs()];
         let mut order = vec![0; self.run.study.domain.dimension()];
         for part in parts {
             for (axis, &degree) in (0..part.grid.len()).flat_map(|index| part.grid.levels(index).iter().enumerate()) {
                 order[axis] = order[axis].max(degree.into());
             }
             let rows: Vec<usize> = (0..part.rows(self.lines())).collect();
-            let of_part = self.bounds(part, &rows)?.into_iter().chain(std::iter::repeat((Range::UNKNOWN, f64::NAN)));
-            found.iter_mut().zip(of_part).for_each(|(all, part)| *all = union(*all, part));
+            let of_part = self.findings(part, &rows, parts.len() == 1)?;
+            let unknown = Finding { range: Range::UNKNOWN, error: f64::NAN, parts: None };
+            let of_part = of_part.into_iter().chain(std::iter::repeat(unknown));
+            for (all, part) in found.iter_mut().zip(of_part) {
+                (all.range, all.error) = union((all.range, all.error), (part.range, part.error));
+                all.parts = part.parts;
+            }
         }
         Ok(Adapted { found, solves: self.goal.spent, boxes: parts.len(), order, done: self.done })
     }

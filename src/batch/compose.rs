@@ -151,8 +151,13 @@ impl<'r> Row<'r> {
         Self { simulator, surrogate, domain, closure, time, coefficients, extent }
     }
 
+    /// What its polynomials are made by.
+    pub fn surrogate(&self) -> &Surrogate {
+        self.surrogate
+    }
+
     /// Points along each axis.
-    fn resolution(&self) -> usize {
+    pub fn resolution(&self) -> usize {
         let scale = &self.simulator.program.scale;
         let moved = self.closure.independent().iter().map(|&i| (self.extent[i].1 - self.extent[i].0) / scale[i]);
         let (least, most) = POINTS[self.domain.dimension().clamp(1, MOST_PARAMETERS) - 1];
@@ -160,25 +165,24 @@ impl<'r> Row<'r> {
         if wanted.is_finite() { (least + wanted as usize).min(most) } else { least }
     }
 
-    /// Every output's range over the box and its error: what the search may have missed, how far the coordinates' errors move
-    /// its ends, and how far held-out samples, `points` of which `direct` tells row `row`, lie outside.
-    pub fn bounds(
+    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
+    /// far held-out samples, `points` of which `direct` tells row `row`, lie outside.
+    pub fn errors(
         &self,
         seeker: &Seeker,
         (points, direct): (&[Vec<f64>], &Table),
         row: usize,
-        known: &mut Known,
-    ) -> Vec<(Range, f64)> {
-        let found = self.seek(seeker, known);
+        found: &[Extent],
+    ) -> Vec<f64> {
         if row >= direct.rows() {
-            return found.into_iter().map(|found| (found.range, f64::NAN)).collect();
+            return vec![f64::NAN; found.len()];
         }
-        let moved = self.sensitivity(seeker, &found, points, direct.motion(row));
-        let error = |(output, (found, moved)): (usize, (Extent, f64))| {
+        let moved = self.sensitivity(seeker, found, points, direct.motion(row));
+        let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
             let outside = direct.at(row, output).into_iter().map(|value| found.range.distance(value));
-            (found.range, found.gap + largest(outside.chain([moved])))
+            found.gap + largest(outside.chain([moved]))
         };
-        found.into_iter().zip(moved).enumerate().map(error).collect()
+        found.iter().zip(moved).enumerate().map(error).collect()
     }
 
     /// How far the errors of the expanded coordinates move the ends of the outputs' ranges. `points` are held-out samples, and
@@ -204,8 +208,8 @@ impl<'r> Row<'r> {
         moved
     }
 
-    /// Ranges all over the box.
-    fn seek(&self, seeker: &Seeker, known: &mut Known) -> Vec<Extent> {
+    /// Every output's range over the box.
+    pub fn seek(&self, seeker: &Seeker, known: &mut Known) -> Vec<Extent> {
         match seeker {
             Seeker::Grid => {
                 extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate_shifted(points, &[]))

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use symdiff::jet::JetSpace;
 
 use super::adapt::{Adaptation, Goal};
+use super::apportion::{Apportion, Parts};
 use super::compose::{Composer, Known, Row, Seeker};
+use super::finding::{Finder, Finding};
 use super::probe::Probes;
 use super::study::Study;
 use crate::bounds::{
@@ -36,6 +38,8 @@ pub(super) const TAYLOR_WORK: usize = 5;
 pub(super) struct Outcome {
     pub(super) bands: Vec<Vec<Range>>,
     pub(super) surrogate: Vec<Vec<f64>>,
+    /// Who has which part in the spread of every output in every row, where it is known.
+    pub(super) parts: Vec<Vec<Option<Parts>>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
     pub(super) summary: MethodSummary,
     /// The sample whose local error was largest against the tolerance, and how large.
@@ -171,8 +175,8 @@ impl Run<'_> {
         }
         let search = Adaptation::new(self, goal).search(probes.points.clone(), probes.direct.clone())?;
         let mut lines = Lines::new(self);
-        for (place, (range, error)) in search.found.iter().enumerate() {
-            lines.set(place / self.outputs(), place % self.outputs(), *range, *error);
+        for (place, found) in search.found.into_iter().enumerate() {
+            lines.set_found(place / self.outputs(), place % self.outputs(), found);
         }
         let solves = search.solves - probes.solves;
         let stop = search.done.stop_place();
@@ -192,19 +196,21 @@ impl Run<'_> {
         let mut lines = Lines::new(self);
         let mut composer = Composer::new(&self.study.simulator);
         let seeker = Seeker::new(self.study.domain.dimension());
+        let finder = Finder {
+            seeker: &seeker,
+            held_out: (&probes.points, &probes.direct),
+            apportion: Some(Apportion::new(&self.study.domain, surrogate)),
+        };
         let stride = Observed::Motion.count(&self.study.simulator) * samples.len();
         let mut failure = None;
         let done = self.fleet(samples, Observed::Motion, |rows, values| {
             let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
             let first = rows.start;
-            let held_out = (probes.points.as_slice(), &probes.direct);
-            let look = |place: usize, row: &Row, known: &mut Known| row.bounds(&seeker, held_out, first + place, known);
+            let look = |place: usize, row: &Row, known: &mut Known| finder.find(row, first + place, known);
             match composer.rows(surrogate, &self.study.domain, &times, (values, stride), look) {
                 Ok(found) => {
                     for (row, found) in rows.zip(found) {
-                        for (output, (range, error)) in found.into_iter().enumerate() {
-                            lines.set(row, output, range, error);
-                        }
+                        found.into_iter().enumerate().for_each(|(output, found)| lines.set_found(row, output, found));
                     }
                 }
                 Err(error) => failure = Some(error),
@@ -349,13 +355,23 @@ struct Found {
 struct Lines {
     bands: Vec<Vec<Range>>,
     surrogate: Vec<Vec<f64>>,
+    parts: Vec<Vec<Option<Parts>>>,
 }
 
 impl Lines {
     /// Of which nothing is known yet.
     fn new(run: &Run) -> Self {
         let (outputs, rows) = (run.outputs(), run.schedule.rows);
-        Self { bands: vec![vec![Range::UNKNOWN; rows]; outputs], surrogate: vec![vec![f64::NAN; rows]; outputs] }
+        Self {
+            bands: vec![vec![Range::UNKNOWN; rows]; outputs],
+            surrogate: vec![vec![f64::NAN; rows]; outputs],
+            parts: vec![vec![None; rows]; outputs],
+        }
+    }
+
+    fn set_found(&mut self, row: usize, output: usize, found: Finding) {
+        self.set(row, output, found.range, found.error);
+        self.parts[output][row] = found.parts;
     }
 
     fn set(&mut self, row: usize, output: usize, range: Range, surrogate: f64) {
@@ -374,6 +390,13 @@ impl Lines {
     }
 
     fn outcome(self, done: FleetRun, summary: MethodSummary) -> Outcome {
-        Outcome { bands: self.bands, surrogate: self.surrogate, stop: done.stop, summary, strained: done.strained }
+        Outcome {
+            bands: self.bands,
+            surrogate: self.surrogate,
+            parts: self.parts,
+            stop: done.stop,
+            summary,
+            strained: done.strained,
+        }
     }
 }

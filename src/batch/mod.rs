@@ -6,8 +6,10 @@
 //! settings, to tell what accuracy costs.
 
 mod adapt;
+mod apportion;
 mod compose;
 mod cost;
+mod finding;
 mod methods;
 mod probe;
 mod step_search;

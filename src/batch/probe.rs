@@ -46,16 +46,6 @@ impl Table {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// From the least to the largest of one output's values in one row; unknown if one of them is.
-    fn range(&self, row: usize, output: usize) -> Range {
-        let values = self.at(row, output);
-        if values.iter().any(|value| value.is_nan()) {
-            return Range::UNKNOWN;
-        }
-        let fold = |f: fn(f64, f64) -> f64, start| values.iter().copied().fold(start, f);
-        Range { lower: fold(f64::min, f64::INFINITY), upper: fold(f64::max, f64::NEG_INFINITY) }
-    }
-
     /// Largest less least value of an output in all rows and samples.
     pub fn span(&self, output: usize) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
@@ -108,7 +98,7 @@ impl Probes {
 
     /// The time steps' error of an output in each row, as if its range were that of the probes.
     pub fn time_error(&self, output: usize, rows: usize) -> Vec<f64> {
-        let ranges: Vec<Range> = (0..rows).map(|row| self.direct.range(row, output)).collect();
+        let ranges: Vec<Range> = (0..rows).map(|row| Range::of(&self.direct.at(row, output))).collect();
         let of_row = |row: usize| time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
         let time: Vec<f64> = (0..rows).map(of_row).collect();
         BandError::new(&ranges, &vec![0.0; rows], &time, self.direct.span(output), None).total

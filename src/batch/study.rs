@@ -2,19 +2,20 @@
 
 use std::sync::atomic::AtomicUsize;
 
+use super::apportion::Parts;
 use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
 use super::step_search::StepSearch;
 use super::{Options, RunError, first_step, scheme};
 use crate::bounds::{
-    Band, BandError, Bounds, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes, time_error,
-    time_error_certified,
+    Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes,
+    time_error, time_error_certified,
 };
 use crate::integrate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
 use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, Expand, MOST_SOLVES, ScanRequest, Stepping};
-use crate::report::{ErrorSummary, MethodSummary, ParameterSummary, Summary};
+use crate::report::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
 const PILOT_CORNERS: usize = 16;
@@ -223,11 +224,36 @@ impl<'a> Study<'a> {
             nominal: results.nominal.bands[place][..rows].iter().map(|range| range.lower).collect(),
             bands: self.bands(&results, place, rows),
         });
-        let bounds =
-            Bounds { times: (0..rows).map(|row| results.schedule.time(row)).collect(), outputs: outputs.collect() };
+        let contributions = self.contributions(&results, rows);
+        let bounds = Bounds {
+            contributions,
+            times: (0..rows).map(|row| results.schedule.time(row)).collect(),
+            outputs: outputs.collect(),
+        };
         let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
         let summary = self.summary(results, &bounds, failure);
         (bounds, summary)
+    }
+
+    /// Every parameter's part in every output's spread, as Chebyshev's surrogate knows it.
+    fn contributions(&self, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
+        let chebyshev = results.methods.iter().find(|(method, _)| *method == Method::Chebyshev);
+        let known = |outcome: &Outcome| outcome.parts.iter().flatten().any(Option::is_some);
+        let Some((_, outcome)) = chebyshev.filter(|(_, outcome)| known(outcome)) else { return Vec::new() };
+        let of_parameter = |parts: &[Option<Parts>], place: usize| {
+            let line = |pick: fn(&Parts) -> &Vec<f64>| {
+                parts[..rows].iter().map(|parts| parts.as_ref().map_or(f64::NAN, |parts| pick(parts)[place])).collect()
+            };
+            Contribution {
+                parameter: self.simulator.system.parameters[place].name.clone(),
+                main: line(|parts| &parts.main),
+                total: line(|parts| &parts.total),
+                width_without: line(|parts| &parts.width_without),
+            }
+        };
+        let of_output =
+            |parts: &Vec<Option<Parts>>| (0..self.domain.dimension()).map(|place| of_parameter(parts, place)).collect();
+        outcome.parts.iter().map(of_output).collect()
     }
 
     /// An output's band by every method, with its error.
@@ -302,9 +328,32 @@ impl<'a> Study<'a> {
                 }))
                 .collect(),
             errors: errors(bounds),
+            contributions: contributions(bounds),
             failure,
         }
     }
+}
+
+/// Every parameter's mean shares in every output, the largest first.
+fn contributions(bounds: &Bounds) -> Vec<ContributionSummary> {
+    let of_output = |(output, contributions): (&OutputBounds, &Vec<Contribution>)| {
+        let band = output.bands.iter().find(|band| band.method == Method::Chebyshev);
+        let width = |row: usize| band.map_or(0.0, |band| band.upper[row] - band.lower[row]);
+        let mean = |shares: &[f64]| {
+            let known = || (0..shares.len()).filter(|&row| shares[row].is_finite() && width(row).is_finite());
+            known().map(|row| width(row) * shares[row]).sum::<f64>() / known().map(width).sum::<f64>()
+        };
+        let summary = |contribution: &Contribution| ContributionSummary {
+            output: output.name.clone(),
+            parameter: contribution.parameter.clone(),
+            main: mean(&contribution.main),
+            total: mean(&contribution.total),
+        };
+        let mut summaries: Vec<ContributionSummary> = contributions.iter().map(summary).collect();
+        summaries.sort_by(|a, b| b.total.total_cmp(&a.total));
+        summaries
+    };
+    bounds.outputs.iter().zip(&bounds.contributions).flat_map(of_output).collect()
 }
 
 /// The largest errors of every band.

@@ -34,7 +34,7 @@ pub use domain::ParameterBox;
 pub use error::{BandError, SAFETY_OF_SURROGATE, largest, surrogate_error, time_error, time_error_certified};
 pub use extremes::{Extent, extremes, extremes_near};
 pub use range::{Enclosed, PolynomialRange, Range};
-pub use result::{Band, Bounds, Method, OutputBounds};
+pub use result::{Band, Bounds, Contribution, Method, OutputBounds};
 pub use samples::{TensorGrid, corners, held_out, probes};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};

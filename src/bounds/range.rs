@@ -54,6 +54,15 @@ impl Range {
     /// Of what cannot be bounded.
     pub const UNKNOWN: Self = Self { lower: f64::NAN, upper: f64::NAN };
 
+    /// Of values: from the least to the largest; unknown if there are none or one is not a number.
+    pub fn of(values: &[f64]) -> Self {
+        let fold = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap_or(f64::NAN);
+        if values.iter().any(|value| value.is_nan()) {
+            return Self::UNKNOWN;
+        }
+        Self { lower: fold(f64::min), upper: fold(f64::max) }
+    }
+
     /// Upper less lower end.
     pub fn width(self) -> f64 {
         self.upper - self.lower

@@ -9,6 +9,21 @@ pub struct Bounds {
     pub times: Vec<f64>,
     /// In the model's order.
     pub outputs: Vec<OutputBounds>,
+    /// Which tolerance matters, output by output; empty where it is not known.
+    pub contributions: Vec<Vec<Contribution>>,
+}
+
+/// A parameter's part in the spread of an output over the times; not a number where it is not known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// Its name.
+    pub parameter: String,
+    /// Share of the variance (every parameter spread evenly over its interval) that is its alone.
+    pub main: Vec<f64>,
+    /// The same with what it has together with others.
+    pub total: Vec<f64>,
+    /// Width of the output's range if this parameter were at its nominal value.
+    pub width_without: Vec<f64>,
 }
 
 /// One output's nominal course and its bands; each vector runs over the times.

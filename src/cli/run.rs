@@ -13,7 +13,7 @@ use crate::bounds::{Method, OutputBounds};
 use crate::mechanics;
 use crate::model::Description;
 use crate::model::Override;
-use crate::report::{ErrorSummary, Summary, file_stem, prepare_folder, write_results};
+use crate::report::{ContributionSummary, ErrorSummary, Summary, file_stem, prepare_folder, write_results};
 
 /// What a run needs, checked.
 struct Request {
@@ -173,6 +173,24 @@ fn errors(errors: &[ErrorSummary]) -> String {
     }
 }
 
+/// The three parameters that contribute most to each output.
+fn contributions(contributions: &[ContributionSummary]) -> String {
+    const MOST: usize = 3;
+    let mut text = String::new();
+    let varies = |contribution: &&ContributionSummary| contribution.total > 0.0;
+    for of_output in contributions.chunk_by(|a, b| a.output == b.output) {
+        let share = |contribution: &ContributionSummary| {
+            format!("{} {:.0} %", contribution.parameter, 100.0 * contribution.total)
+        };
+        let shares: Vec<String> = of_output.iter().filter(varies).take(MOST).map(share).collect();
+        // One parameter alone is no news.
+        if of_output.len() > 1 && !shares.is_empty() {
+            text += &format!("  {}: {} of its variance\n", of_output[0].output, shares.join(", "));
+        }
+    }
+    if text.is_empty() { text } else { text + "\n" }
+}
+
 /// Which bounds cannot be relied on, and from when.
 fn unresolved(summary: &Summary) -> Option<String> {
     const MOST: usize = 4;
@@ -217,6 +235,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
         table.render(2),
     );
     text += &errors(&summary.errors);
+    text += &contributions(&summary.contributions);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let steps = count(method.rank_revealing_solves as usize, "step", "steps");
         text += &format!("  {}: {steps} through a singular matrix, by the rank-revealing solve\n", method.method);
@@ -263,6 +282,7 @@ mod tests {
                 time: 1.5e-3,
                 unresolved_from: None,
             }],
+            contributions: vec![],
             failure: None,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));

@@ -101,6 +101,7 @@ mod tests {
                     bands: vec![],
                 },
             ],
+            ..Bounds::default()
         };
         let text = String::from_utf8(bounds_csv(&bounds).unwrap()).unwrap();
         assert_eq!(

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::bounds::Bounds;
-use crate::report::{Summary, bounds_csv, plot_svg};
+use crate::report::{Summary, bounds_csv, contributions_csv, contributions_svg, plot_svg};
 
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +24,7 @@ pub enum ReportError {
     Plot { output: String, message: String },
 }
 
-/// Writes `bounds.csv`, an SVG for each output and `summary.json` into `dir`, which is made if it is not there.
+/// Writes `bounds.csv`, an SVG for each output, who has which part in it where that is known, and `summary.json` into `dir`, which is made if it is not there.
 ///
 /// Every file is written under a temporary name beside its place and renamed, so that neither a failure nor a killed run
 /// leaves half a file, or half a new file in place of an old one. `summary.json` comes last: where it is, the others
@@ -45,11 +45,20 @@ pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<V
     };
 
     write("bounds.csv", &bounds_csv(bounds)?)?;
+    if !bounds.contributions.is_empty() {
+        write("contributions.csv", &contributions_csv(bounds)?)?;
+    }
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
-    for (output, name) in bounds.outputs.iter().zip(names) {
+    let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
+    for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
         let svg = plot_svg(&bounds.times, output)
             .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
         write(&format!("{name}.svg"), svg.as_bytes())?;
+        if let Some(contributions) = contributions {
+            let svg = contributions_svg(&bounds.times, &output.name, contributions)
+                .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
+            write(&format!("{name}.contributions.svg"), svg.as_bytes())?;
+        }
     }
     let mut json = serde_json::to_vec_pretty(summary)?;
     json.push(b'\n');
@@ -142,7 +151,11 @@ mod tests {
     fn results() -> (Bounds, Summary) {
         let output =
             |name: &str| OutputBounds { name: name.into(), unit: "m".into(), nominal: vec![1.0, 2.0], bands: vec![] };
-        let bounds = Bounds { times: vec![0.0, 1.0], outputs: vec![output("x3"), output("a/b"), output("A b")] };
+        let bounds = Bounds {
+            times: vec![0.0, 1.0],
+            outputs: vec![output("x3"), output("a/b"), output("A b")],
+            ..Bounds::default()
+        };
         let summary = Summary {
             model: "crank".into(),
             mbint: "0.1.0".into(),
@@ -155,6 +168,7 @@ mod tests {
             parameters: vec![],
             methods: vec![],
             errors: vec![],
+            contributions: vec![],
             failure: None,
         };
         (bounds, summary)

@@ -1,6 +1,7 @@
 //! Bounds → files: CSV, summary and plots.
 
 mod axis;
+mod contributions;
 mod cost;
 mod csv;
 mod explanation;
@@ -11,10 +12,11 @@ mod summary;
 mod view;
 
 pub use self::csv::bounds_csv;
+pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::{
     CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
 };
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, prepare_folder, write_results};
 pub use plot::plot_svg;
-pub use summary::{ErrorSummary, MethodSummary, ParameterSummary, Summary};
+pub use summary::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, Summary};

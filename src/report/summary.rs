@@ -20,6 +20,9 @@ pub struct Summary {
     pub methods: Vec<MethodSummary>,
     /// Of every band.
     pub errors: Vec<ErrorSummary>,
+    /// Which tolerance matters: output by output, the parameters that contribute most first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contributions: Vec<ContributionSummary>,
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -59,6 +62,17 @@ pub struct ErrorSummary {
     pub time: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved_from: Option<f64>,
+}
+
+/// A parameter's shares of an output's variance, alone and with others: means over the run, in which times count as the
+/// output's range is wide.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct ContributionSummary {
+    pub output: String,
+    pub parameter: String,
+    pub main: f64,
+    pub total: f64,
 }
 
 /// What a method took. `method` is `nominal`, `probes`, `chebyshev`, `taylor` or `scan`.

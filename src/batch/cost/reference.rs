@@ -112,7 +112,7 @@ mod tests {
             let band =
                 Band { method: Method::Chebyshev, lower: curve(1.0), upper: curve(2.0), error: BandError::default() };
             let output = OutputBounds { name: "x".into(), unit: String::new(), nominal: curve(1.5), bands: vec![band] };
-            Bounds { times: vec![0.0, 1.0], outputs: vec![output] }
+            Bounds { times: vec![0.0, 1.0], outputs: vec![output], ..Bounds::default() }
         };
         let limit = &extrapolated(&at(0.5), &at(1.0))[0];
         for (found, exact) in [(&limit.nominal, 1.5), (&limit.bands[0].lower, 1.0), (&limit.bands[0].upper, 2.0)] {

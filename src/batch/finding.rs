@@ -1,0 +1,38 @@
+//! What is found of an output in a row: its range, the range's error, and who has which part in it.
+
+use super::apportion::{Apportion, Parts};
+use super::compose::{Known, Row, Seeker};
+use super::probe::Table;
+use crate::bounds::Range;
+
+/// What is found of one output in one row.
+#[derive(Clone, Debug)]
+pub(super) struct Finding {
+    pub range: Range,
+    /// Of the surrogate.
+    pub error: f64,
+    /// Where they are asked for.
+    pub parts: Option<Parts>,
+}
+
+/// How findings are made.
+pub(super) struct Finder<'a> {
+    pub seeker: &'a Seeker,
+    /// ξ of samples that the surrogate is held against, and their motions.
+    pub held_out: (&'a [Vec<f64>], &'a Table),
+    pub apportion: Option<Apportion>,
+}
+
+impl Finder<'_> {
+    /// Of every output in a row, whose number among all is `place`.
+    pub fn find(&self, row: &Row, place: usize, known: &mut Known) -> Vec<Finding> {
+        let found = row.seek(self.seeker, known);
+        let errors = row.errors(self.seeker, self.held_out, place, &found);
+        let parts: Vec<Option<Parts>> = match &self.apportion {
+            Some(apportion) => apportion.parts(row, &found).into_iter().map(Some).collect(),
+            None => vec![None; found.len()],
+        };
+        let finding = |((found, error), parts)| Finding { range: found, error, parts };
+        found.iter().map(|found| found.range).zip(errors).zip(parts).map(finding).collect()
+    }
+}
