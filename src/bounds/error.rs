@@ -30,9 +30,8 @@ const LASTING: f64 = 0.02;
 /// An error beyond this share of the width means that the surrogate does not follow the response.
 const LOST: f64 = 0.25;
 
-/// Shares of the output's span: what is narrower is too narrow for its shape to matter, and what errs more is lost
-/// however wide.
-const NARROW: f64 = 1e-6;
+/// An error below this share of the output's span is none to speak of, however narrow the band is there.
+const SMALL: f64 = 1e-3;
 
 /// A band's errors over the output times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,7 +72,8 @@ pub fn time_error_certified(range: Range, halved: Range) -> f64 {
 
 impl BandError {
     /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which is how
-    /// far the output ranges at all.
+    /// far the output ranges at all; what exceeds it is not resolved. Without one, a band is lost from where its surrogate no
+    /// longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
         let time = held_up(time, SAFETY_OF_STEPS);
@@ -81,12 +81,16 @@ impl BandError {
         let mut lost = false;
         let mut unresolved = Vec::with_capacity(total.len());
         for (row, range) in ranges.iter().enumerate() {
-            // Written so that not a number is lost.
-            let follows = surrogate[row] <= LOST * range.width() || surrogate[row] <= NARROW * span;
-            let stays = total[row] <= LOST * span || span == 0.0;
-            lost |= !(follows && stays);
-            let within = tolerance.is_none_or(|tolerance| total[row] <= tolerance * span || span == 0.0);
-            unresolved.push(lost || !within);
+            // Written so that not a number is not resolved.
+            let small = |share: f64| total[row] <= share * span || span == 0.0;
+            unresolved.push(match tolerance {
+                Some(tolerance) => !small(tolerance),
+                None => {
+                    let follows = surrogate[row] <= LOST * range.width() || small(SMALL);
+                    lost |= !(follows && small(LOST));
+                    lost
+                }
+            });
         }
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
     }

@@ -6,6 +6,7 @@ use mbint::bounds::{Method, OutputBounds};
 use mbint::model::{BoundsRequest, ChebyshevRequest, Description, RangeKind, ScanRequest, TaylorRequest};
 
 use super::common::{Findings, Vary, band, model, output, read, reference, run, uncertain_count};
+use super::runge_kutta::runge_kutta;
 
 /// Least and largest of an output at every output time.
 type Truth = Vec<(f64, f64)>;
@@ -68,31 +69,6 @@ fn range_over(curves: impl Iterator<Item = Vec<f64>>, rows: usize) -> Truth {
 /// n points from a to b, both included.
 fn points(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> + Clone {
     (0..n).map(move |i| a + (b - a) * i as f64 / (n - 1) as f64)
-}
-
-/// The solution of y' = f(y) at whole multiples of `output_step`, by Runge and Kutta's classical method.
-fn runge_kutta<const N: usize>(
-    f: impl Fn([f64; N]) -> [f64; N],
-    start: [f64; N],
-    output_step: f64,
-    rows: usize,
-    steps_a_row: usize,
-) -> Vec<[f64; N]> {
-    let h = output_step / steps_a_row as f64;
-    let along = |y: [f64; N], d: [f64; N], h: f64| -> [f64; N] { std::array::from_fn(|i| y[i] + h * d[i]) };
-    let mut y = start;
-    let mut solution = vec![y];
-    for _ in 1..rows {
-        for _ in 0..steps_a_row {
-            let a = f(y);
-            let b = f(along(y, a, 0.5 * h));
-            let c = f(along(y, b, 0.5 * h));
-            let d = f(along(y, c, h));
-            y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
-        }
-        solution.push(y);
-    }
-    solution
 }
 
 /// The slider crank of the paper, against its reference's true ranges.

@@ -1,0 +1,249 @@
+//! Bounds to a tolerance, of few and of many parameters, against truths of other methods.
+
+use mbint::bounds::{Bounds, Method};
+use mbint::model::{BoundsRequest, Budget, ChebyshevRequest, Description, ParameterValue};
+
+use super::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
+use super::runge_kutta::runge_kutta;
+
+fn within(mut description: Description, tolerance: f64, solves: usize) -> Description {
+    description.bounds = BoundsRequest {
+        tolerance: Some(tolerance),
+        budget: Budget { solves, ..Budget::default() },
+        chebyshev: Some(ChebyshevRequest::ADAPTIVE),
+        ..Default::default()
+    };
+    description
+}
+
+fn unresolved(bounds: &Bounds) -> usize {
+    let bands = bounds.outputs.iter().flat_map(|output| &output.bands);
+    bands.map(|band| band.error.unresolved.iter().filter(|&&unresolved| unresolved).count()).sum()
+}
+
+/// `bounds: { tolerance: … }` is enough: the true error is within it, and so is the one that is told.
+#[test]
+fn the_tolerance_is_met() {
+    let Some(rows) = reference("slider_crank/bounds_l1_1pct.csv") else { return };
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let description = within(model("slider_crank_one").observing(&["slider.x"]), tolerance, 1000);
+        let (bounds, summary) = run_methods(&description, None);
+        assert_eq!(unresolved(&bounds), 0, "{tolerance}");
+        let band = band(&bounds.outputs[0], Method::Chebyshev);
+        let errors = rows.iter().filter(|row| row[0] > 0.0).map(|truth| {
+            let row = super::common::row(&bounds, truth[0]);
+            let error = (band.lower[row] - truth[2]).abs().max((band.upper[row] - truth[3]).abs());
+            (error, band.error.total[row])
+        });
+        // x3 ranges over 0.303 m.
+        let (errors, told): (Vec<f64>, Vec<f64>) = errors.unzip();
+        let largest = errors.iter().copied().fold(0.0, f64::max);
+        let covered =
+            errors.iter().zip(&told).filter(|(error, told)| error <= told).count() as f64 / errors.len() as f64;
+        println!("{tolerance}: {largest:.2e}, covered {covered:.3}, {:?}", summary.methods.last().unwrap());
+        assert!(largest <= tolerance * 0.303, "{tolerance}: {largest}");
+        assert!(covered >= 0.99, "{tolerance}: {covered}");
+    }
+}
+
+#[test]
+fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
+    let description = within(model("slider_crank"), 1e-4, 60);
+    let (bounds, summary) = run_methods(&description, None);
+    let solves: usize =
+        summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.solves).sum();
+    assert!(solves <= 60 + 26, "{solves}");
+    assert!(unresolved(&bounds) > 0);
+    assert!(summary.errors[0].unresolved_from.is_some());
+}
+
+/// A pendulum that swings over the top: after a second no polynomial in its length follows it.
+#[test]
+fn chaos_is_flagged_from_where_it_begins() {
+    let description = read(
+        &std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/models/double_pendulum.yaml"))
+            .unwrap()
+            .replace("upper.angle: -40 deg, lower.angle: -70 deg", "upper.angle: 80 deg, lower.angle: 60 deg")
+            .replace("duration: 3", "duration: 12")
+            .replace("tolerance: 0.5%", "tolerance: 0.1%"),
+    );
+    let bounds = run(&description);
+    for output in bounds.outputs.iter().filter(|output| output.name != "energy") {
+        let error = &band(output, Method::Chebyshev).error;
+        let from = error.unresolved_from().unwrap_or_else(|| panic!("{} is taken for resolved", output.name));
+        println!("{} from {} s", output.name, bounds.times[from]);
+        assert!(bounds.times[from] > 0.5, "{}", output.name);
+        assert!(error.unresolved[from..].iter().all(|&unresolved| unresolved), "{}: once lost, lost", output.name);
+    }
+}
+
+/// The slider crank in its one degree of freedom: l1, l2, m1, m2, m3, c, k, tau → x3 at whole multiples of `output_step`.
+fn slider_crank([l1, l2, m1, m2, m3, c, k, tau]: [f64; 8], output_step: f64, rows: usize) -> Vec<f64> {
+    // Derivatives by the crank's angle of: x3, the rod's angle, its centre.
+    let place = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let rod_sin = -l1 / l2 * sin;
+        let rod_cos = (1.0 - rod_sin * rod_sin).sqrt();
+        let rod = -l1 / l2 * cos / rod_cos;
+        let slider = -l1 * sin - l2 * rod_sin * rod;
+        let center = [-l1 * sin - 0.5 * l2 * rod_sin * rod, l1 * cos + 0.5 * l2 * rod_cos * rod];
+        (l1 * cos + l2 * rod_cos, slider, rod, center)
+    };
+    let inertia = |angle: f64| {
+        let (_, slider, rod, [x, y]) = place(angle);
+        m1 * l1 * l1 / 3.0 + m2 * (x * x + y * y) + m2 * l2 * l2 / 12.0 * rod * rod + m3 * slider * slider
+    };
+    let f = |[angle, speed]: [f64; 2]| {
+        let (x, slider, ..) = place(angle);
+        let slope = (inertia(angle + 1e-5) - inertia(angle - 1e-5)) / 2e-5;
+        let force = -k * (x - l1 - l2) - c * slider * speed;
+        [speed, (tau + force * slider - 0.5 * slope * speed * speed) / inertia(angle)]
+    };
+    let steps = (output_step / 1e-3).ceil() as usize;
+    runge_kutta(f, [0.0, 0.0], output_step, rows, steps).iter().map(|[angle, _]| place(*angle).0).collect()
+}
+
+const NOMINAL: [f64; 8] = [0.15, 0.56, 0.37, 0.77, 0.45, 1.0, 5.0, -0.5];
+
+/// All eight parameters known to 1 %.
+fn eight() -> Description {
+    let mut description = model("slider_crank").observing(&["slider.x"]);
+    for parameter in &mut description.parameters {
+        let place = ["l1", "l2", "m1", "m2", "m3", "c", "k", "tau"].iter().position(|name| *name == parameter.name);
+        let nominal = NOMINAL[place.unwrap()];
+        let half = 0.01 * nominal.abs();
+        parameter.value = ParameterValue::Interval { nominal, lower: nominal - half, upper: nominal + half };
+    }
+    description
+}
+
+/// The largest x3 (times `sign`) at a row over the box of ± 1 %: climbing from many starts, parameter by parameter.
+fn truth(row: usize, sign: f64) -> f64 {
+    let at = |xi: [f64; 8]| {
+        let parameters = std::array::from_fn(|i| NOMINAL[i] * (1.0 + 0.01 * xi[i]));
+        sign * slider_crank(parameters, 0.1 * row as f64, 2)[1]
+    };
+    let mut best = f64::NEG_INFINITY;
+    for start in 0..12 {
+        // The middle, then corners of all kinds.
+        let mut xi = std::array::from_fn(|i| match start {
+            0 => 0.0,
+            _ => {
+                if (start * (2 * i + 1) * 37 >> 3) % 2 == 0 {
+                    -1.0
+                } else {
+                    1.0
+                }
+            }
+        });
+        let mut value = at(xi);
+        let mut reach = 1.0;
+        while reach > 0.01 {
+            let before = value;
+            for i in 0..8 {
+                for step in [-reach, reach] {
+                    let mut tried = xi;
+                    tried[i] = (xi[i] + step).clamp(-1.0, 1.0);
+                    let there = at(tried);
+                    if there > value {
+                        (xi, value) = (tried, there);
+                    }
+                }
+            }
+            if value - before < 1e-7 {
+                reach *= 0.4;
+            }
+        }
+        best = best.max(value);
+    }
+    sign * best
+}
+
+/// Eight uncertain parameters: bounds within 1 % of the true width from at most 500 simulations, where a tensor of order 5
+/// needs 1.7 million.
+#[test]
+fn eight_parameters_take_five_hundred_simulations() {
+    let known = slider_crank(NOMINAL, 0.05, 16);
+    for (found, expected) in known.iter().step_by(5).zip([0.71, 0.611715439809, 0.410396368709, 0.67658356591]) {
+        assert!((found - expected).abs() < 1e-8, "the other equations are wrong: {found}, {expected}");
+    }
+    let (bounds, summary) = run_methods(&within(eight().rows_every(0.1), 2e-3, 500), None);
+    let solves: usize = summary.methods.iter().map(|method| method.solves).sum();
+    assert!(solves <= 501, "{solves}");
+    let band = band(&bounds.outputs[0], Method::Chebyshev);
+    let (mut width, mut true_width, mut covered) = (0.0, 0.0, 0);
+    let rows = [2, 5, 8, 10, 12, 13, 14, 15, 16, 17, 18, 19, 20];
+    for row in rows {
+        let (lower, upper) = (truth(row, -1.0), truth(row, 1.0));
+        let off = (band.lower[row] - lower).abs().max((band.upper[row] - upper).abs());
+        println!(
+            "{row}: off by {:.2e} of the width, error {:.2e}",
+            off / (upper - lower),
+            band.error.total[row] / (upper - lower)
+        );
+        width += band.upper[row] - band.lower[row];
+        true_width += upper - lower;
+        covered += usize::from(off <= band.error.total[row]);
+    }
+    println!("mean width {:.4}", width / true_width);
+    assert!((width / true_width - 1.0).abs() < 0.01, "{}", width / true_width);
+    assert_eq!(covered, rows.len());
+}
+
+/// Parameters in another order are the same parameters.
+#[test]
+fn permuted_parameters_have_the_same_bounds() {
+    let description = within(model("slider_crank"), 1e-3, 1000);
+    let mut permuted = description.clone();
+    permuted.parameters.reverse();
+    let (one, other) = (run(&description), run(&permuted));
+    let (a, b) = (band(&one.outputs[0], Method::Chebyshev), band(&other.outputs[0], Method::Chebyshev));
+    for row in 0..a.lower.len() {
+        let allowed = a.error.total[row] + b.error.total[row];
+        assert!(
+            (a.lower[row] - b.lower[row]).abs() <= allowed && (a.upper[row] - b.upper[row]).abs() <= allowed,
+            "{row}"
+        );
+    }
+    assert_eq!(one.contributions[0][0].parameter, other.contributions[0][1].parameter);
+}
+
+/// Height of a ball thrown up, v t − g t²/2: a sum, so that every share and every width has a closed form.
+#[test]
+fn contributions_of_a_throw_are_known() {
+    let bounds = run(&read(
+        "
+parameters:
+  v: { interval: [3.5, 4.5], value: 4.1, unit: m/s }
+  g: { interval: [9.7, 9.9], value: 9.8, unit: m/s^2 }
+bodies: { ball: { mass: 0.3, coordinates: [y] } }
+effects: { weight: { gravity: { acceleration: [0, -g] } } }
+initial: { ball.y: 0, ball.vy: v }
+outputs: { height: ball.y }
+simulation: { duration: 2, step: 0.01, output_step: 0.1 }
+bounds: { chebyshev: { order: 3 } }
+",
+    ));
+    let [of_v, of_g] = &bounds.contributions[0][..] else { panic!("two parameters") };
+    for (row, &t) in bounds.times.iter().enumerate().skip(1) {
+        let (by_v, by_g) = (1.0 * t, 0.2 * 0.5 * t * t);
+        let share = by_v * by_v / (by_v * by_v + by_g * by_g);
+        assert!((of_v.main[row] - share).abs() < 1e-9 && (of_g.total[row] - (1.0 - share)).abs() < 1e-9, "{t}");
+        assert!((of_v.width_without[row] - by_g).abs() < 1e-9 && (of_g.width_without[row] - by_v).abs() < 1e-9);
+    }
+    assert_eq!((of_v.main[0], of_v.width_without[0]), (0.0, 0.0));
+}
+
+/// Every model can be bounded to a tolerance: nothing is unknown.
+#[test]
+fn every_model_is_bounded_to_a_per_cent() {
+    for path in model_files() {
+        let bounds = run(&within(load(&path), 1e-2, 400));
+        for output in &bounds.outputs {
+            let band = band(output, Method::Chebyshev);
+            let flagged = band.error.unresolved.iter().filter(|&&unresolved| unresolved).count();
+            println!("{}: {} {flagged} of {} rows unresolved", path.display(), output.name, band.lower.len());
+            assert!(band.lower.iter().chain(&band.upper).all(|bound| bound.is_finite()), "{}", output.name);
+        }
+    }
+}
