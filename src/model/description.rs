@@ -12,6 +12,8 @@ pub struct Description {
     pub name: String,
     /// One line for people.
     pub description: Option<String>,
+    /// Whether the mechanism stays in the plane.
+    pub space: Space,
     /// In an order in which each depends only on earlier ones.
     pub parameters: Vec<Parameter>,
     /// `bodies[0]` is the ground: no coordinates, no mass, perhaps points.
@@ -30,6 +32,16 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+}
+
+/// In how many dimensions a mechanism moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Space {
+    /// Whether a body that says nothing else has six freedoms, and joints hold bodies in all of them. A planar
+    /// mechanism has z = 0 everywhere and turns about z only.
+    pub spatial: bool,
+    /// For people: what leaves the plane, or that nothing does.
+    pub why: String,
 }
 
 /// A named number: certain, or known to lie in an interval.
@@ -59,43 +71,100 @@ pub enum ParameterValue {
     },
 }
 
-/// A planar coordinate of a body's frame.
+/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Coordinate {
     /// Position of the frame's origin along the ground's x, m.
     X,
     /// Position of the frame's origin along the ground's y, m.
     Y,
-    /// Angle of the frame against the ground, rad, counter-clockwise, never wrapped.
+    /// Position of the frame's origin along the ground's z, m.
+    Z,
+    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
     Angle,
+    /// Euler parameter p0 (cosine of half the angle) to p3.
+    Euler(usize),
 }
 
-/// A rigid planar body.
+impl Coordinate {
+    /// The Euler parameters.
+    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
+
+    /// Whether it is a length rather than a part of the orientation.
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z)
+    }
+}
+
+/// A rotation from one frame to another.
+#[derive(Clone, Debug)]
+pub enum Rotation {
+    /// Turned about the fixed x, then y, then z, rad.
+    RollPitchYaw([Formula; 3]),
+    /// About an axis of any length but zero, by an angle in rad.
+    AxisAngle([Formula; 3], Formula),
+    /// Euler parameters p0 to p3, of any length but zero.
+    Quaternion([Formula; 4]),
+}
+
+/// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
+/// URDF. A body that only turns about z needs no more than zz.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Inertia {
+    pub xx: Formula,
+    pub yy: Formula,
+    pub zz: Formula,
+    pub xy: Formula,
+    pub xz: Formula,
+    pub yz: Formula,
+}
+
+impl Inertia {
+    /// The same about every axis.
+    pub fn scalar(value: &Formula) -> Self {
+        let zero = || Formula::number(0.0);
+        Self { xx: value.clone(), yy: value.clone(), zz: value.clone(), xy: zero(), xz: zero(), yz: zero() }
+    }
+}
+
+/// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Its name.
     pub name: String,
     /// kg; absent only where no declared coordinate needs it (ground).
     pub mass: Option<Formula>,
-    /// About the centre of mass, kg m²; absent only where the angle is not a coordinate.
-    pub inertia: Option<Formula>,
+    /// Absent only where the body does not turn.
+    pub inertia: Option<Inertia>,
     /// Centre of mass in the body's frame, m; by default the origin.
-    pub center_of_mass: Option<[Formula; 2]>,
+    pub center_of_mass: Option<[Formula; 3]>,
     /// The coordinates that the body has; the others are held. Empty for the ground.
     pub coordinates: Vec<Coordinate>,
     /// Values of coordinates that the body does not have (zero where not named).
     pub held: Vec<(Coordinate, Formula)>,
+    /// Orientation of a body that does not turn, where it is more than an angle about z.
+    pub held_orientation: Option<Rotation>,
     /// Named points in the body's frame, m.
     pub points: Vec<Point>,
 }
 
-/// A named point of a body.
+impl Body {
+    /// Whether its orientation is that of Euler parameters, and not an angle about z.
+    pub fn has_orientation(&self) -> bool {
+        self.held_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
+    }
+}
+
+/// A named point of a body, and a frame there.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Its name within the body.
     pub name: String,
     /// In the body's frame, m.
-    pub position: [Formula; 2],
+    pub position: [Formula; 3],
+    /// From the frame at the point to the body's; absent where their axes are parallel.
+    pub rotation: Option<Rotation>,
 }
 
 /// A point of a body; the frame's origin where `point` is absent.
@@ -117,36 +186,90 @@ pub struct Joint {
 }
 
 /// What a joint constrains; equations stand in `mechanics::joints`.
+///
+/// A joint is between two points A and B with frames. Axes are directions in both frames alike (any length but zero):
+/// where the joint's angle is zero, the frames' axes are parallel.
 #[derive(Clone, Debug)]
 pub enum JointKind {
-    /// Two points coincide.
+    /// Two points coincide and the frames turn about an axis against one another.
     Revolute {
         #[allow(missing_docs)]
         between: [PointRef; 2],
+        /// In the plane: z.
+        axis: [Formula; 3],
     },
-    /// The second point moves along a line through the first, fixed in the first body; no relative rotation:
-    /// angle₂ − angle₁ = `angle`.
+    /// The second point moves along a line through the first, fixed in the first body; no relative rotation, the second
+    /// frame being turned by `angle` about the first's z.
     Prismatic {
         #[allow(missing_docs)]
         between: [PointRef; 2],
-        /// Direction in the first body's frame; any length but zero.
-        axis: [Formula; 2],
+        #[allow(missing_docs)]
+        axis: [Formula; 3],
         /// rad
         angle: Formula,
     },
-    /// Welded: points coincide and angle₂ − angle₁ = `angle`.
+    /// Welded: points coincide, and the second frame is turned by `angle` about the first's z.
     Fixed {
         #[allow(missing_docs)]
         between: [PointRef; 2],
         /// rad
         angle: Formula,
     },
-    /// The second point moves along a line through the first, fixed in the first body; it may turn.
+    /// The second point moves along a line through the first, fixed in the first body; it may turn about the frames' z.
     PinInSlot {
         #[allow(missing_docs)]
         between: [PointRef; 2],
-        /// Direction in the first body's frame; any length but zero.
-        axis: [Formula; 2],
+        #[allow(missing_docs)]
+        axis: [Formula; 3],
+    },
+    /// The second point moves along the axis through the first, and the frames turn about it.
+    Cylindrical {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        #[allow(missing_docs)]
+        axis: [Formula; 3],
+    },
+    /// A cylindrical joint that advances by `pitch` a turn.
+    Screw {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        #[allow(missing_docs)]
+        axis: [Formula; 3],
+        /// m a turn; right-handed where positive.
+        pitch: Formula,
+    },
+    /// Two points coincide.
+    Spherical {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+    },
+    /// Two points coincide, and an axis of the first frame stays perpendicular to one of the second.
+    Universal {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        /// Of the first frame, and of the second.
+        axes: [[Formula; 3]; 2],
+    },
+    /// The second point moves in a plane through the first, and the frames turn about its normal.
+    Planar {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        #[allow(missing_docs)]
+        normal: [Formula; 3],
+    },
+    /// The second point moves along a line through the first, fixed in the first body.
+    PointOnLine {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        #[allow(missing_docs)]
+        axis: [Formula; 3],
+    },
+    /// The second point moves in a plane through the first, fixed in the first body.
+    PointOnPlane {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        #[allow(missing_docs)]
+        normal: [Formula; 3],
     },
     /// The points keep a distance, m.
     Distance {
@@ -157,11 +280,22 @@ pub enum JointKind {
     },
     /// angle₂ = ratio · angle₁ + offset. An external gear pair has a negative ratio.
     Gear {
-        /// Body indices.
-        between: [usize; 2],
+        #[allow(missing_docs)]
+        between: [Turning; 2],
         #[allow(missing_docs)]
         ratio: Formula,
         /// rad
+        offset: Formula,
+    },
+    /// displacement of the rack's joint = radius · angle of the pinion's joint + offset.
+    Rack {
+        /// Joint index.
+        pinion: usize,
+        /// Joint index.
+        rack: usize,
+        /// m a radian
+        radius: Formula,
+        /// m
         offset: Formula,
     },
     /// left = right, a formula of coordinates, points, parameters and t.
@@ -171,6 +305,55 @@ pub enum JointKind {
         #[allow(missing_docs)]
         right: Formula,
     },
+}
+
+impl JointKind {
+    /// The points that it is between; `None` for couplings and equations.
+    pub fn between(&self) -> Option<[PointRef; 2]> {
+        match self {
+            Self::Revolute { between, .. }
+            | Self::Prismatic { between, .. }
+            | Self::Fixed { between, .. }
+            | Self::PinInSlot { between, .. }
+            | Self::Cylindrical { between, .. }
+            | Self::Screw { between, .. }
+            | Self::Spherical { between }
+            | Self::Universal { between, .. }
+            | Self::Planar { between, .. }
+            | Self::PointOnLine { between, .. }
+            | Self::PointOnPlane { between, .. }
+            | Self::Distance { between, .. } => Some(*between),
+            Self::Gear { .. } | Self::Rack { .. } | Self::Equation { .. } => None,
+        }
+    }
+
+    /// The axis about which, or along which, the joint has the coordinate; `None` where it has it not.
+    pub fn axis_of(&self, coordinate: JointCoordinate) -> Option<&[Formula; 3]> {
+        match (self, coordinate) {
+            (Self::Revolute { axis, .. }, JointCoordinate::Angle)
+            | (Self::Prismatic { axis, .. }, JointCoordinate::Displacement)
+            | (Self::Cylindrical { axis, .. } | Self::Screw { axis, .. }, _) => Some(axis),
+            _ => None,
+        }
+    }
+}
+
+/// A coordinate of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum JointCoordinate {
+    /// Angle of the second frame against the first about the joint's axis, rad, never wrapped.
+    Angle,
+    /// Of the second point from the first along the joint's axis, m.
+    Displacement,
+}
+
+/// Something with an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turning {
+    /// The angle of a body about z.
+    Body(usize),
+    /// The angle of a joint.
+    Joint(usize),
 }
 
 /// A named effect.
@@ -189,14 +372,14 @@ pub enum EffectKind {
     /// The same acceleration on every body, m/s².
     Gravity {
         #[allow(missing_docs)]
-        acceleration: [Formula; 2],
+        acceleration: [Formula; 3],
     },
     /// A force at a point, N.
     Force {
         #[allow(missing_docs)]
         on: PointRef,
         #[allow(missing_docs)]
-        value: [Formula; 2],
+        value: [Formula; 3],
         /// Components in the body's frame instead of the ground's.
         in_body: bool,
     },
@@ -207,6 +390,15 @@ pub enum EffectKind {
         /// Body index.
         from: usize,
         #[allow(missing_docs)]
+        value: [Formula; 3],
+        /// Components in the frame of `on` instead of the ground's.
+        in_body: bool,
+    },
+    /// A torque on a joint's second body about the joint's axis, N m; its reaction acts on the first body.
+    JointTorque {
+        /// Joint index.
+        joint: usize,
+        #[allow(missing_docs)]
         value: Formula,
     },
     /// Between two points: along their connecting line, or along an axis of the ground.
@@ -214,7 +406,7 @@ pub enum EffectKind {
         #[allow(missing_docs)]
         between: [PointRef; 2],
         /// Direction in the ground's frame; absent: along the connecting line.
-        along: Option<[Formula; 2]>,
+        along: Option<[Formula; 3]>,
         /// N/m
         stiffness: Formula,
         /// N s/m
@@ -222,10 +414,10 @@ pub enum EffectKind {
         /// m
         free_length: Formula,
     },
-    /// Between two bodies' angles.
+    /// Between two bodies' angles, or on the angle of a joint.
     TorsionalSpringDamper {
-        /// Body indices.
-        between: [usize; 2],
+        #[allow(missing_docs)]
+        on: Twisted,
         /// N m/rad
         stiffness: Formula,
         /// N m s/rad
@@ -233,6 +425,28 @@ pub enum EffectKind {
         /// rad
         free_angle: Formula,
     },
+    /// Springs and dampers between two frames, along and about the axes of the first.
+    Bushing {
+        #[allow(missing_docs)]
+        between: [PointRef; 2],
+        /// N/m
+        stiffness: [Formula; 3],
+        /// N s/m
+        damping: [Formula; 3],
+        /// N m/rad
+        torsional_stiffness: [Formula; 3],
+        /// N m s/rad
+        torsional_damping: [Formula; 3],
+    },
+}
+
+/// Whose angle a torsional spring twists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Twisted {
+    /// angle₂ − angle₁ of two bodies, by index.
+    Bodies([usize; 2]),
+    /// The angle of a joint, by index.
+    Joint(usize),
 }
 
 impl EffectKind {
@@ -241,9 +455,10 @@ impl EffectKind {
         match self {
             Self::Gravity { .. } => "gravity",
             Self::Force { .. } => "force",
-            Self::Torque { .. } => "torque",
+            Self::Torque { .. } | Self::JointTorque { .. } => "torque",
             Self::SpringDamper { .. } => "spring_damper",
             Self::TorsionalSpringDamper { .. } => "torsional_spring_damper",
+            Self::Bushing { .. } => "bushing",
         }
     }
 }
@@ -257,17 +472,47 @@ pub enum TimeOrder {
     Acceleration,
 }
 
-/// A value at the start.
+/// A value at the start; formulas are of parameters.
 #[derive(Clone, Debug)]
-pub struct StartValue {
-    /// Body index, not the ground.
-    pub body: usize,
-    /// One that the body has.
-    pub coordinate: Coordinate,
-    /// Position or velocity.
-    pub order: TimeOrder,
-    /// Formula of parameters.
-    pub value: Formula,
+pub enum StartValue {
+    /// Of a coordinate.
+    Coordinate {
+        /// Body index, not the ground.
+        body: usize,
+        /// One that the body has.
+        coordinate: Coordinate,
+        /// Position or velocity.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        value: Formula,
+    },
+    /// Of a body's Euler parameters.
+    Orientation {
+        /// Body index.
+        body: usize,
+        #[allow(missing_docs)]
+        rotation: Rotation,
+    },
+    /// Of a body that has an orientation, rad/s.
+    AngularVelocity {
+        /// Body index.
+        body: usize,
+        #[allow(missing_docs)]
+        value: [Formula; 3],
+        /// Components in the body's frame instead of the ground's.
+        in_body: bool,
+    },
+    /// Of a joint's coordinate.
+    Joint {
+        /// Joint index.
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        /// Position or velocity.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        value: Formula,
+    },
 }
 
 /// Something observed.
@@ -288,7 +533,7 @@ pub enum Referent {
     Parameter(usize),
     /// `t`, s.
     Time,
-    /// `body.x`, `.y`, `.angle`, `.vx`, `.vy`, `.angular_velocity`, `.ax`, `.ay`, `.angular_acceleration`.
+    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
     Coordinate {
         #[allow(missing_docs)]
         body: usize,
@@ -297,7 +542,34 @@ pub enum Referent {
         #[allow(missing_docs)]
         order: TimeOrder,
     },
-    /// `body.point.x`, `.y`, `.vx`, `.vy`, `.ax`, `.ay`; `coordinate` is X or Y.
+    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
+    AngularMotion {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: x, y, z.
+        axis: usize,
+        /// Velocity or acceleration.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        in_body: bool,
+    },
+    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
+    RollPitchYaw {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: roll, pitch, yaw.
+        angle: usize,
+    },
+    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
+    JointCoordinate {
+        #[allow(missing_docs)]
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        #[allow(missing_docs)]
+        order: TimeOrder,
+    },
+    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
     Point {
         #[allow(missing_docs)]
         body: usize,
@@ -308,7 +580,7 @@ pub enum Referent {
         #[allow(missing_docs)]
         order: TimeOrder,
     },
-    /// `joint.force`, `.force.x`, `.force.y`, `.torque`.
+    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
     Reaction {
         #[allow(missing_docs)]
         joint: usize,
@@ -324,12 +596,12 @@ pub enum Referent {
 pub enum ReactionComponent {
     /// Magnitude of the force, N.
     Force,
-    /// N
-    ForceX,
-    /// N
-    ForceY,
-    /// N m, about the second point.
+    /// Along an axis (0 to 2: x, y, z), N.
+    ForceAlong(usize),
+    /// About the second point, N m: in the plane the component about z, in space the magnitude.
     Torque,
+    /// About an axis (0 to 2: x, y, z) through the second point, N m.
+    TorqueAbout(usize),
 }
 
 /// Which energy.

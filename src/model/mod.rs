@@ -26,6 +26,8 @@ mod load;
 mod overrides;
 mod parameters;
 mod requests;
+mod rotations;
+mod space;
 #[cfg(test)]
 mod tests;
 
