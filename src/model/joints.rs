@@ -86,17 +86,17 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
     match kind.key.as_str() {
         "revolute" => {
             let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
-            let (between, axis) = (points(reader, &details), axis_or(reader, &details, "axis", 2));
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
             Some(JointKind::Revolute { between: between?, axis: axis? })
         }
         "cylindrical" => {
             let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
-            let (between, axis) = (points(reader, &details), axis_or(reader, &details, "axis", 2));
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
             Some(JointKind::Cylindrical { between: between?, axis: axis? })
         }
         "screw" => {
             let details = Details::read::<file::Screw>(reader, kind)?;
-            let (between, axis) = (points(reader, &details), axis_or(reader, &details, "axis", 2));
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
             let pitch = details.required(reader, "pitch").and_then(|node| {
                 let advances = |value| value != 0.0;
                 reader.formula_that(node, Context::Constant, Dimension::LENGTH, advances, "must not be zero")
@@ -119,12 +119,12 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         }
         "planar" => {
             let details = Details::read_short::<file::InPlane>(reader, kind)?;
-            let (between, normal) = (points(reader, &details), axis_or(reader, &details, "normal", 2));
+            let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
             Some(JointKind::Planar { between: between?, normal: normal? })
         }
         "point_on_plane" => {
             let details = Details::read_short::<file::InPlane>(reader, kind)?;
-            let (between, normal) = (points(reader, &details), axis_or(reader, &details, "normal", 2));
+            let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
             Some(JointKind::PointOnPlane { between: between?, normal: normal? })
         }
         "point_on_line" => {
@@ -189,17 +189,12 @@ fn axis(reader: &mut Reader, details: &Details) -> Option<[Formula; 3]> {
     details.required(reader, "axis").and_then(|node| reader.direction(node))
 }
 
-/// A direction, or that of an axis of the frames.
-fn axis_or(reader: &mut Reader, details: &Details, key: &str, default: usize) -> Option<[Formula; 3]> {
+/// A turning axis or a normal; z where there is none.
+fn axis_or_z(reader: &mut Reader, details: &Details, key: &str) -> Option<[Formula; 3]> {
     match details.get(key) {
-        Some(node) => {
-            let direction = reader.direction(node)?;
-            if key == "axis" && !reader.model.space.spatial && super::space::turns_out(node) {
-                reader.leaves_the_plane(node);
-            }
-            Some(direction)
-        }
-        None => Some(along(default)),
+        Some(node) if key == "axis" => reader.turning_axis(node),
+        Some(node) => reader.direction(node),
+        None => Some(along(2)),
     }
 }
 

@@ -303,17 +303,18 @@ impl Description {
                     let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
                     return NameError { message, part: 0..name.len(), help };
                 }
+                let along_z = matches!(part, "z" | "vz" | "az");
+                if !self.space.spatial && if point { along_z } else { is_motion(member) } {
+                    let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
+                    let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
+                    return NameError { message, part: 0..name.len(), help: Some(help) };
+                }
                 if point {
                     let start = after + member.len() + 1;
                     let message = format!("a point has no `{}`", suggest::clip(part));
                     let lengths = self.motions(body).filter(|(_, coordinate, _)| coordinate.is_length());
                     let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
                     return NameError { message, part: start..name.len(), help };
-                }
-                if !self.space.spatial && is_motion(member) {
-                    let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
-                    let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
-                    return NameError { message, part: 0..name.len(), help: Some(help) };
                 }
                 if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
                     let message = format!("`{vector}` is a vector: it has the parts x, y and z");

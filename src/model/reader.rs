@@ -427,21 +427,19 @@ impl Reader<'_> {
     /// Components of a dimension: two, in the plane z = 0, or three.
     pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         let items = self.two_or_three(node, "a list of two or three numbers")?;
+        if !self.model.space.spatial && super::space::leaves_plane(node) {
+            self.leaves_the_plane(&items[2]);
+        }
         let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
         let [x, y] = [read.next()?, read.next()?];
         let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
         Some([x?, y?, z?])
     }
 
-    /// A list of a vector's components. In the plane a third one can only be 0.
+    /// A list of a vector's components.
     fn two_or_three<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n [Node]> {
         let found = match &node.value {
-            Value::Sequence(items) if (2..=3).contains(&items.len()) => {
-                if !self.model.space.spatial && super::space::leaves_plane(node) {
-                    self.leaves_the_plane(&items[2]);
-                }
-                return Some(items);
-            }
+            Value::Sequence(items) if (2..=3).contains(&items.len()) => return Some(items),
             Value::Sequence(items) => format!("a list of {}", items.len()),
             _ => node.kind().to_owned(),
         };
@@ -470,8 +468,24 @@ impl Reader<'_> {
         Some([x?, y?, z?])
     }
 
-    /// `x`, `y`, `z` or components of any length but zero.
+    /// A direction along which something moves: in the plane, where the mechanism is planar.
     pub fn direction(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        if !self.model.space.spatial && super::space::points_out(node) {
+            self.leaves_the_plane(node);
+        }
+        self.axis(node)
+    }
+
+    /// An axis about which something turns: z, where the mechanism is planar.
+    pub fn turning_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        if !self.model.space.spatial && super::space::turns_out(node) {
+            self.leaves_the_plane(node);
+        }
+        self.axis(node)
+    }
+
+    /// `x`, `y`, `z` or components of any length but zero.
+    fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
         let along = |axis: usize| [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))));
         match node.scalar().map(|scalar| scalar.text.as_str()) {
             Some("x") => return Some(along(0)),

@@ -29,7 +29,7 @@ impl Reader<'_> {
         match *kind {
             "rpy" => Some(Rotation::RollPitchYaw(self.three(value, Context::Constant, Dimension::ANGLE)?)),
             "axis" => {
-                let axis = self.direction(value);
+                let axis = self.turning_axis(value);
                 let angle = self.required(&fields, "angle");
                 let angle = angle.and_then(|node| self.formula(node, Context::Constant, Dimension::ANGLE));
                 Some(Rotation::AxisAngle(axis?, angle?))

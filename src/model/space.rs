@@ -86,7 +86,7 @@ fn joint_leaves(joint: &Node) -> Option<String> {
         return Some("the kind".to_owned());
     }
     let axis = get(&kind.value, "axis").or_else(|| get(&kind.value, "normal"))?;
-    let leaves = if kind.key == "revolute" { turns_out(axis) } else { is(axis, "z") || leaves_plane(axis) };
+    let leaves = if kind.key == "revolute" { turns_out(axis) } else { points_out(axis) };
     leaves.then(|| "the axis".to_owned())
 }
 
@@ -95,6 +95,11 @@ pub fn leaves_plane_about(torque: &Node) -> bool {
     let Value::Sequence(items) = &torque.value else { return false };
     let zero = |node: &Node| node.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
     !items.iter().take(2).all(zero)
+}
+
+/// Whether moving along the direction leaves the plane.
+pub fn points_out(direction: &Node) -> bool {
+    is(direction, "z") || leaves_plane(direction)
 }
 
 /// Whether turning about the axis leaves the plane.
@@ -112,7 +117,7 @@ fn effect_leaves(effect: &Node) -> Option<String> {
     }
     let components = ["acceleration", "value", "along"].into_iter().find(|key| {
         let value = get(&kind.value, key);
-        kind.key != "torque" && value.is_some_and(|value| leaves_plane(value) || *key == "along" && is(value, "z"))
+        kind.key != "torque" && value.is_some_and(points_out)
     });
     components.map(|key| format!("`{key}`"))
 }
