@@ -117,7 +117,6 @@ impl Body {
         origin(&self.position)
     }
 
-
     /// ω in the ground's axes.
     pub fn angular_velocity(&self, g: &mut Graph) -> Vector {
         self.turning(g, &self.velocity)

@@ -67,8 +67,7 @@ impl Mechanism<'_> {
                 StartValue::AngularVelocity { body, value, in_body } if wanted == TimeOrder::Velocity => {
                     let omega = self.vector(g, value, Context::Parameters)?;
                     let p = self.bodies[*body].euler();
-                    let rates =
-                        if *in_body { rotation::body_rates(g, p) } else { rotation::ground_rates(g, p) };
+                    let rates = if *in_body { rotation::body_rates(g, p) } else { rotation::ground_rates(g, p) };
                     let rate = rotation::transposed(g, 0.5, &rates, omega);
                     self.set_euler(*body, rate, &mut found);
                 }
@@ -109,9 +108,12 @@ impl Mechanism<'_> {
                 {
                     Some(value)
                 }
-                StartValue::Joint { coordinate: JointCoordinate::Displacement, order: TimeOrder::Position, value, .. } => {
-                    Some(value)
-                }
+                StartValue::Joint {
+                    coordinate: JointCoordinate::Displacement,
+                    order: TimeOrder::Position,
+                    value,
+                    ..
+                } => Some(value),
                 _ => None,
             })
             .collect();

@@ -187,10 +187,13 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
             None => found.push((named, item)),
         }
     }
-    let turning: Vec<&Node> =
-        found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
+    let turning: Vec<&Node> = found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
     if let [_, second] = turning.as_slice() {
-        reader.error(second.span.clone(), "a body turns by an `angle` about z or by an `orientation`, not by both", None);
+        reader.error(
+            second.span.clone(),
+            "a body turns by an `angle` about z or by an `orientation`, not by both",
+            None,
+        );
     }
     found.into_iter().flat_map(|(named, _)| named).copied().collect()
 }
@@ -226,7 +229,9 @@ fn held(
         if !reader.model.space.spatial {
             reader.leaves_the_plane(node);
         }
-        if let Some((name, _)) = COORDINATES.iter().find(|(_, named)| !named[0].is_length() && coordinates.contains(&named[0])) {
+        if let Some((name, _)) =
+            COORDINATES.iter().find(|(_, named)| !named[0].is_length() && coordinates.contains(&named[0]))
+        {
             refuse(reader, if *name == "angle" { "orientation" } else { name });
         }
         if held.get("angle").is_some() {
@@ -337,7 +342,9 @@ impl Reader<'_> {
         if !self.model.has(found, coordinate) {
             let (what, help) = match coordinate {
                 JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),
-                JointCoordinate::Displacement => ("slides", "prismatic, cylindrical and screw joints slide along theirs"),
+                JointCoordinate::Displacement => {
+                    ("slides", "prismatic, cylindrical and screw joints slide along theirs")
+                }
             };
             self.error(node.span.clone(), format!("`{}` is no joint that {what}", clip(name)), help.to_owned());
             return None;

@@ -77,8 +77,12 @@ fn effect(reader: &mut Reader, entry: &Entry) -> Option<EffectKind> {
             let fields = reader.fields::<file::Bushing>(node, at)?;
             let between = reader.required(&fields, "between").and_then(|node| reader.between_points(node));
             let mut per_axis = |key: &str, dimension: Dimension| match fields.get(key) {
-                Some(node) if matches!(node.value, Value::Sequence(_)) => reader.three(node, Context::Effect, dimension),
-                Some(node) => reader.formula(node, Context::Effect, dimension).map(|all| [all.clone(), all.clone(), all]),
+                Some(node) if matches!(node.value, Value::Sequence(_)) => {
+                    reader.three(node, Context::Effect, dimension)
+                }
+                Some(node) => {
+                    reader.formula(node, Context::Effect, dimension).map(|all| [all.clone(), all.clone(), all])
+                }
                 None => Some([0.0; 3].map(Formula::number)),
             };
             let stiffness = per_axis("stiffness", Dimension::STIFFNESS);
@@ -107,7 +111,8 @@ fn torque(reader: &mut Reader, fields: &Fields) -> Option<EffectKind> {
     let on = reader.required(fields, "on");
     if let Some(joint) = on.filter(|node| reader.names_joint(node)) {
         for key in ["from", "frame"].into_iter().filter(|key| fields.get(key).is_some()) {
-            let message = format!("a torque at a joint has no `{key}`: it acts about the joint's axis, between its bodies");
+            let message =
+                format!("a torque at a joint has no `{key}`: it acts about the joint's axis, between its bodies");
             reader.error(fields.key_span(key), message, None);
         }
         let joint = reader.joint_ref(joint, JointCoordinate::Angle);

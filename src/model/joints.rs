@@ -111,7 +111,9 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
             let details = Details::read_short::<file::Universal>(reader, kind)?;
             let between = points(reader, &details);
             let axes = match details.get("axes") {
-                Some(node) => reader.two(node, "a list of two directions").map(|axes| axes.map(|axis| reader.direction(axis))),
+                Some(node) => {
+                    reader.two(node, "a list of two directions").map(|axes| axes.map(|axis| reader.direction(axis)))
+                }
                 None => Some([Some(along(0)), Some(along(1))]),
             };
             let [first, second] = axes?;
@@ -224,7 +226,8 @@ fn turning(reader: &mut Reader, node: &Node) -> Option<[Turning; 2]> {
         for (body, node) in bodies.into_iter().zip(pair) {
             if reader.model.bodies[body].has_orientation() {
                 let name = reader.model.bodies[body].name.clone();
-                let help = "name two joints, or give the body the coordinate `angle` instead of `orientation`".to_owned();
+                let help =
+                    "name two joints, or give the body the coordinate `angle` instead of `orientation`".to_owned();
                 reader.error(node.span.clone(), format!("`{name}` turns about more than z, so it has no angle"), help);
             }
         }

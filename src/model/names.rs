@@ -322,8 +322,10 @@ impl Description {
                     return NameError { message, part: 0..name.len(), help };
                 }
                 if member == "angle" || member.starts_with("angular_") {
-                    let message = format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
-                    let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
+                    let message =
+                        format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
+                    let help =
+                        "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
                     let part = after..after + member.len();
                     return NameError { message, part, help: Some(help.to_owned()) };
                 }

@@ -456,7 +456,11 @@ impl Reader<'_> {
     /// Three formulas of a dimension.
     pub fn three(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         let Value::Sequence(items) = &node.value else {
-            self.error(node.span.clone(), format!("a list of three numbers belongs here, but here is {}", node.kind()), None);
+            self.error(
+                node.span.clone(),
+                format!("a list of three numbers belongs here, but here is {}", node.kind()),
+                None,
+            );
             return None;
         };
         let [x, y, z] = items.as_slice() else {

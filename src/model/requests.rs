@@ -73,8 +73,12 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     }
     let value = reader.formula(&entry.value, Context::Constant, dimension)?;
     match referent {
-        Referent::Coordinate { body, coordinate, .. } => Some(StartValue::Coordinate { body, coordinate, order, value }),
-        Referent::JointCoordinate { joint, coordinate, .. } => Some(StartValue::Joint { joint, coordinate, order, value }),
+        Referent::Coordinate { body, coordinate, .. } => {
+            Some(StartValue::Coordinate { body, coordinate, order, value })
+        }
+        Referent::JointCoordinate { joint, coordinate, .. } => {
+            Some(StartValue::Joint { joint, coordinate, order, value })
+        }
         _ => None,
     }
 }

@@ -14,7 +14,8 @@ impl Reader<'_> {
     /// A rotation of parameters; `at` is where to say that something is missing.
     pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
         let fields = self.fields::<file::Rotation>(node, at)?;
-        let given: Vec<&str> = ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+        let given: Vec<&str> =
+            ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
         let [kind] = given.as_slice() else {
             let help = "e.g. `{ rpy: [0, 90 deg, 0] }`, `{ axis: z, angle: 30 deg }` or `{ quaternion: [1, 0, 0, 0] }`";
             let message = "a rotation is one of `rpy`, `axis` with `angle`, and `quaternion`";

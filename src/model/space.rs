@@ -28,7 +28,8 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves it", effect.key));
     let start = ["initial", "guess"].into_iter().find_map(|section| {
         let names = entries(section).iter().map(|entry| entry.key.as_str());
-        let name = names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
+        let name =
+            names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
         Some(format!("`{name}` in `{section}` leaves it"))
     });
     match bodies.or(joints).or(effects).or(start) {

@@ -157,8 +157,9 @@ pub fn compile(
         numbers.insert(place + offset, [-weight; PROBES]);
     }
 
+    let pivoting = if system.space.spatial { Pivoting::Symmetric { heavy: &heavy } } else { Pivoting::Any };
     let plan = |graph: &mut Graph, numbers: &[Numbers]| {
-        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, Pivoting::Any)
+        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, pivoting)
     };
     // A start in a singular configuration has no pivots of its own: then states in general position decide.
     let factors = plan(&mut graph, &numbers).or_else(|_| {

@@ -28,9 +28,19 @@ const SEARCHED: usize = 4;
 
 /// Which entries may be pivots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pivoting {
+pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
     Any,
+    /// What cannot vanish wherever the mechanism goes, in a matrix [M Φᵀ; Φ 0] with M positive definite but for coordinates
+    /// without inertia (`heavy` says which have some, and how many coordinates there are): diagonal entries of M; a slope of
+    /// Φ that does not change or is by a coordinate without inertia, twice, which takes the coordinate and the multiplier
+    /// out together; and, where nothing of its row is left in Φ, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
+    ///
+    /// Bodies that turn freely need it: each of their Euler parameters, and so each slope by them, passes through zero.
+    Symmetric {
+        #[allow(missing_docs)]
+        heavy: &'m [bool],
+    },
     /// The diagonal only, of the rows before `constraints` first: for quasi-definite matrices, where this order exists
     /// whatever the numbers.
     Diagonal {
@@ -39,10 +49,10 @@ pub enum Pivoting {
     },
 }
 
-impl Pivoting {
+impl Pivoting<'_> {
     fn smallest(self) -> f64 {
         match self {
-            Self::Any => SINGULAR,
+            Self::Any | Self::Symmetric { .. } => SINGULAR,
             Self::Diagonal { .. } => SINGULAR_DIAGONAL,
         }
     }
@@ -103,7 +113,9 @@ struct Active<'g> {
     dear: usize,
     rows: Vec<BTreeMap<usize, Entry>>,
     columns: Vec<BTreeSet<usize>>,
-    pivoting: Pivoting,
+    pivoting: Pivoting<'g>,
+    /// The second pivot of a pair, to be taken next.
+    mate: Option<(usize, usize)>,
     /// The rows and columns left.
     sparsest_rows: BTreeSet<Key>,
     sparsest_columns: BTreeSet<Key>,
@@ -114,14 +126,14 @@ struct Active<'g> {
 ///
 /// # Errors
 /// [`Singular`] where no entry of the rows left is large enough at every probe.
-pub fn factorise(
-    graph: &mut Graph,
+pub fn factorise<'g>(
+    graph: &'g mut Graph,
     matrix: &SparseMatrix,
     numbers: &[Numbers],
     scale: &[f64],
     stages: Stages,
     dear: usize,
-    pivoting: Pivoting,
+    pivoting: Pivoting<'g>,
 ) -> Result<Factors, Singular> {
     let size = matrix.rows.len();
     let mut rows = vec![BTreeMap::new(); size];
@@ -133,7 +145,8 @@ pub fn factorise(
     }
     let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| pivoting.key(entries.len(), row)).collect();
     let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| pivoting.key(rows.len(), column)).collect();
-    let mut active = Active { graph, stages, dear, pivoting, rows, columns, sparsest_rows, sparsest_columns };
+    let mut active =
+        Active { graph, stages, dear, pivoting, mate: None, rows, columns, sparsest_rows, sparsest_columns };
     let mut pivots = Vec::with_capacity(size);
     while pivots.len() < size {
         match active.choose() {
@@ -148,14 +161,20 @@ impl Active<'_> {
     /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where none
     /// has, the threshold is lowered.
     fn choose(&mut self) -> Option<(usize, usize)> {
+        if let Some(mate) = self.mate.take() {
+            return Some(mate);
+        }
         self.stages.update(self.graph);
         let singular = self.pivoting.smallest();
         let mut threshold = THRESHOLD;
         while threshold > singular {
             let mut searched = SEARCHED;
             loop {
-                if let Some(best) = self.best_of(searched, threshold) {
-                    return Some(best);
+                if let Some((row, column)) = self.best_of(searched, threshold) {
+                    if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
+                        self.mate = Some((column, row));
+                    }
+                    return Some((row, column));
                 }
                 if searched >= self.sparsest_columns.len() {
                     break;
@@ -192,7 +211,29 @@ impl Active<'_> {
             .iter()
             .take(searched)
             .flat_map(|&(_, _, row)| self.rows[row].keys().map(move |&column| (row, column)));
-        in_columns.chain(in_rows).filter(|(row, column)| self.pivoting == Pivoting::Any || row == column)
+        in_columns.chain(in_rows).filter(|&(row, column)| self.may_be_pivot(row, column))
+    }
+
+    fn may_be_pivot(&self, row: usize, column: usize) -> bool {
+        match self.pivoting {
+            Pivoting::Any => true,
+            Pivoting::Diagonal { .. } => row == column,
+            Pivoting::Symmetric { heavy } if row == column => match heavy.get(row) {
+                Some(heavy) => *heavy,
+                None => self.rows[row].range(..heavy.len()).next().is_none(),
+            },
+            Pivoting::Symmetric { heavy } => {
+                let slope = row < heavy.len() && column >= heavy.len();
+                let steady = |value: Expr| self.stages.of(value) != Some(self.dear);
+                let mate = self.rows[column].get(&row).filter(|_| slope);
+                mate.is_some_and(|mate| {
+                    !heavy[row]
+                        || !self.rows[column].contains_key(&column)
+                            && steady(mate.value)
+                            && steady(self.rows[row][&column].value)
+                })
+            }
+        }
     }
 
     /// |entry| over the largest of its column, at the worst probe.

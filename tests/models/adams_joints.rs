@@ -16,9 +16,7 @@ const CASES: [(&str, &str, [f64; 13]); 7] = [
   a: { mass: 1, inertia: [0.04, 0.1, 0.1], points: { P: [-2, 0, 0] } }
 joints: { j: { revolute: [ground.O, a.P] } }
 initial: { a.orientation: { axis: x, angle: -90 deg } }",
-        [
-            -0.892381, 0.0, -1.78988, 0.372092, -0.372092, 0.601288, 0.601288, 11.4612, 0.0, 23.2273, 0.0, 2.92614, 0.0,
-        ],
+        [-0.892381, 0.0, -1.78988, 0.372092, -0.372092, 0.601288, 0.601288, 11.4612, 0.0, 23.2273, 0.0, 2.92614, 0.0],
     ),
     (
         "spherical_joint/Spherical",
@@ -62,19 +60,8 @@ joints: { j: { revolute: [ground.O, a.P] } }
 effects: { s: { torsional_spring_damper: { on: j, stiffness: 200, damping: 10 } } }
 initial: { a.orientation: { axis: x, angle: -90 deg } }",
         [
-            1.994921,
-            0.0,
-            -0.1424453,
-            0.7066577,
-            -0.7066577,
-            0.02519702,
-            0.02519702,
-            -0.1710964,
-            0.0,
-            7.811281,
-            0.0,
-            0.1201785,
-            0.0,
+            1.994921, 0.0, -0.1424453, 0.7066577, -0.7066577, 0.02519702, 0.02519702, -0.1710964, 0.0, 7.811281, 0.0,
+            0.1201785, 0.0,
         ],
     ),
     (
@@ -108,16 +95,20 @@ fn joints_and_springs_move_as_in_adams() {
             Some((before, after)) => format!("{before}effects: {{ {gravity}, {after}"),
             None => format!("{text}\neffects: {{ {gravity} }}"),
         };
-        let text = format!("{text}\noutputs: {{ x: a.x }}\nsimulation: {{ duration: 5, step: 1e-3, output_step: 0.01 }}\n");
+        let text =
+            format!("{text}\noutputs: {{ x: a.x }}\nsimulation: {{ duration: 5, step: 1e-3, output_step: 0.01 }}\n");
         let has_joint = text.contains("joints:");
         let mut formulas: Vec<&str> = EULER.to_vec();
-        formulas.extend(OBSERVED.iter().flat_map(|(_, formulas, ..)| formulas).filter(|f| has_joint || !f.starts_with("j.")));
+        formulas.extend(
+            OBSERVED.iter().flat_map(|(_, formulas, ..)| formulas).filter(|f| has_joint || !f.starts_with("j.")),
+        );
         let bounds = nominal(&read(&text).observing(&formulas));
 
         // The row at 1 s: position, Euler parameters, force on the body, angular velocity.
         let one = row(&bounds, 1.0);
         let names = [&["a.x", "a.y", "a.z"][..], &EULER, &OBSERVED[5].1, &OBSERVED[3].1].concat();
-        for (formula, wanted) in names.iter().zip(at_one).filter(|(formula, _)| has_joint || !formula.starts_with("j.")) {
+        for (formula, wanted) in names.iter().zip(at_one).filter(|(formula, _)| has_joint || !formula.starts_with("j."))
+        {
             let found = curve(&bounds, formula)[one];
             let allowed = if formula.starts_with("j.") { 1e-3 + 1e-2 * wanted.abs() } else { 1e-3 };
             findings.check((found - wanted).abs() < allowed, format_args!("{name}: {formula} = {found}, not {wanted}"));

@@ -53,8 +53,11 @@ fn a_free_spin_is_kept_to_second_order() {
 fn a_tumbling_body_keeps_energy_and_angular_momentum() {
     // Spun about its middle axis it turns over and over (Dzhanibekov): ω_y changes its sign several times.
     let description = free("{ xx: 1, yy: 2, zz: 3, xy: 0.05, yz: -0.02 }", "[0.02, 5, 0.01]", 10.0);
-    let momentum = ["(a.omega_body.x + 0.05*a.omega_body.y)", "(0.05*a.omega_body.x + 2*a.omega_body.y - 0.02*a.omega_body.z)",
-        "(3*a.omega_body.z - 0.02*a.omega_body.y)"];
+    let momentum = [
+        "(a.omega_body.x + 0.05*a.omega_body.y)",
+        "(0.05*a.omega_body.x + 2*a.omega_body.y - 0.02*a.omega_body.z)",
+        "(3*a.omega_body.z - 0.02*a.omega_body.y)",
+    ];
     // The third row of R.
     let up = ["2*(a.p1*a.p3 - a.p0*a.p2)", "2*(a.p2*a.p3 + a.p0*a.p1)", "(a.p0^2 + a.p3^2 - a.p1^2 - a.p2^2)"];
     let square: Vec<String> = momentum.iter().map(|part| format!("{part}^2")).collect();
@@ -89,7 +92,11 @@ simulation: {{ duration: 0.01, step: 1e-3 }}
         bounds.outputs.iter().map(|output| output.nominal[0]).collect::<Vec<f64>>()
     };
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    for turned in [with("{ rpy: [0, 0, 90 deg] }"), with("{ axis: [0, 0, 3], angle: 90 deg }"), with("{ quaternion: [2, 0, 0, 2] }")] {
+    for turned in [
+        with("{ rpy: [0, 0, 90 deg] }"),
+        with("{ axis: [0, 0, 3], angle: 90 deg }"),
+        with("{ quaternion: [2, 0, 0, 2] }"),
+    ] {
         let wanted = [0.0, 1.0, 1.0, 0.0, 0.0, std::f64::consts::FRAC_PI_2, 0.2];
         for (found, wanted) in turned.iter().zip(wanted) {
             assert!((found - wanted).abs() < 1e-12, "{turned:?}");
@@ -120,9 +127,7 @@ fn the_heavy_top_is_that_of_another_formulation() {
     for (column, name) in formulas.iter().enumerate() {
         let values = runs.each_ref().map(|run| curve(run, name));
         let extrapolated = richardson(values[0], values[1]);
-        let error = |curve: &[f64]| {
-            largest(rows.iter().map(|line| curve[row(&runs[0], line[0])] - line[column + 1]))
-        };
+        let error = |curve: &[f64]| largest(rows.iter().map(|line| curve[row(&runs[0], line[0])] - line[column + 1]));
         let (errors, left) = (values.map(error), error(&extrapolated));
         println!("{name}: {errors:?}, extrapolated {left:.2e}");
         assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1, "{name}: {errors:?}");

@@ -75,7 +75,12 @@ fn a_force_in_the_body_turns_with_it() {
 #[test]
 fn a_torque_drives_one_body_against_the_other() {
     let mut m = two_bodies();
-    m.effect(EffectKind::Torque { on: m.body_index("b"), from: m.body_index("a"), value: vector(["0", "0", "4"]), in_body: false });
+    m.effect(EffectKind::Torque {
+        on: m.body_index("b"),
+        from: m.body_index("a"),
+        value: vector(["0", "0", "4"]),
+        in_body: false,
+    });
     let system = m.build();
     let state = State::random(&system, 3);
     let rate = value(&system, &state, "b.angular_velocity - a.angular_velocity");

@@ -71,9 +71,8 @@ impl Model {
 
     /// `letters` are coordinates, of `xyzao`.
     pub fn body(&mut self, name: &str, mass: &str, inertia: &str, letters: &str, points: &[(&str, &str, &str)]) {
-        let point = |&(name, x, y): &(&str, &str, &str)| {
-            Point { name: name.to_owned(), position: pair(x, y), rotation: None }
-        };
+        let point =
+            |&(name, x, y): &(&str, &str, &str)| Point { name: name.to_owned(), position: pair(x, y), rotation: None };
         let points = points.iter().map(point).collect();
         self.0.bodies.push(Body {
             name: name.to_owned(),
