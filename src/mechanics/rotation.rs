@@ -176,10 +176,10 @@ mod tests {
         }
         // Ṙ = ω × R, column by column; ω = R ω'.
         let (omega, turned) = (values(g, &omega, P, RATE), values(g, &turned, P, RATE));
-        for i in 0..3 {
+        for (i, row) in r.iter().enumerate() {
             close((0..3).map(|k| r_at(i, k) * turned[k]).sum(), omega[i]);
-            for j in 0..3 {
-                let slopes: Vec<Expr> = p.iter().map(|&symbol| g.derivative(r[i][j], symbol)).collect();
+            for (j, &entry) in row.iter().enumerate() {
+                let slopes: Vec<Expr> = p.iter().map(|&symbol| g.derivative(entry, symbol)).collect();
                 let change: f64 = values(g, &slopes, P, RATE).iter().zip(RATE).map(|(slope, rate)| slope * rate).sum();
                 let (k, l) = ((i + 1) % 3, (i + 2) % 3);
                 close(change, omega[k] * r_at(l, j) - omega[l] * r_at(k, j));

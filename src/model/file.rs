@@ -76,7 +76,7 @@ enum SpaceName {
 #[schemars(untagged, inline)]
 enum PointFile {
     At(Components),
-    Frame(PointFrame),
+    Frame(Box<PointFrame>),
 }
 
 /// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
