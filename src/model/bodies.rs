@@ -2,10 +2,12 @@
 
 use symdiff::Formula;
 
-use super::description::{Body, Coordinate, Inertia, JointCoordinate, Point, PointRef, Rotation};
+use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
 use super::diagnostic::Diagnostic;
 use super::file;
-use super::names::{Context, GROUND, is_motion};
+use super::kinds::JointCoordinate;
+use super::motions::is_motion;
+use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::suggest::{self, clip};

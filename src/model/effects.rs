@@ -2,8 +2,9 @@
 
 use symdiff::Formula;
 
-use super::description::{Effect, EffectKind, JointCoordinate, Twisted};
+use super::description::Effect;
 use super::file;
+use super::kinds::{EffectKind, JointCoordinate, Twisted};
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};

@@ -2,11 +2,12 @@
 
 use symdiff::Formula;
 
-use super::description::{Joint, JointCoordinate, JointKind, PointRef, Referent, Turning};
+use super::description::{Joint, PointRef, Referent};
 use super::file::{self, Grammar};
+use super::kinds::{JointCoordinate, JointKind, Turning};
 use super::names::Context;
 use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::reader::{Fields, Reader, Written};
 use super::yaml::{Entry, Node, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
@@ -97,10 +98,7 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         "screw" => {
             let details = Details::read::<file::Screw>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
-            let pitch = details.required(reader, "pitch").and_then(|node| {
-                let advances = |value| value != 0.0;
-                reader.formula_that(node, Context::Constant, Dimension::LENGTH, advances, "must not be zero")
-            });
+            let pitch = pitch(reader, &details);
             Some(JointKind::Screw { between: between?, axis: axis?, pitch: pitch? })
         }
         "spherical" => {
@@ -216,6 +214,22 @@ fn number(reader: &mut Reader, details: &Details, key: &str, dimension: Dimensio
 fn ratio(reader: &mut Reader, details: &Details, key: &str, dimension: Dimension) -> Option<Formula> {
     let node = details.required(reader, key)?;
     reader.formula_that(node, Context::Constant, dimension, |value| value != 0.0, "must not be zero")
+}
+
+/// The advance in a turn. `5 mm/rev` is read as a length a radian like any other, and would be taken for that in a turn.
+fn pitch(reader: &mut Reader, details: &Details) -> Option<Formula> {
+    let node = details.required(reader, "pitch")?;
+    let pitch = ratio(reader, details, "pitch", Dimension::LENGTH)?;
+    let per_angle = match reader.written(node)? {
+        Written::Quantity { unit, .. } => unit.dimension.is_per_angle(),
+        Written::Formula(formula) => reader.kind(node, &formula, 0).dimension().is_some_and(Dimension::is_per_angle),
+    };
+    if per_angle {
+        let help = "a pitch is the advance in a turn: write `5 mm` for 5 mm/rev".to_owned();
+        reader.error(node.span.clone(), "a length an angle stands where a length (m) belongs", help);
+        return None;
+    }
+    Some(pitch)
 }
 
 /// Two bodies by their angles, or two joints by theirs.

@@ -7,10 +7,11 @@ use std::collections::HashMap;
 
 use symdiff::{Formula, Graph};
 
-use super::description::{Description, JointKind, ReactionComponent, Referent};
+use super::description::{Description, ReactionComponent, Referent};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::dimension::{self, Kind};
 use super::file::Grammar;
+use super::kinds::JointKind;
 use super::names::{self, Context};
 use super::quantity::{Dimension, Unit, number_and_unit};
 use super::source::Span;
@@ -422,103 +423,6 @@ impl Reader<'_> {
             return None;
         }
         self.evaluate(&formula, 0).filter(|value| value.is_finite())
-    }
-
-    /// Components of a dimension: two, in the plane z = 0, or three.
-    pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
-        let items = self.two_or_three(node, "a list of two or three numbers")?;
-        if !self.model.space.spatial && super::space::leaves_plane(node) {
-            self.leaves_the_plane(&items[2]);
-        }
-        let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
-        let [x, y] = [read.next()?, read.next()?];
-        let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
-        Some([x?, y?, z?])
-    }
-
-    /// A list of a vector's components.
-    fn two_or_three<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n [Node]> {
-        let found = match &node.value {
-            Value::Sequence(items) if (2..=3).contains(&items.len()) => return Some(items),
-            Value::Sequence(items) => format!("a list of {}", items.len()),
-            _ => node.kind().to_owned(),
-        };
-        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
-        None
-    }
-
-    /// Something that a model which says `space: planar` cannot have.
-    pub fn leaves_the_plane(&mut self, node: &Node) {
-        let help = "write `space: spatial`, or leave `space` out".to_owned();
-        self.error(node.span.clone(), "this leaves the plane, but the model is planar", help);
-    }
-
-    /// Three formulas of a dimension.
-    pub fn three(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
-        let Value::Sequence(items) = &node.value else {
-            self.error(
-                node.span.clone(),
-                format!("a list of three numbers belongs here, but here is {}", node.kind()),
-                None,
-            );
-            return None;
-        };
-        let [x, y, z] = items.as_slice() else {
-            let message = format!("a list of three numbers belongs here, but here is a list of {}", items.len());
-            self.error(node.span.clone(), message, None);
-            return None;
-        };
-        let [x, y, z] = [x, y, z].map(|node| self.formula(node, context, wanted));
-        Some([x?, y?, z?])
-    }
-
-    /// A direction along which something moves: in the plane, where the mechanism is planar.
-    pub fn direction(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        if !self.model.space.spatial && super::space::points_out(node) {
-            self.leaves_the_plane(node);
-        }
-        self.axis(node)
-    }
-
-    /// An axis about which something turns: z, where the mechanism is planar.
-    pub fn turning_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        if !self.model.space.spatial && super::space::turns_out(node) {
-            self.leaves_the_plane(node);
-        }
-        self.axis(node)
-    }
-
-    /// `x`, `y`, `z` or components of any length but zero.
-    fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        let along = |axis: usize| [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))));
-        match node.scalar().map(|scalar| scalar.text.as_str()) {
-            Some("x") => return Some(along(0)),
-            Some("y") => return Some(along(1)),
-            Some("z") => return Some(along(2)),
-            _ => {}
-        }
-        let items = self.two_or_three(node, "`x`, `y`, `z` or a list of two or three numbers")?;
-        let mut component = |node: &Node| match self.written(node)? {
-            Written::Quantity { value, unit } => Some(Formula::number(unit.to_si(value))),
-            Written::Formula(formula) => self.check_names(node, &formula, 0, Context::Constant).then(|| {
-                self.kind(node, &formula, 0);
-                self.require(node, &formula, |_| true, "");
-                formula
-            }),
-        };
-        let mut read = items.iter().map(&mut component).collect::<Vec<_>>().into_iter();
-        let [x, y] = [read.next()?, read.next()?];
-        let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
-        let axis = [x?, y?, z?];
-        for corner in 0..self.corners.len() {
-            if axis.iter().all(|formula| self.evaluate(formula, corner) == Some(0.0)) {
-                let label = &self.corners[corner].label;
-                let message = format!("a direction of length zero points nowhere{label}");
-                self.error(node.span.clone(), message, None);
-                break;
-            }
-        }
-        Some(axis)
     }
 }
 

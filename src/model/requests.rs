@@ -6,7 +6,8 @@ use super::description::{
 use super::diagnostic::Diagnostic;
 use super::dimension::Kind;
 use super::file;
-use super::names::{Context, GROUND, ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use super::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader, Written};
 use super::suggest::clip;

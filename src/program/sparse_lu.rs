@@ -380,6 +380,15 @@ mod tests {
     use proptest::prelude::*;
 
     fn solve_numbers(dense: &[Vec<f64>], right: &[f64]) -> Result<Vec<f64>, Singular> {
+        solve_by(dense, right, Pivoting::Any).map(|(x, _)| x)
+    }
+
+    /// The solution, and the places of the pivots in their order.
+    fn solve_by(
+        dense: &[Vec<f64>],
+        right: &[f64],
+        pivoting: Pivoting,
+    ) -> Result<(Vec<f64>, Vec<(usize, usize)>), Singular> {
         let mut graph = Graph::new();
         let mut matrix = SparseMatrix::zero(dense.len(), dense.len());
         let mut numbers = Vec::new();
@@ -391,10 +400,31 @@ mod tests {
             }
         }
         let scale = vec![1.0; dense.len()];
-        let factors = factorise(&mut graph, &matrix, &numbers, &scale, Stages::new(&[]), 0, Pivoting::Any)?;
+        let factors = factorise(&mut graph, &matrix, &numbers, &scale, Stages::new(&[]), 0, pivoting)?;
         let right: Vec<Expr> = right.iter().map(|&value| graph.constant(value)).collect();
         let x = factors.solve(&mut graph, &right);
-        Ok(x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect())
+        let x = x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect();
+        Ok((x, factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect()))
+    }
+
+    /// Three coordinates, the last without inertia and defined by the second constraint.
+    #[test]
+    fn what_has_inertia_or_defines_is_a_pivot() {
+        let dense = [
+            vec![2.0, 0.5, 0.0, 1.0, 0.3],
+            vec![0.5, 3.0, 0.0, 0.7, -0.4],
+            vec![0.0, 0.0, 0.0, 0.0, -1.0],
+            vec![1.0, 0.7, 0.0, 0.0, 0.0],
+            vec![0.3, -0.4, -1.0, 0.0, 0.0],
+        ];
+        let right = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let (x, pivots) = solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false] }).unwrap();
+        for (row, b) in dense.iter().zip(right) {
+            let product: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+            assert!((product - b).abs() < 1e-13);
+        }
+        let place = pivots.iter().position(|&pivot| pivot == (2, 4)).unwrap();
+        assert_eq!(pivots[place + 1], (4, 2), "{pivots:?}");
     }
 
     #[test]

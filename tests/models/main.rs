@@ -20,4 +20,5 @@ mod run_all;
 mod singular;
 mod slider_crank;
 mod snapshots;
+mod spatial_linkages;
 mod step_control;

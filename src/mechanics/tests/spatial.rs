@@ -255,7 +255,8 @@ fn power(with: &System, state: &State) -> f64 {
     let inertial = two_lumps().build();
     let named: std::collections::HashMap<&str, f64> =
         state.0.iter().filter_map(|(&symbol, &value)| Some((with.graph.symbol_name(symbol)?, value))).collect();
-    let felt = inertial.graph.evaluate(&inertial.force, |symbol: Expr| named[inertial.graph.symbol_name(symbol).unwrap()]);
+    let felt =
+        inertial.graph.evaluate(&inertial.force, |symbol: Expr| named[inertial.graph.symbol_name(symbol).unwrap()]);
     let force = state.values(&with.graph, &with.force);
     let applied = force.iter().zip(felt).map(|(all, felt)| all - felt);
     applied.zip(state.list(&with.v)).map(|(force, velocity)| force * velocity).sum()
