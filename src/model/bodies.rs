@@ -269,11 +269,11 @@ fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3], Option<Rot
         Some(node) => reader.components(node, Context::Constant, Dimension::LENGTH),
         None => Some([0.0; 3].map(Formula::number)),
     };
-    let rotation = reader.required(&fields, "rotation")?;
+    let Some(node) = fields.get("rotation") else { return Some((position?, None)) };
     if !reader.model.space.spatial {
-        reader.leaves_the_plane(rotation);
+        reader.leaves_the_plane(node);
     }
-    let rotation = reader.rotation(rotation, fields.key_span("rotation"));
+    let rotation = reader.rotation(node, fields.key_span("rotation"));
     Some((position?, Some(rotation?)))
 }
 

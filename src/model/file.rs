@@ -255,8 +255,8 @@ grammar! {
     PointFrame is "a point" {
         /// In the body's frame, m; by default its origin.
         position: Option<Components>,
-        /// Of the frame at the point against the body's.
-        rotation: Rotation,
+        /// Of the frame at the point against the body's; by default none.
+        rotation: Option<Rotation>,
     }
 
     /// A rotation: one of `rpy`, `axis` with `angle`, and `quaternion`.

@@ -383,12 +383,8 @@ mod tests {
         solve_by(dense, right, Pivoting::Any).map(|(x, _)| x)
     }
 
-    /// The solution, and the places of the pivots in their order.
-    fn solve_by(
-        dense: &[Vec<f64>],
-        right: &[f64],
-        pivoting: Pivoting,
-    ) -> Result<(Vec<f64>, Vec<(usize, usize)>), Singular> {
+    /// The solution, and the factors.
+    fn solve_by(dense: &[Vec<f64>], right: &[f64], pivoting: Pivoting) -> Result<(Vec<f64>, Factors), Singular> {
         let mut graph = Graph::new();
         let mut matrix = SparseMatrix::zero(dense.len(), dense.len());
         let mut numbers = Vec::new();
@@ -404,7 +400,7 @@ mod tests {
         let right: Vec<Expr> = right.iter().map(|&value| graph.constant(value)).collect();
         let x = factors.solve(&mut graph, &right);
         let x = x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect();
-        Ok((x, factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect()))
+        Ok((x, factors))
     }
 
     /// Three coordinates, the last without inertia and defined by the second constraint.
@@ -418,11 +414,12 @@ mod tests {
             vec![0.3, -0.4, -1.0, 0.0, 0.0],
         ];
         let right = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let (x, pivots) = solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false] }).unwrap();
+        let (x, factors) = solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false] }).unwrap();
         for (row, b) in dense.iter().zip(right) {
             let product: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
             assert!((product - b).abs() < 1e-13);
         }
+        let pivots: Vec<(usize, usize)> = factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect();
         let place = pivots.iter().position(|&pivot| pivot == (2, 4)).unwrap();
         assert_eq!(pivots[place + 1], (4, 2), "{pivots:?}");
     }
