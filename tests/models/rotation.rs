@@ -2,7 +2,7 @@
 
 use mbint::model::Description;
 
-use super::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row};
+use super::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row, run};
 
 /// |pᵀp − 1| / 2 is a constraint like any other: Newton ends at 1e-11.
 const NORM: &str = "(a.p0^2 + a.p1^2 + a.p2^2 + a.p3^2 - 1)/2";
@@ -105,6 +105,36 @@ simulation: {{ duration: 0.01, step: 1e-3 }}
     let tilted = with("{ rpy: [45 deg, 0.2, -0.3] }");
     assert!((tilted[3] - 45.0_f64.to_radians()).abs() < 1e-12 && (tilted[4] - 0.2).abs() < 1e-12);
     assert!((tilted[5] + 0.3).abs() < 1e-12 && (tilted[2] - half * 0.2_f64.cos()).abs() < 1e-12);
+}
+
+/// The orientation hangs on h, which is uncertain, and the Euler parameters' rates on both; what is kept is ω.
+#[test]
+fn an_angular_velocity_is_kept_where_assembly_finds_the_orientation() {
+    let description = read(
+        "
+parameters: { h: { value: 0.5, unit: m, tolerance: 10% } }
+bodies:
+  ground: { points: { floor: [0, 0, -h] } }
+  a: { mass: 1, inertia: [0.1, 0.2, 0.3], points: { foot: [0, 0, 0], tip: [1, 0, 0] } }
+joints:
+  ball: { spherical: [ground, a.foot] }
+  floor: { point_on_plane: [ground.floor, a.tip] }
+effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }
+initial: { a.omega: [0, 0, 2] }
+outputs: { spin: a.omega.z, across: a.omega.x, height: a.tip.z }
+simulation: { duration: 0.5, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 6 }, taylor: { order: 4 }, scan: { points: 9 } }
+",
+    );
+    let bounds = run(&description);
+    for (output, wanted) in bounds.outputs[..2].iter().zip([2.0, 0.0]) {
+        for band in &output.bands {
+            let off = (band.lower[0] - wanted).abs().max((band.upper[0] - wanted).abs());
+            assert!(off < 1e-12, "{} {:?}: {off:e}", output.name, band.method);
+        }
+    }
+    let height = &bounds.outputs[2].bands[0];
+    assert!((height.lower[5] + 0.55).abs() < 1e-9 && (height.upper[5] + 0.45).abs() < 1e-9, "{height:?}");
 }
 
 /// t, x, y, z of the centre of mass, p0, ω'_x: `iftomm/heavy_top.csv` (minimal coordinates, 1e-11).
