@@ -21,16 +21,16 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     }
     let entries = |key: &str| fields.get(key).map_or(&[][..], mapping);
     let bodies = entries("bodies").iter().find_map(|body| Some((body, body_leaves(&body.value)?)));
-    let bodies = bodies.map(|(body, why)| format!("{why} of body `{}` leaves it", body.key));
+    let bodies = bodies.map(|(body, why)| format!("{why} of body `{}` leaves the plane", body.key));
     let joints = entries("joints").iter().find_map(|joint| Some((joint, joint_leaves(&joint.value)?)));
-    let joints = joints.map(|(joint, why)| format!("{why} of joint `{}` leaves it", joint.key));
+    let joints = joints.map(|(joint, why)| format!("{why} of joint `{}` leaves the plane", joint.key));
     let effects = entries("effects").iter().find_map(|effect| Some((effect, effect_leaves(&effect.value)?)));
-    let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves it", effect.key));
+    let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves the plane", effect.key));
     let start = ["initial", "guess"].into_iter().find_map(|section| {
         let names = entries(section).iter().map(|entry| entry.key.as_str());
         let name =
             names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
-        Some(format!("`{name}` in `{section}` leaves it"))
+        Some(format!("`{name}` in `{section}` leaves the plane"))
     });
     match bodies.or(joints).or(effects).or(start) {
         Some(why) => Space { spatial: true, why },

@@ -222,3 +222,47 @@ fn records_are_for_machines() {
         }])
     );
 }
+
+#[test]
+fn what_leaves_the_plane_makes_a_model_spatial() {
+    let in_bar = |part: &str| BAR.replace("points: { A: [-l/2, 0] }", part).replace("bar.angle", "bar.x");
+    let joint = |joint: &str| BAR.replace("joints: {}", joint).replace("bar.angle", "bar.x");
+    let effect = |effect: &str| BAR.replace("effects: {}", effect).replace("bar.angle", "bar.x");
+    for (text, why) in [
+        (BAR.to_owned(), None),
+        (in_bar("points: { A: [l, 0, 0] }, center_of_mass: [0, l, 0.0]"), None),
+        (joint("joints: { j: { revolute: { between: [ground, bar], axis: [0, 0, 2] } } }"), None),
+        (effect("effects: { g: { gravity: { acceleration: [0, -9.81, 0] } } }"), None),
+        (effect("effects: { m: { torque: { on: bar, value: [0, 0, 1] } } }"), None),
+        (in_bar("points: { A: [l, 0, l] }"), Some("point `A` of body `bar` leaves the plane")),
+        (in_bar("points: { A: { rotation: { rpy: [0, 0, 1] } } }"), Some("point `A` of body `bar` leaves the plane")),
+        (in_bar("center_of_mass: [0, l, l]"), Some("the centre of mass of body `bar` leaves the plane")),
+        (in_bar("coordinates: [x, z]"), Some("a coordinate of body `bar` leaves the plane")),
+        (joint("joints: { j: { spherical: [ground, bar] } }"), Some("the kind of joint `j` leaves the plane")),
+        (
+            joint("joints: { j: { revolute: { between: [ground, bar], axis: x } } }"),
+            Some("the axis of joint `j` leaves the plane"),
+        ),
+        (
+            joint("joints: { j: { prismatic: { between: [ground, bar], axis: z } } }"),
+            Some("the axis of joint `j` leaves the plane"),
+        ),
+        (
+            effect("effects: { g: { gravity: { acceleration: [0, 0, -9.81] } } }"),
+            Some("`acceleration` of effect `g` leaves the plane"),
+        ),
+        (
+            effect("effects: { m: { torque: { on: bar, value: [1, 0, 0] } } }"),
+            Some("`value` of effect `m` leaves the plane"),
+        ),
+        (
+            in_bar("").replace("outputs", "initial: { bar.z: 1 }\noutputs"),
+            Some("`bar.z` in `initial` leaves the plane"),
+        ),
+        (format!("space: spatial\n{}", in_bar("")), Some("the model says so")),
+    ] {
+        let space = good(&text).space;
+        assert_eq!(space.spatial, why.is_some(), "{text}");
+        assert_eq!(space.why, why.unwrap_or("nothing leaves the plane"), "{text}");
+    }
+}
