@@ -207,6 +207,11 @@ fn overrides_are_reported_where_they_stand() {
     }
 }
 
+/// What is spoilt: a model of the plane, or a text with everything that there is in space.
+fn sound(spatial: bool) -> String {
+    if spatial { fs::read_to_string(root().join("tests/bad_models/space.yaml")).unwrap() } else { slider_crank() }
+}
+
 fn never_panics(text: &str) {
     let reading = model::read_str("x.yaml", text, &[]);
     let rendered = reading.diagnostics.render(false);
@@ -218,8 +223,11 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn flipped_bytes_do_not_panic(flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6)) {
-        let mut bytes = slider_crank().into_bytes();
+    fn flipped_bytes_do_not_panic(
+        spatial in any::<bool>(),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = sound(spatial).into_bytes();
         for (index, byte) in flips {
             let at = index.index(bytes.len());
             bytes[at] = byte;
@@ -229,9 +237,10 @@ proptest! {
 
     #[test]
     fn edited_lines_do_not_panic(
+        spatial in any::<bool>(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3), 1..5),
     ) {
-        let text = slider_crank();
+        let text = sound(spatial);
         let mut lines: Vec<&str> = text.lines().collect();
         for (from, to, edit) in edits {
             let (from, to) = (from.index(lines.len()), to.index(lines.len()));
@@ -246,9 +255,10 @@ proptest! {
 
     #[test]
     fn swapped_tokens_do_not_panic(
+        spatial in any::<bool>(),
         swaps in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..5),
     ) {
-        let text = slider_crank();
+        let text = sound(spatial);
         let mut tokens: Vec<String> = Vec::new();
         for c in text.chars() {
             match tokens.last_mut() {

@@ -33,7 +33,7 @@ pub(super) fn explain_model(model: &Description) -> Result<Explanation, RunError
 /// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
-    let mut text = format!("{BOLD}{}{BOLD:#}\n", e.model);
+    let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n", e.model, e.space);
     let mut section = |heading: String, body: String| text += &format!("\n{BOLD}{heading}{BOLD:#}\n{body}");
 
     section(count(e.coordinates.len(), "coordinate", "coordinates"), list(&e.coordinates));
@@ -119,6 +119,7 @@ mod tests {
         let names = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<_>>();
         let explanation = Explanation {
             model: "slider_crank".into(),
+            space: "planar: nothing leaves the plane".into(),
             coordinates: names("crank.x crank.y crank.angle rod.x rod.y rod.angle slider.x"),
             constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),
             degrees_of_freedom: 1,
@@ -145,6 +146,7 @@ mod tests {
         let plain = anstream::adapter::strip_str(&text(&explanation)).to_string();
         insta::assert_snapshot!(plain, @r"
         slider_crank
+        planar: nothing leaves the plane
 
         7 coordinates
           crank.x, crank.y, crank.angle, rod.x, rod.y, rod.angle, slider.x

@@ -164,6 +164,8 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         memory.run(start.position());
         add_correction(memory, layout.q.clone(), layout.correction.start);
     }
+    // Velocities that are kept may hang on the positions.
+    memory.run(start.given());
     for _ in 0..corrections {
         memory.run(start.velocity());
         add_correction(memory, layout.v.clone(), layout.correction.start);

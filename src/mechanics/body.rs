@@ -1,37 +1,44 @@
-//! Kinematics and inertia of a planar body.
+//! Kinematics of a rigid body.
 //!
-//! A body's frame has the origin r₀ = (x, y) and the angle θ, counter-clockwise against the ground. Each of the three
-//! is a symbol or is held at a formula of the parameters and t. With s a point in the frame and R = R(θ) the rotation,
-//!
-//! ```text
-//! r = r₀ + R s          ṙ = ṙ₀ + θ̇ (R s)⊥          r̈ = r̈₀ + θ̈ (R s)⊥ − θ̇² R s          (a⊥ = (−a_y, aₓ) = k × a)
-//! ```
-//!
-//! so that ∂r/∂(x, y, θ) = [1  1  (R s)⊥], and a force F at r has the generalised forces (Fₓ, F_y, R s × F).
-//!
-//! With the centre of mass at s_c, d'Alembert's m r̈_c and I θ̈ projected on the three coordinates are M w − Q with
+//! A body's frame has the origin r₀ = (x, y, z) and turns by an angle θ about z, counter-clockwise against the ground, or
+//! by Euler parameters p ([`rotation`]). Each of these coordinates is a symbol or is held at a formula of the parameters
+//! and t. A planar body is one whose z is held at 0 and that turns by θ. With s a point in the frame and R the rotation,
 //!
 //! ```text
-//!     ⎡ m               0              −m (R s_c)_y   ⎤           ⎡ m θ̇² (R s_c)ₓ  ⎤
-//! M = ⎢ 0               m               m (R s_c)ₓ    ⎥       Q = ⎢ m θ̇² (R s_c)_y ⎥
-//!     ⎣ −m (R s_c)_y    m (R s_c)ₓ      I + m |s_c|²  ⎦           ⎣ 0              ⎦
+//! r = r₀ + R s          ṙ = ṙ₀ + ω × R s          r̈ = r̈₀ + ω̇ × R s + ω × (ω × R s)
+//! ω = (0, 0, θ̇)   or   ω = 2 E(p) ṗ
 //! ```
 //!
-//! and M is constant where the centre of mass is the origin. I is taken about the centre of mass.
+//! so that a force F at r and a torque τ have the generalised forces F on r₀ and T = R s × F + τ about its origin: T_z on θ,
+//! 2 Eᵀ T on p. Along p itself nothing acts; what stands there is for the multiplier of pᵀp = 1 alone.
 
 use symdiff::{Expr, Graph};
 
-use super::plane::{self, Vector};
+use super::rotation::{self, Quaternion};
+use super::space::{self, Vector};
 
-/// Number of coordinates of a free planar body: x, y, θ.
-pub const FREEDOMS: usize = 3;
-/// Position of θ among them.
-pub const ANGLE: usize = 2;
+/// Places for coordinates: x, y, z, then θ or p₀ to p₃.
+pub const FREEDOMS: usize = 7;
+/// Place of θ.
+pub const ANGLE: usize = 3;
+/// Place of p₀.
+pub const EULER: usize = 3;
+
+/// By what a body turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// θ about z.
+    Angle,
+    /// Euler parameters.
+    Euler,
+}
 
 /// A body's frame and inertia, over the symbols.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// x, y, θ.
+    /// What stands behind x, y, z.
+    pub turn: Turn,
+    /// x, y, z, then θ or p.
     pub position: [Expr; FREEDOMS],
     /// Their first derivatives by time.
     pub velocity: [Expr; FREEDOMS],
@@ -41,12 +48,15 @@ pub struct Body {
     pub index: [Option<usize>; FREEDOMS],
     /// Mass m, kg; zero where the body declares none.
     pub mass: Expr,
-    /// Moment of inertia I about the centre of mass, kg m²; zero where the body declares none.
-    pub inertia: Expr,
+    /// Inertia tensor J about the centre of mass in the frame's axes, kg m²; zero where the body declares none, and but
+    /// for J_zz where it turns by θ.
+    pub inertia: [Vector; 3],
     /// Centre of mass s_c in the frame, m.
     pub center: Vector,
     /// Named points s in the frame, m.
     pub points: Vec<Vector>,
+    /// Rotations of the frames at those points against the body's.
+    pub frames: Vec<Option<Quaternion>>,
 }
 
 /// A point fixed in a body.
@@ -62,84 +72,132 @@ pub struct MaterialPoint {
     pub velocity: Vector,
 }
 
+/// First three of a list of coordinates.
+fn origin(list: &[Expr; FREEDOMS]) -> Vector {
+    [list[0], list[1], list[2]]
+}
+
+/// Last four.
+fn euler(list: &[Expr; FREEDOMS]) -> Quaternion {
+    [list[EULER], list[EULER + 1], list[EULER + 2], list[EULER + 3]]
+}
+
 impl Body {
-    /// `R(θ) a`: from the body's frame to the ground's.
+    /// `R a`: from the body's frame to the ground's.
     pub fn rotate(&self, g: &mut Graph, a: Vector) -> Vector {
-        let (cos, sin) = (g.cos(self.position[ANGLE]), g.sin(self.position[ANGLE]));
-        let (cx, sy) = (g.mul(cos, a[0]), g.mul(sin, a[1]));
-        let (sx, cy) = (g.mul(sin, a[0]), g.mul(cos, a[1]));
-        [g.sub(cx, sy), g.add(sx, cy)]
-    }
-
-    /// `r₀ + arm`.
-    pub fn position_of(&self, g: &mut Graph, arm: Vector) -> Vector {
-        plane::add(g, [self.position[0], self.position[1]], arm)
-    }
-
-    /// `ṙ₀ + θ̇ arm⊥`.
-    pub fn velocity_of(&self, g: &mut Graph, arm: Vector) -> Vector {
-        let across = plane::perpendicular(g, arm);
-        let turning = plane::scale(g, self.velocity[ANGLE], across);
-        plane::add(g, [self.velocity[0], self.velocity[1]], turning)
-    }
-
-    /// `r̈₀ + θ̈ arm⊥ − θ̇² arm`.
-    pub fn acceleration_of(&self, g: &mut Graph, arm: Vector) -> Vector {
-        let across = plane::perpendicular(g, arm);
-        let turning = plane::scale(g, self.acceleration[ANGLE], across);
-        let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
-        let centripetal = plane::scale(g, square, arm);
-        let sum = plane::add(g, [self.acceleration[0], self.acceleration[1]], turning);
-        plane::sub(g, sum, centripetal)
-    }
-
-    /// M of all three coordinates, held ones included.
-    fn mass_matrix(&self, g: &mut Graph) -> [[Expr; FREEDOMS]; FREEDOMS] {
-        let zero = g.constant(0.0);
-        let arm = self.rotate(g, self.center);
-        let moment = plane::scale(g, self.mass, arm);
-        let x_angle = g.neg(moment[1]);
-        let square = plane::dot(g, self.center, self.center);
-        let offset = g.mul(self.mass, square);
-        let turning = g.add(self.inertia, offset);
-        [[self.mass, zero, x_angle], [zero, self.mass, moment[0]], [x_angle, moment[0], turning]]
-    }
-
-    /// Adds the body's entries to M and its velocity-dependent inertial forces to Q. A held coordinate that moves (by
-    /// a formula of t) drives the others through its column of M.
-    pub fn add_inertia(&self, g: &mut Graph, mass: &mut Vec<(usize, usize, Expr)>, force: &mut [Expr]) {
-        let matrix = self.mass_matrix(g);
-        let arm = self.rotate(g, self.center);
-        let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
-        let strength = g.mul(self.mass, square);
-        let centripetal = plane::scale(g, strength, arm);
-        for (freedom, entries) in matrix.iter().enumerate() {
-            let Some(row) = self.index[freedom] else { continue };
-            if freedom != ANGLE {
-                force[row] = g.add(force[row], centripetal[freedom]);
+        match self.turn {
+            Turn::Angle => {
+                let (cos, sin) = (g.cos(self.position[ANGLE]), g.sin(self.position[ANGLE]));
+                let (cx, sy) = (g.mul(cos, a[0]), g.mul(sin, a[1]));
+                let (sx, cy) = (g.mul(sin, a[0]), g.mul(cos, a[1]));
+                [g.sub(cx, sy), g.add(sx, cy), a[2]]
             }
-            for (other, &value) in entries.iter().enumerate() {
-                match self.index[other] {
-                    Some(column) if !g.is_zero(value) => mass.push((row, column, value)),
-                    Some(_) => {}
-                    None => {
-                        let driven = g.mul(value, self.acceleration[other]);
-                        force[row] = g.sub(force[row], driven);
-                    }
-                }
+            Turn::Euler => rotation::matrix(g, self.euler()).map(|row| space::dot(g, row, a)),
+        }
+    }
+
+    /// The frame's orientation as Euler parameters.
+    pub fn orientation(&self, g: &mut Graph) -> Quaternion {
+        match self.turn {
+            Turn::Angle => {
+                let axis = space::along(g, 2);
+                rotation::about(g, axis, self.position[ANGLE])
+            }
+            Turn::Euler => self.euler(),
+        }
+    }
+
+    /// p.
+    pub fn euler(&self) -> Quaternion {
+        euler(&self.position)
+    }
+
+    /// r₀.
+    pub fn origin(&self) -> Vector {
+        origin(&self.position)
+    }
+
+    /// ω in the ground's axes.
+    pub fn angular_velocity(&self, g: &mut Graph) -> Vector {
+        self.turning(g, &self.velocity)
+    }
+
+    /// ω̇ in the ground's axes.
+    pub fn angular_acceleration(&self, g: &mut Graph) -> Vector {
+        self.turning(g, &self.acceleration)
+    }
+
+    fn turning(&self, g: &mut Graph, derivative: &[Expr; FREEDOMS]) -> Vector {
+        match self.turn {
+            Turn::Angle => {
+                let zero = g.constant(0.0);
+                [zero, zero, derivative[ANGLE]]
+            }
+            Turn::Euler => {
+                let rates = rotation::ground_rates(g, self.euler());
+                rotation::turning(g, &rates, euler(derivative))
             }
         }
     }
 
-    /// ½ m |ṙ_c|² + ½ I θ̇², J.
-    pub fn kinetic_energy(&self, g: &mut Graph) -> Expr {
-        let arm = self.rotate(g, self.center);
-        let velocity = self.velocity_of(g, arm);
-        let square = plane::dot(g, velocity, velocity);
-        let moving = g.mul(self.mass, square);
-        let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
-        let turning = g.mul(self.inertia, square);
-        let doubled = g.add(moving, turning);
-        g.scale(0.5, doubled)
+    /// ω or ω̇ in the body's axes.
+    pub fn turning_in_body(&self, g: &mut Graph, derivative: &[Expr; FREEDOMS]) -> Vector {
+        match self.turn {
+            Turn::Angle => self.turning(g, derivative),
+            Turn::Euler => {
+                let rates = rotation::body_rates(g, self.euler());
+                rotation::turning(g, &rates, euler(derivative))
+            }
+        }
+    }
+
+    /// `r₀ + arm`.
+    pub fn position_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+        space::add(g, self.origin(), arm)
+    }
+
+    /// `ṙ₀ + ω × arm`.
+    pub fn velocity_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+        let omega = self.angular_velocity(g);
+        let turning = space::cross(g, omega, arm);
+        space::add(g, origin(&self.velocity), turning)
+    }
+
+    /// `r̈₀ + ω̇ × arm + ω × (ω × arm)`.
+    pub fn acceleration_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+        let alpha = self.angular_acceleration(g);
+        let turning = space::cross(g, alpha, arm);
+        let sum = space::add(g, origin(&self.acceleration), turning);
+        let centripetal = self.centripetal(g, arm);
+        space::sub(g, sum, centripetal)
+    }
+
+    /// `−ω × (ω × arm)`.
+    pub fn centripetal(&self, g: &mut Graph, arm: Vector) -> Vector {
+        match self.turn {
+            Turn::Angle => {
+                let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
+                let level = [arm[0], arm[1], g.constant(0.0)];
+                space::scale(g, square, level)
+            }
+            Turn::Euler => {
+                let omega = self.angular_velocity(g);
+                let turning = space::cross(g, omega, arm);
+                space::cross(g, turning, omega)
+            }
+        }
+    }
+
+    /// Generalised forces of a force F on r₀ and a torque T about it, in the ground's axes.
+    pub fn generalised(&self, g: &mut Graph, force: Vector, torque: Vector) -> [Expr; FREEDOMS] {
+        let zero = g.constant(0.0);
+        let turning = match self.turn {
+            Turn::Angle => [torque[2], zero, zero, zero],
+            Turn::Euler => {
+                let rates = rotation::ground_rates(g, self.euler());
+                rotation::transposed(g, 2.0, &rates, torque)
+            }
+        };
+        [force[0], force[1], force[2], turning[0], turning[1], turning[2], turning[3]]
     }
 }

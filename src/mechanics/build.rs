@@ -2,8 +2,9 @@
 
 use symdiff::{Expr, Graph};
 
-use crate::model::{Coordinate, Description};
+use crate::model::Description;
 
+use super::body::{Body, EULER, Turn};
 use super::effects::{self, Loads};
 use super::error::BuildError;
 use super::joints::{self, Row};
@@ -29,8 +30,13 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
 
     let mut left_out = Vec::new();
     let mut constraints = Constraints::default();
-    for joint in &description.joints {
-        let rows = joints::rows(g, &mechanism, &joint.kind)?;
+    for (body, built) in description.bodies.iter().zip(&mechanism.bodies) {
+        if let Some(value) = normalisation(g, built) {
+            constraints.add(g, ConstraintInfo { name: format!("{}.norm", body.name), joint: body.name.clone() }, value);
+        }
+    }
+    for (index, joint) in description.joints.iter().enumerate() {
+        let rows = joints::rows(g, &mechanism, index)?;
         let mut kept = Vec::with_capacity(rows.len());
         for row in rows {
             let name = if row.name.is_empty() { joint.name.clone() } else { format!("{}.{}", joint.name, row.name) };
@@ -44,16 +50,19 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         }
         let reaction = joints::reaction(g, &joint.kind, &kept);
         mechanism.reactions.push(reaction);
+        for (coordinate, value) in mechanism.definitions(g, index)? {
+            let name = format!("{}.{coordinate}", joint.name);
+            constraints.add(g, ConstraintInfo { name, joint: joint.name.clone() }, value);
+        }
     }
 
     let mut loads = Loads::new(g, mechanism.bodies.len());
     let mut effects = Vec::new();
     for effect in &description.effects {
         let nodes = g.len();
-        loads.touched.clear();
+        loads.begin();
         effects::apply(g, &mechanism, &mut loads, &effect.kind)?;
-        let moved = |&&(body, freedom): &&(usize, usize)| mechanism.bodies[body].index[freedom].is_some();
-        let forces = loads.touched.iter().filter(moved).count();
+        let forces = loads.coordinates_touched(&mechanism);
         if forces == 0 {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
@@ -61,26 +70,20 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
         effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes });
     }
-    mechanism.potentials = loads.potentials;
-
     let mut mass = Vec::new();
-    let mut force = vec![g.constant(0.0); mechanism.q.len()];
-    for (body, applied) in mechanism.bodies.iter().zip(&loads.bodies) {
-        for (index, &part) in body.index.iter().zip(applied) {
-            if let Some(row) = *index {
-                force[row] = part;
-            }
-        }
+    let mut force = loads.generalised(g, &mechanism);
+    mechanism.potentials = loads.potentials;
+    for body in &mechanism.bodies {
         body.add_inertia(g, &mut mass, &mut force);
     }
     mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
 
     let outputs = mechanism.outputs(g)?;
     let start = mechanism.start(g)?;
-    let coordinates = mechanism.coordinates.iter().map(|&(body, coordinate)| CoordinateInfo {
-        name: mechanism.coordinate_name(body, coordinate),
-        scale: if coordinate == Coordinate::Angle { 1.0 } else { length },
-        is_angle: coordinate == Coordinate::Angle,
+    let coordinates = mechanism.coordinates.iter().map(|&owner| CoordinateInfo {
+        name: mechanism.coordinate_name(owner),
+        scale: if owner.is_length() { length } else { 1.0 },
+        is_angle: !owner.is_length(),
     });
     let mut system = System {
         coordinates: coordinates.collect(),
@@ -98,10 +101,20 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         start,
         effects,
         left_out,
+        space: description.space.clone(),
         graph,
     };
     system.note_unused_parameters();
     Ok(system)
+}
+
+/// (pᵀp − 1) / 2 of a body that turns by Euler parameters.
+fn normalisation(g: &mut Graph, body: &Body) -> Option<Expr> {
+    body.index[EULER + 1].filter(|_| body.turn == Turn::Euler)?;
+    let p = body.euler();
+    let (square, one) = (g.dot(&p, &p), g.constant(1.0));
+    let excess = g.sub(square, one);
+    Some(g.scale(0.5, excess))
 }
 
 /// The rows that are kept, with their multipliers.

@@ -1,16 +1,19 @@
 //! The symbols of a mechanism, and what a formula's names mean in them.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::model::{self, Coordinate, Description, ParameterValue, PointRef, Referent, TimeOrder};
+use crate::model::{
+    self, Coordinate, Description, JointCoordinate, ParameterValue, PointRef, Referent, Rotation, TimeOrder,
+};
 
-use super::body::{Body, FREEDOMS, MaterialPoint};
+use super::body::{ANGLE, Body, EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints::Reaction;
-use super::plane::{self, Vector};
+use super::rotation::{self, Quaternion};
+use super::space::{self, Vector};
 use super::system::UncertainParameter;
 
 /// What a formula may speak of; each includes those before it.
@@ -46,33 +49,58 @@ impl Context {
         match referent {
             Referent::Parameter(_) => Self::Parameters,
             Referent::Time => Self::Time,
-            Referent::Coordinate { order, .. } | Referent::Point { order, .. } => match order {
+            Referent::Coordinate { order, .. }
+            | Referent::Point { order, .. }
+            | Referent::AngularMotion { order, .. }
+            | Referent::JointCoordinate { order, .. } => match order {
                 TimeOrder::Position => Self::Positions,
                 TimeOrder::Velocity => Self::Motion,
                 TimeOrder::Acceleration => Self::Everything,
             },
+            Referent::RollPitchYaw { .. } => Self::Positions,
             Referent::Reaction { .. } => Self::Motion,
             Referent::Energy(_) => Self::Everything,
         }
     }
 }
 
-/// Position of a coordinate among a body's three.
+/// A coordinate's place in its body's list.
 pub fn freedom(coordinate: Coordinate) -> usize {
     match coordinate {
         Coordinate::X => 0,
         Coordinate::Y => 1,
-        Coordinate::Angle => super::body::ANGLE,
+        Coordinate::Z => 2,
+        Coordinate::Angle => ANGLE,
+        Coordinate::Euler(index) => EULER + index,
     }
 }
 
-/// A coordinate's name in formulas.
-fn coordinate_name(coordinate: Coordinate) -> &'static str {
-    match coordinate {
-        Coordinate::X => "x",
-        Coordinate::Y => "y",
-        Coordinate::Angle => "angle",
+/// What one of q is a coordinate of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// Of a body.
+    Body(usize, Coordinate),
+    /// Of a joint: defined by a constraint, without inertia.
+    Joint(usize, JointCoordinate),
+}
+
+impl Owner {
+    /// Whether it is a length.
+    pub fn is_length(self) -> bool {
+        match self {
+            Self::Body(_, coordinate) => coordinate.is_length(),
+            Self::Joint(_, coordinate) => coordinate == JointCoordinate::Displacement,
+        }
     }
+}
+
+/// A frame fixed in a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Its origin.
+    pub point: MaterialPoint,
+    /// Its orientation against the ground.
+    pub orientation: Quaternion,
 }
 
 /// A description's symbols and bodies; its reactions and potentials as the joints and effects are built.
@@ -85,9 +113,11 @@ pub struct Mechanism<'d> {
     pub q: Vec<Expr>,
     pub v: Vec<Expr>,
     pub w: Vec<Expr>,
-    /// Body and coordinate behind each of `q`.
-    pub coordinates: Vec<(usize, Coordinate)>,
+    /// What each of `q` is.
+    pub coordinates: Vec<Owner>,
     pub bodies: Vec<Body>,
+    /// Places in `q` of the coordinates of joints that are coordinates of their own.
+    pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction>,
     /// Potential energies of the effects built so far, J.
@@ -108,6 +138,7 @@ impl<'d> Mechanism<'d> {
             w: Vec::new(),
             coordinates: Vec::new(),
             bodies: Vec::new(),
+            joint_coordinates: BTreeMap::new(),
             reactions: Vec::new(),
             potentials: Vec::new(),
         };
@@ -127,34 +158,48 @@ impl<'d> Mechanism<'d> {
             let body = mechanism.body(g, index, body)?;
             mechanism.bodies.push(body);
         }
+        for (joint, coordinate) in super::coordinates::called_for(description) {
+            let index = mechanism.add_coordinate(g, Owner::Joint(joint, coordinate));
+            mechanism.joint_coordinates.insert((joint, coordinate), index);
+        }
         Ok(mechanism)
     }
 
     fn body(&mut self, g: &mut Graph, index: usize, body: &model::Body) -> Result<Body, BuildError> {
         let zero = g.constant(0.0);
+        let turn = if body.has_orientation() { Turn::Euler } else { Turn::Angle };
         let mut built = Body {
+            turn,
             position: [zero; FREEDOMS],
             velocity: [zero; FREEDOMS],
             acceleration: [zero; FREEDOMS],
             index: [None; FREEDOMS],
-            mass: self.optional(g, body.mass.as_ref())?,
-            inertia: self.optional(g, body.inertia.as_ref())?,
+            mass: match &body.mass {
+                Some(mass) => self.formula(g, mass, Context::Parameters)?,
+                None => zero,
+            },
+            inertia: self.inertia(g, body, turn)?,
             center: match &body.center_of_mass {
                 Some(center) => self.vector(g, center, Context::Parameters)?,
-                None => plane::zero(g),
+                None => [zero; 3],
             },
             points: Vec::with_capacity(body.points.len()),
+            frames: Vec::with_capacity(body.points.len()),
         };
+        if turn == Turn::Euler {
+            let held = match &body.held_orientation {
+                Some(rotation) => self.rotation(g, rotation)?,
+                None => rotation::identity(g),
+            };
+            built.position[EULER..].copy_from_slice(&held);
+        }
         for &coordinate in &body.coordinates {
             let freedom = freedom(coordinate);
-            let name = self.coordinate_name(index, coordinate);
-            let symbols = ["q", "v", "w"].map(|kind| g.symbol(&format!("{kind}:{name}")));
-            [built.position[freedom], built.velocity[freedom], built.acceleration[freedom]] = symbols;
-            built.index[freedom] = Some(self.q.len());
-            for (list, symbol) in [&mut self.q, &mut self.v, &mut self.w].into_iter().zip(symbols) {
-                list.push(symbol);
-            }
-            self.coordinates.push((index, coordinate));
+            let index = self.add_coordinate(g, Owner::Body(index, coordinate));
+            built.index[freedom] = Some(index);
+            built.position[freedom] = self.q[index];
+            built.velocity[freedom] = self.v[index];
+            built.acceleration[freedom] = self.w[index];
         }
         for (coordinate, value) in &body.held {
             let freedom = freedom(*coordinate);
@@ -165,20 +210,68 @@ impl<'d> Mechanism<'d> {
         }
         for point in &body.points {
             built.points.push(self.vector(g, &point.position, Context::Parameters)?);
+            let frame = point.rotation.as_ref().map(|rotation| self.rotation(g, rotation)).transpose()?;
+            built.frames.push(frame);
         }
         Ok(built)
     }
 
-    fn optional(&self, g: &mut Graph, formula: Option<&Formula>) -> Result<Expr, BuildError> {
-        match formula {
-            Some(formula) => self.formula(g, formula, Context::Parameters),
-            None => Ok(g.constant(0.0)),
+    /// Whether the mechanism leaves the plane.
+    pub fn is_spatial(&self) -> bool {
+        self.description.space.spatial
+    }
+
+    /// Symbols for one more coordinate; its place in q.
+    fn add_coordinate(&mut self, g: &mut Graph, owner: Owner) -> usize {
+        let name = match owner {
+            Owner::Body(..) => self.coordinate_name(owner),
+            // A joint may be called like a body.
+            Owner::Joint(..) => format!("joint:{}", self.coordinate_name(owner)),
+        };
+        for (kind, list) in [("q", &mut self.q), ("v", &mut self.v), ("w", &mut self.w)] {
+            list.push(g.symbol(&format!("{kind}:{name}")));
         }
+        self.coordinates.push(owner);
+        self.q.len() - 1
+    }
+
+    /// J; of a body that turns about z only, no more than J_zz.
+    fn inertia(&self, g: &mut Graph, body: &model::Body, turn: Turn) -> Result<[Vector; 3], BuildError> {
+        let mut tensor = [space::zero(g); 3];
+        let Some(inertia) = &body.inertia else { return Ok(tensor) };
+        let model::Inertia { xx, yy, zz, xy, xz, yz } = inertia;
+        let elements: &[(usize, usize, &Formula)] = match turn {
+            Turn::Angle => &[(2, 2, zz)],
+            Turn::Euler => &[(0, 0, xx), (1, 1, yy), (2, 2, zz), (0, 1, xy), (0, 2, xz), (1, 2, yz)],
+        };
+        for &(row, column, element) in elements {
+            let element = self.formula(g, element, Context::Parameters)?;
+            (tensor[row][column], tensor[column][row]) = (element, element);
+        }
+        Ok(tensor)
     }
 
     /// Name of a coordinate, e.g. `crank.angle`.
-    pub fn coordinate_name(&self, body: usize, coordinate: Coordinate) -> String {
-        format!("{}.{}", self.description.bodies[body].name, coordinate_name(coordinate))
+    pub fn coordinate_name(&self, owner: Owner) -> String {
+        match owner {
+            Owner::Body(body, coordinate) => {
+                let name = match coordinate {
+                    Coordinate::X => "x",
+                    Coordinate::Y => "y",
+                    Coordinate::Z => "z",
+                    Coordinate::Angle => "angle",
+                    Coordinate::Euler(index) => ["p0", "p1", "p2", "p3"][index],
+                };
+                format!("{}.{name}", self.description.bodies[body].name)
+            }
+            Owner::Joint(joint, coordinate) => {
+                let name = match coordinate {
+                    JointCoordinate::Angle => "angle",
+                    JointCoordinate::Displacement => "displacement",
+                };
+                format!("{}.{name}", self.description.joints[joint].name)
+            }
+        }
     }
 
     /// A formula as an expression: the one place where names become expressions.
@@ -189,16 +282,39 @@ impl<'d> Mechanism<'d> {
         })
     }
 
-    /// Two formulas as a vector.
-    pub fn vector(&self, g: &mut Graph, formulas: &[Formula; 2], context: Context) -> Result<Vector, BuildError> {
-        Ok([self.formula(g, &formulas[0], context)?, self.formula(g, &formulas[1], context)?])
+    /// Three formulas as a vector.
+    pub fn vector(&self, g: &mut Graph, formulas: &[Formula; 3], context: Context) -> Result<Vector, BuildError> {
+        let [x, y, z] = formulas;
+        Ok([self.formula(g, x, context)?, self.formula(g, y, context)?, self.formula(g, z, context)?])
+    }
+
+    /// A rotation of parameters as Euler parameters of length 1.
+    pub fn rotation(&self, g: &mut Graph, rotation: &Rotation) -> Result<Quaternion, BuildError> {
+        match rotation {
+            Rotation::RollPitchYaw(angles) => {
+                let angles = self.vector(g, angles, Context::Parameters)?;
+                Ok(rotation::roll_pitch_yaw(g, angles))
+            }
+            Rotation::AxisAngle(axis, angle) => {
+                let axis = self.vector(g, axis, Context::Parameters)?;
+                let axis = space::unit(g, axis);
+                let angle = self.formula(g, angle, Context::Parameters)?;
+                Ok(rotation::about(g, axis, angle))
+            }
+            Rotation::Quaternion([p0, p1, p2, p3]) => {
+                let scalar = self.formula(g, p0, Context::Parameters)?;
+                let vector = [p1, p2, p3].map(|p| self.formula(g, p, Context::Parameters));
+                let [p1, p2, p3] = vector;
+                Ok(rotation::normalised(g, [scalar, p1?, p2?, p3?]))
+            }
+        }
     }
 
     /// A point in its body's frame.
     pub fn local(&self, g: &mut Graph, point: PointRef) -> Vector {
         match point.point {
             Some(index) => self.bodies[point.body].points[index],
-            None => plane::zero(g),
+            None => space::zero(g),
         }
     }
 
@@ -215,6 +331,26 @@ impl<'d> Mechanism<'d> {
         let position = frame.position_of(g, arm);
         let velocity = frame.velocity_of(g, arm);
         MaterialPoint { body, arm, position, velocity }
+    }
+
+    /// The point of a body that is at a place of the ground just now.
+    pub fn carried_along(&self, g: &mut Graph, body: usize, position: Vector) -> MaterialPoint {
+        let frame = &self.bodies[body];
+        let arm = space::sub(g, position, frame.origin());
+        let velocity = frame.velocity_of(g, arm);
+        MaterialPoint { body, arm, position, velocity }
+    }
+
+    /// The frame at a point of a body.
+    pub fn frame(&self, g: &mut Graph, point: PointRef) -> Frame {
+        let body = &self.bodies[point.body];
+        let orientation = body.orientation(g);
+        let local = point.point.and_then(|index| body.frames[index]);
+        let orientation = match local {
+            Some(local) => rotation::product(g, orientation, local),
+            None => orientation,
+        };
+        Frame { point: self.point(g, point), orientation }
     }
 
     /// Whether only parameters and t stand in the expressions.

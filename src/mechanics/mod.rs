@@ -1,26 +1,31 @@
 //! Description → [`System`]: the equations of motion as expressions.
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `body`), constraints
-//! (`joints`), applied forces (`effects`), inertia, outputs, and where the motion starts (`start`,
-//! `placement`).
+//! (`joints`), applied forces (`effects`), inertia, outputs, and where the motion starts (`start`, `placement` in the plane,
+//! `pose` in space).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|
 //! | q, v, w | coordinates, velocities, accelerations    | m and rad, per s, per s²   |
 //! | λ       | multipliers: M w = Q − Φ_qᵀ λ             | N, N m                     |
 //! | r₀, θ   | origin and angle of a body's frame        | m, rad                     |
+//! | p, R, ω | Euler parameters, rotation, its velocity  | 1, 1, rad/s                |
 //! | s, R s  | point in the body's, in the ground's axes | m                          |
-//! | a⊥      | (−a_y, aₓ), a turned counter-clockwise    |                            |
+//! | ã b, a⊥ | a × b;  (−a_y, aₓ), a turned by π/2       |                            |
 
 mod body;
 mod build;
+mod coordinates;
 mod effects;
 mod error;
+mod inertia;
 mod joints;
 mod mechanism;
 mod outputs;
 mod placement;
-mod plane;
+mod pose;
+mod rotation;
+mod space;
 mod start;
 mod system;
 #[cfg(test)]

@@ -2,10 +2,12 @@
 
 use symdiff::{Expr, Graph};
 
-use crate::model::{Coordinate, EnergyKind, ReactionComponent, Referent, TimeOrder};
+use crate::model::{EnergyKind, ReactionComponent, Referent, TimeOrder};
 
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism, freedom};
+use super::rotation;
+use super::space;
 use super::system::OutputInfo;
 
 impl Mechanism<'_> {
@@ -23,6 +25,25 @@ impl Mechanism<'_> {
                 };
                 list[freedom(coordinate)]
             }
+            Referent::AngularMotion { body, axis, order, in_body } => {
+                let body = &self.bodies[body];
+                let derivative = if order == TimeOrder::Acceleration { &body.acceleration } else { &body.velocity };
+                if in_body {
+                    body.turning_in_body(g, derivative)[axis]
+                } else if order == TimeOrder::Acceleration {
+                    body.angular_acceleration(g)[axis]
+                } else {
+                    body.angular_velocity(g)[axis]
+                }
+            }
+            Referent::RollPitchYaw { body, angle } => {
+                let orientation = self.bodies[body].orientation(g);
+                let matrix = rotation::matrix(g, orientation);
+                rotation::angles(g, &matrix)[angle]
+            }
+            Referent::JointCoordinate { joint, coordinate, order } => {
+                self.joint_coordinate(g, joint, coordinate, order)
+            }
             Referent::Point { body, point, coordinate, order } => {
                 let body = &self.bodies[body];
                 let arm = body.rotate(g, body.points[point]);
@@ -31,15 +52,16 @@ impl Mechanism<'_> {
                     TimeOrder::Velocity => body.velocity_of(g, arm),
                     TimeOrder::Acceleration => body.acceleration_of(g, arm),
                 };
-                vector[if coordinate == Coordinate::X { 0 } else { 1 }]
+                vector[freedom(coordinate)]
             }
             Referent::Reaction { joint, component } => {
                 let reaction = &self.reactions[joint];
                 match component {
                     ReactionComponent::Force => reaction.magnitude,
-                    ReactionComponent::ForceX => reaction.force[0],
-                    ReactionComponent::ForceY => reaction.force[1],
-                    ReactionComponent::Torque => reaction.torque,
+                    ReactionComponent::ForceAlong(axis) => reaction.force[axis],
+                    ReactionComponent::Torque if self.is_spatial() => space::norm(g, reaction.torque),
+                    ReactionComponent::Torque => reaction.torque[2],
+                    ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
                 }
             }
             Referent::Energy(EnergyKind::Kinetic) => self.kinetic_energy(g),

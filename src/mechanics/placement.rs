@@ -1,4 +1,4 @@
-//! A first guess of where the bodies are, in numbers, at the nominal parameters.
+//! A first guess of where the bodies are in the plane, in numbers, at the nominal parameters.
 //!
 //! Assembly is a Newton iteration and wants to begin near a solution, and never at a singular one: a four-bar linkage
 //! with all its links at angle 0 is stretched, and no small rotation closes its gap. So the bodies are placed one after
@@ -16,11 +16,16 @@ use std::collections::VecDeque;
 
 use symdiff::{Expr, Graph};
 
-use crate::model::{JointKind, PointRef};
+use crate::model::{Coordinate, JointCoordinate, JointKind, PointRef};
 
-use super::body::{ANGLE, FREEDOMS};
+use super::body;
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism};
+
+/// x, y, θ.
+const FREEDOMS: usize = 3;
+/// Place of θ.
+const ANGLE: usize = 2;
 
 /// A joint as seen from one of its bodies.
 #[derive(Clone, Copy)]
@@ -68,7 +73,7 @@ impl Placement {
     pub fn of(g: &mut Graph, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
         let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
-            for (freedom, given) in given.iter_mut().enumerate() {
+            for (freedom, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
                 let value = match body.index[freedom] {
                     Some(index) => known[index],
                     None => Some(body.position[freedom]),
@@ -80,6 +85,33 @@ impl Placement {
         let mut placement = Self { links: links(g, m)?, given, poses };
         placement.walk();
         Ok(placement)
+    }
+
+    /// A body's coordinate.
+    pub fn value(&self, body: usize, coordinate: Coordinate) -> f64 {
+        match coordinate {
+            Coordinate::X => self.pose(body)[0],
+            Coordinate::Y => self.pose(body)[1],
+            Coordinate::Angle => self.pose(body)[ANGLE],
+            Coordinate::Z | Coordinate::Euler(_) => 0.0,
+        }
+    }
+
+    /// A joint's coordinate.
+    pub fn joint(&self, g: &mut Graph, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
+        let kind = &m.description.joints[joint].kind;
+        let Some(between) = kind.between() else { return 0.0 };
+        let [first, second] = between.map(|point| self.pose(point.body));
+        match coordinate {
+            JointCoordinate::Angle => second[ANGLE] - first[ANGLE],
+            JointCoordinate::Displacement => {
+                let [a, b] = between.map(|point| at(self.pose(point.body), local(g, m, point)));
+                let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(g, axis, Context::Time).ok());
+                let axis = axis.map_or(vec![1.0, 0.0], |axis| m.nominal(g, &axis));
+                let along = at([0.0, 0.0, first[ANGLE] + axis[1].atan2(axis[0])], [1.0, 0.0]);
+                along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1])
+            }
+        }
     }
 
     /// x, y, θ of a body.
@@ -192,12 +224,15 @@ fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
             Ok(m.nominal(g, &[expr])[0])
         };
         let (between, kind) = match &joint.kind {
-            JointKind::Revolute { between } => (between, LinkKind::Pin),
+            JointKind::Revolute { between, .. } => (between, LinkKind::Pin),
             JointKind::Fixed { between, angle } => (between, LinkKind::Weld(value(angle)?)),
             JointKind::Prismatic { between, angle, .. } => (between, LinkKind::Slide(value(angle)?)),
-            JointKind::PinInSlot { between, .. } => (between, LinkKind::Loose(0.0)),
+            JointKind::PinInSlot { between, .. }
+            | JointKind::PointOnLine { between, .. }
+            | JointKind::PointOnPlane { between, .. } => (between, LinkKind::Loose(0.0)),
             JointKind::Distance { between, length } => (between, LinkKind::Loose(value(length)?)),
-            JointKind::Gear { .. } | JointKind::Equation { .. } => continue,
+            // Couplings say nothing of places, and the others are of space.
+            _ => continue,
         };
         let [here, there] = between.map(|point| local(g, m, point));
         let link = Link { here, there, other: between[1].body, kind };

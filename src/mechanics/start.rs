@@ -2,16 +2,19 @@
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::model::{Coordinate, JointKind, StartValue, TimeOrder};
+use crate::model::{JointCoordinate, JointKind, StartValue, TimeOrder};
 
+use super::body::EULER;
 use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, freedom};
+use super::mechanism::{Context, Mechanism, Owner, freedom};
 use super::placement::Placement;
+use super::pose::Poses;
+use super::rotation;
 use super::system::Start;
 
 impl Mechanism<'_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
-    /// where the joints put the bodies when they are walked from the ground ([`Placement`]), with the nominal
+    /// where the joints put the bodies when they are walked from the ground ([`Placement`], [`Poses`]), with the nominal
     /// parameters.
     pub fn start(&self, g: &mut Graph) -> Result<Start, BuildError> {
         let description = self.description;
@@ -19,30 +22,67 @@ impl Mechanism<'_> {
         let velocity = self.values_at_start(g, &description.initial, TimeOrder::Velocity)?;
         let guessed = self.values_at_start(g, &description.guess, TimeOrder::Position)?;
         let known: Vec<Option<Expr>> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
-        let placed = Placement::of(g, self, &known)?;
-        let guess = known
-            .iter()
-            .zip(&self.coordinates)
-            .map(|(known, &(body, coordinate))| {
-                known.unwrap_or_else(|| g.constant(placed.pose(body)[freedom(coordinate)]))
-            })
-            .collect();
+        let placed = self.placed(g, &known)?;
+        let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| g.constant(placed)));
+        let guess = guess.collect();
         Ok(Start { position, velocity, guess })
+    }
+
+    /// Where the joints put the coordinates.
+    fn placed(&self, g: &mut Graph, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
+        if self.is_spatial() {
+            return Poses::of(g, self, known)?.coordinates(g);
+        }
+        let placement = Placement::of(g, self, known)?;
+        let value = |&owner: &Owner| match owner {
+            Owner::Body(body, coordinate) => placement.value(body, coordinate),
+            Owner::Joint(joint, coordinate) => placement.joint(g, self, joint, coordinate),
+        };
+        Ok(self.coordinates.iter().map(value).collect())
     }
 
     fn values_at_start(
         &self,
         g: &mut Graph,
         values: &[StartValue],
-        order: TimeOrder,
+        wanted: TimeOrder,
     ) -> Result<Vec<Option<Expr>>, BuildError> {
         let mut found = vec![None; self.q.len()];
-        for value in values.iter().filter(|value| value.order == order) {
-            if let Some(index) = self.bodies[value.body].index[freedom(value.coordinate)] {
-                found[index] = Some(self.formula(g, &value.value, Context::Parameters)?);
+        for value in values {
+            match value {
+                StartValue::Coordinate { body, coordinate, order, value } if *order == wanted => {
+                    if let Some(index) = self.bodies[*body].index[freedom(*coordinate)] {
+                        found[index] = Some(self.formula(g, value, Context::Parameters)?);
+                    }
+                }
+                StartValue::Joint { joint, coordinate, order, value } if *order == wanted => {
+                    if let Some(&index) = self.joint_coordinates.get(&(*joint, *coordinate)) {
+                        found[index] = Some(self.formula(g, value, Context::Parameters)?);
+                    }
+                }
+                StartValue::Orientation { body, rotation } if wanted == TimeOrder::Position => {
+                    let orientation = self.rotation(g, rotation)?;
+                    self.set_euler(*body, orientation, &mut found);
+                }
+                StartValue::AngularVelocity { body, value, in_body } if wanted == TimeOrder::Velocity => {
+                    let omega = self.vector(g, value, Context::Parameters)?;
+                    let p = self.bodies[*body].euler();
+                    let rates = if *in_body { rotation::body_rates(g, p) } else { rotation::ground_rates(g, p) };
+                    let rate = rotation::transposed(g, 0.5, &rates, omega);
+                    self.set_euler(*body, rate, &mut found);
+                }
+                _ => {}
             }
         }
         Ok(found)
+    }
+
+    fn set_euler(&self, body: usize, values: rotation::Quaternion, found: &mut [Option<Expr>]) {
+        for (value, index) in values.into_iter().zip(&self.bodies[body].index[EULER..]) {
+            if let Some(index) = *index {
+                found[index] = Some(value);
+            }
+        }
     }
 
     /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
@@ -53,7 +93,7 @@ impl Mechanism<'_> {
             lengths.extend(body.points.iter().flatten());
             lengths.extend(body.center);
             // A coordinate's symbol counts as zero here.
-            lengths.extend(&body.position[..2]);
+            lengths.extend(&body.position[..3]);
         }
         for joint in &self.description.joints {
             if let JointKind::Distance { length, .. } = &joint.kind {
@@ -61,9 +101,22 @@ impl Mechanism<'_> {
             }
         }
         let starts = self.description.initial.iter().chain(&self.description.guess);
-        let positions =
-            starts.filter(|value| value.order == TimeOrder::Position && value.coordinate != Coordinate::Angle);
-        let formulas: Vec<&Formula> = positions.map(|value| &value.value).collect();
+        let formulas: Vec<&Formula> = starts
+            .filter_map(|value| match value {
+                StartValue::Coordinate { coordinate, order: TimeOrder::Position, value, .. }
+                    if coordinate.is_length() =>
+                {
+                    Some(value)
+                }
+                StartValue::Joint {
+                    coordinate: JointCoordinate::Displacement,
+                    order: TimeOrder::Position,
+                    value,
+                    ..
+                } => Some(value),
+                _ => None,
+            })
+            .collect();
         for formula in formulas {
             lengths.push(self.formula(g, formula, Context::Parameters)?);
         }

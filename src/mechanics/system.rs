@@ -2,6 +2,8 @@
 
 use symdiff::{Expr, Graph};
 
+use crate::model::Space;
+
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
 /// n coordinates, m constraints. `w` stands for the true acceleration v̇.
@@ -39,6 +41,8 @@ pub struct System {
     pub effects: Vec<EffectInfo>,
     /// What the model says and no equation holds.
     pub left_out: Vec<LeftOut>,
+    /// In how many dimensions the bodies move, and why.
+    pub space: Space,
 }
 
 /// What an effect came to.
@@ -79,9 +83,9 @@ pub struct UncertainParameter {
 pub struct CoordinateInfo {
     /// E.g. `crank.angle`.
     pub name: String,
-    /// Typical size: 1 for an angle, the model's length for a position. Newton's tolerance is relative to it.
+    /// Typical size: 1 for an angle or an Euler parameter, the model's length for a position. Newton's tolerance is relative to it.
     pub scale: f64,
-    /// Whether it is an angle rather than a position.
+    /// Whether it tells of a rotation (an angle, an Euler parameter) rather than of a position.
     pub is_angle: bool,
 }
 
@@ -108,7 +112,7 @@ pub struct OutputInfo {
 pub struct Start {
     /// Positions that are kept, n; `None` where assembly finds them.
     pub position: Vec<Option<Expr>>,
-    /// Velocities that are kept, n.
+    /// Velocities that are kept, n; of Euler parameters over the positions too.
     pub velocity: Vec<Option<Expr>>,
     /// Where assembly begins to look, n.
     pub guess: Vec<Expr>,

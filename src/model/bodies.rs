@@ -2,16 +2,29 @@
 
 use symdiff::Formula;
 
-use super::description::{Body, Coordinate, Point, PointRef};
+use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
 use super::diagnostic::Diagnostic;
 use super::file;
-use super::names::{Context, GROUND, MOTIONS};
+use super::kinds::JointCoordinate;
+use super::motions::is_motion;
+use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::suggest::{self, clip};
 use super::yaml::{Entry, Node, Value};
 
-const COORDINATES: [(&str, Coordinate); 3] = [("x", Coordinate::X), ("y", Coordinate::Y), ("angle", Coordinate::Angle)];
+/// Names of coordinates, and what they stand for. The last leave the plane.
+const COORDINATES: [(&str, &[Coordinate]); 5] = [
+    ("x", &[Coordinate::X]),
+    ("y", &[Coordinate::Y]),
+    ("angle", &[Coordinate::Angle]),
+    ("z", &[Coordinate::Z]),
+    ("orientation", &Coordinate::ORIENTATION),
+];
+
+/// Coordinates that can be held at a number.
+const HELD: [(&str, Coordinate); 4] =
+    [("x", Coordinate::X), ("y", Coordinate::Y), ("z", Coordinate::Z), ("angle", Coordinate::Angle)];
 
 /// Notes the names of the bodies and of their points, so that anything can refer to them.
 pub fn declare(reader: &mut Reader, entries: &[Entry]) {
@@ -22,6 +35,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         center_of_mass: None,
         coordinates: Vec::new(),
         held: Vec::new(),
+        held_orientation: None,
         points: Vec::new(),
     };
     reader.model.bodies.push(empty(GROUND));
@@ -32,8 +46,9 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
             && let Some(points) = fields.iter().find(|field| field.key == "points")
             && let Value::Mapping(points) = &points.value.value
         {
-            let unknown = || [Formula::number(0.0), Formula::number(0.0)];
-            body.points = points.iter().map(|point| Point { name: point.key.clone(), position: unknown() }).collect();
+            let unknown = || [0.0; 3].map(Formula::number);
+            let named = |point: &Entry| Point { name: point.key.clone(), position: unknown(), rotation: None };
+            body.points = points.iter().map(named).collect();
         }
         if entry.key == GROUND {
             reader.model.bodies[0] = body;
@@ -71,10 +86,10 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
     let coordinates = match fields.get("coordinates") {
         Some(node) => coordinates(reader, node),
-        None => COORDINATES.iter().map(|(_, coordinate)| *coordinate).collect(),
+        None => usual(reader),
     };
-    let turns = coordinates.contains(&Coordinate::Angle);
-    let translates = coordinates.contains(&Coordinate::X) || coordinates.contains(&Coordinate::Y);
+    let turns = coordinates.iter().any(|coordinate| !coordinate.is_length());
+    let translates = coordinates.iter().any(|coordinate| coordinate.is_length());
     let off_center = fields.get("center_of_mass").is_some();
 
     let positive = |reader: &mut Reader, key: &str, dimension: Dimension, needed: bool| {
@@ -86,9 +101,13 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
         }
     };
     let mass = positive(reader, "mass", Dimension::MASS, translates || turns && off_center);
-    let inertia = positive(reader, "inertia", Dimension::INERTIA, turns);
-    let center = fields.get("center_of_mass").and_then(|node| reader.pair(node, Context::Constant, Dimension::LENGTH));
-    let held = held(reader, &fields, &coordinates);
+    let inertia = match fields.get("inertia") {
+        Some(node) if !matches!(node.value, Value::Scalar(_)) => tensor(reader, node, fields.key_span("inertia")),
+        _ => positive(reader, "inertia", Dimension::INERTIA, turns).map(|value| Inertia::scalar(&value)),
+    };
+    let center =
+        fields.get("center_of_mass").and_then(|node| reader.components(node, Context::Constant, Dimension::LENGTH));
+    let (held, held_orientation) = held(reader, &fields, &coordinates);
     points(reader, &fields, index);
 
     let body = &mut reader.model.bodies[index];
@@ -97,65 +116,165 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     body.center_of_mass = center;
     body.coordinates = coordinates;
     body.held = held;
+    body.held_orientation = held_orientation;
+}
+
+/// The coordinates of a body that says nothing of them.
+fn usual(reader: &Reader) -> Vec<Coordinate> {
+    let [x, y, z] = [Coordinate::X, Coordinate::Y, Coordinate::Z];
+    if reader.model.space.spatial {
+        [x, y, z].into_iter().chain(Coordinate::ORIENTATION).collect()
+    } else {
+        vec![x, y, Coordinate::Angle]
+    }
+}
+
+/// `[xx, yy, zz]` or `{ xx: …, xy: … }`; positive definite at all corners.
+fn tensor(reader: &mut Reader, node: &Node, at: super::source::Span) -> Option<Inertia> {
+    if !reader.model.space.spatial {
+        reader.leaves_the_plane(node);
+    }
+    let zero = || Formula::number(0.0);
+    let inertia = if let Value::Sequence(_) = node.value {
+        let [xx, yy, zz] = reader.three(node, Context::Constant, Dimension::INERTIA)?;
+        Inertia { xx, yy, zz, xy: zero(), xz: zero(), yz: zero() }
+    } else {
+        let fields = reader.fields::<file::Tensor>(node, at)?;
+        let [xx, yy, zz] = ["xx", "yy", "zz"].map(|key| {
+            let node = reader.required(&fields, key)?;
+            reader.formula(node, Context::Constant, Dimension::INERTIA)
+        });
+        let [xy, xz, yz] = ["xy", "xz", "yz"].map(|key| match fields.get(key) {
+            Some(node) => reader.formula(node, Context::Constant, Dimension::INERTIA),
+            None => Some(zero()),
+        });
+        Inertia { xx: xx?, yy: yy?, zz: zz?, xy: xy?, xz: xz?, yz: yz? }
+    };
+    for corner in 0..reader.corners.len() {
+        let Inertia { xx, yy, zz, xy, xz, yz } = &inertia;
+        let values = [xx, xy, xz, xy, yy, yz, xz, yz, zz].map(|formula| reader.evaluate(formula, corner));
+        let Some(values) = values.into_iter().collect::<Option<Vec<f64>>>() else { continue };
+        if nalgebra::Matrix3::from_row_slice(&values).cholesky().is_none() {
+            let label = &reader.corners[corner].label;
+            let message = format!("the inertia tensor is not positive definite{label}");
+            let help = "no body turns without inertia; a thin rod has a little about its axis too".to_owned();
+            reader.error(node.span.clone(), message, help);
+            break;
+        }
+    }
+    Some(inertia)
 }
 
 fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
+    let choices = if reader.model.space.spatial { &COORDINATES[..] } else { &COORDINATES[..3] };
     let Value::Sequence(items) = &node.value else {
         let message = format!("coordinates are a list, but here is {}", node.kind());
-        reader.error(node.span.clone(), message, "write `[x, y, angle]`, or fewer of them".to_owned());
-        return COORDINATES.iter().map(|(_, coordinate)| *coordinate).collect();
+        let all = if reader.model.space.spatial { "[x, y, z, orientation]" } else { "[x, y, angle]" };
+        reader.error(node.span.clone(), message, format!("write `{all}`, or fewer of them"));
+        return usual(reader);
     };
     if items.is_empty() {
         let help = format!("what does not move is part of the ground: give `{GROUND}` the points");
         reader.error(node.span.clone(), "a body has at least one coordinate", help);
     }
-    let mut found: Vec<(Coordinate, &Node)> = Vec::new();
+    let mut found: Vec<(&[Coordinate], &Node)> = Vec::new();
     for item in items {
-        let Some(coordinate) = reader.choice(item, &COORDINATES) else { continue };
-        match found.iter().find(|(known, _)| *known == coordinate) {
+        let Some(named) = reader.choice(item, choices) else { continue };
+        match found.iter().find(|(known, _)| *known == named) {
             Some((_, first)) => {
                 let name = item.scalar().map_or("", |scalar| scalar.text.as_str());
                 let diagnostic = Diagnostic::error(item.span.clone(), format!("coordinate `{name}` is listed twice"));
                 reader.diagnostics.push(diagnostic.label("again here").also(first.span.clone(), "first here"));
             }
-            None => found.push((coordinate, item)),
+            None => found.push((named, item)),
         }
     }
-    found.into_iter().map(|(coordinate, _)| coordinate).collect()
+    let turning: Vec<&Node> = found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
+    if let [_, second] = turning.as_slice() {
+        reader.error(
+            second.span.clone(),
+            "a body turns by an `angle` about z or by an `orientation`, not by both",
+            None,
+        );
+    }
+    found.into_iter().flat_map(|(named, _)| named).copied().collect()
 }
 
-fn held(reader: &mut Reader, fields: &Fields, coordinates: &[Coordinate]) -> Vec<(Coordinate, Formula)> {
-    let Some(node) = fields.get("held") else { return Vec::new() };
-    let Some(held) = reader.fields::<file::Held>(node, fields.key_span("held")) else { return Vec::new() };
+fn held(
+    reader: &mut Reader,
+    fields: &Fields,
+    coordinates: &[Coordinate],
+) -> (Vec<(Coordinate, Formula)>, Option<Rotation>) {
+    let nothing = (Vec::new(), None);
+    let Some(node) = fields.get("held") else { return nothing };
+    let Some(held) = reader.fields::<file::Held>(node, fields.key_span("held")) else { return nothing };
+    let refuse = |reader: &mut Reader, name: &str| {
+        let message = format!("`{name}` is a coordinate of the body, so it is not held");
+        let help = format!("leave `{name}` out of `coordinates`, or give its start in `initial`");
+        reader.error(held.key_span(name), message, help);
+    };
     let mut values = Vec::new();
-    for (name, coordinate) in COORDINATES {
+    for (name, coordinate) in HELD {
         let Some(node) = held.get(name) else { continue };
         if coordinates.contains(&coordinate) {
-            let message = format!("`{name}` is a coordinate of the body, so it is not held");
-            let help = format!("leave `{name}` out of `coordinates`, or give its start in `initial`");
-            reader.error(held.key_span(name), message, help);
+            refuse(reader, name);
+        }
+        if coordinate == Coordinate::Z && !reader.model.space.spatial {
+            reader.leaves_the_plane(node);
         }
         let dimension = if coordinate == Coordinate::Angle { Dimension::ANGLE } else { Dimension::LENGTH };
         if let Some(value) = reader.formula(node, Context::Constant, dimension) {
             values.push((coordinate, value));
         }
     }
-    values
+    let orientation = held.get("orientation").and_then(|node| {
+        if !reader.model.space.spatial {
+            reader.leaves_the_plane(node);
+        }
+        if let Some((name, _)) =
+            COORDINATES.iter().find(|(_, named)| !named[0].is_length() && coordinates.contains(&named[0]))
+        {
+            refuse(reader, if *name == "angle" { "orientation" } else { name });
+        }
+        if held.get("angle").is_some() {
+            reader.error(held.key_span("angle"), "`angle` and `orientation` exclude each other", None);
+        }
+        reader.rotation(node, held.key_span("orientation"))
+    });
+    (values, orientation)
 }
 
 fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     let Some(node) = fields.get("points") else { return };
     for (index, entry) in reader.entries(node, "points").iter().enumerate() {
-        if reader.name(entry, "a point") && MOTIONS.iter().any(|(motion, ..)| *motion == entry.key) {
+        if reader.name(entry, "a point") && is_motion(&entry.key) {
             let message = format!("`{}` cannot be the name of a point: it is a part of the body's motion", entry.key);
             reader.error(entry.key_span.clone(), message, None);
         }
-        if let Some(position) = reader.pair(&entry.value, Context::Constant, Dimension::LENGTH)
-            && let Some(point) = reader.model.bodies[body].points.get_mut(index)
-        {
+        let Some((position, rotation)) = point(reader, entry) else { continue };
+        if let Some(point) = reader.model.bodies[body].points.get_mut(index) {
             point.position = position;
+            point.rotation = rotation;
         }
     }
+}
+
+/// `[x, y, z]` or `{ position: …, rotation: … }`.
+fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3], Option<Rotation>)> {
+    let Value::Mapping(_) = entry.value.value else {
+        return Some((reader.components(&entry.value, Context::Constant, Dimension::LENGTH)?, None));
+    };
+    let fields = reader.fields::<file::PointFrame>(&entry.value, entry.key_span.clone())?;
+    let position = match fields.get("position") {
+        Some(node) => reader.components(node, Context::Constant, Dimension::LENGTH),
+        None => Some([0.0; 3].map(Formula::number)),
+    };
+    let Some(node) = fields.get("rotation") else { return Some((position?, None)) };
+    if !reader.model.space.spatial {
+        reader.leaves_the_plane(node);
+    }
+    let rotation = reader.rotation(node, fields.key_span("rotation"));
+    Some((position?, Some(rotation?)))
 }
 
 impl Reader<'_> {
@@ -211,6 +330,35 @@ impl Reader<'_> {
         let (a, b) = (self.point_ref(first), self.point_ref(second));
         let (a, b) = (a?, b?);
         self.different(second, a.body, b.body).then_some([a, b])
+    }
+
+    /// The joint that is named, with this coordinate.
+    pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
+        let scalar = self.scalar(node, "the name of a joint")?;
+        let name = scalar.text.as_str();
+        let Some(found) = self.model.joints.iter().position(|joint| joint.name == name) else {
+            let help = suggest::help(name, "joints", self.model.joints.iter().map(|joint| joint.name.as_str()));
+            self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
+            return None;
+        };
+        if !self.model.has(found, coordinate) {
+            let (what, help) = match coordinate {
+                JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),
+                JointCoordinate::Displacement => {
+                    ("slides", "prismatic, cylindrical and screw joints slide along theirs")
+                }
+            };
+            self.error(node.span.clone(), format!("`{}` is no joint that {what}", clip(name)), help.to_owned());
+            return None;
+        }
+        Some(found)
+    }
+
+    /// Whether a node names a joint and no body.
+    pub fn names_joint(&self, node: &Node) -> bool {
+        let Some(scalar) = node.scalar() else { return false };
+        let is = |name: &String| *name == scalar.text;
+        self.model.joints.iter().any(|joint| is(&joint.name)) && !self.model.bodies.iter().any(|body| is(&body.name))
     }
 
     /// Two different bodies.

@@ -2,6 +2,8 @@
 
 use symdiff::Formula;
 
+use super::kinds::{EffectKind, JointCoordinate, JointKind};
+
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
 /// A `Description` is consistent: every index is in range, every formula's names resolve (through
@@ -12,6 +14,8 @@ pub struct Description {
     pub name: String,
     /// One line for people.
     pub description: Option<String>,
+    /// Whether the mechanism stays in the plane.
+    pub space: Space,
     /// In an order in which each depends only on earlier ones.
     pub parameters: Vec<Parameter>,
     /// `bodies[0]` is the ground: no coordinates, no mass, perhaps points.
@@ -30,6 +34,16 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+}
+
+/// In how many dimensions a mechanism moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Space {
+    /// Whether a body that says nothing else has six freedoms, and joints hold bodies in all of them. A planar
+    /// mechanism has z = 0 everywhere and turns about z only.
+    pub spatial: bool,
+    /// For people: what leaves the plane, or that nothing does.
+    pub why: String,
 }
 
 /// A named number: certain, or known to lie in an interval.
@@ -59,43 +73,100 @@ pub enum ParameterValue {
     },
 }
 
-/// A planar coordinate of a body's frame.
+/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Coordinate {
     /// Position of the frame's origin along the ground's x, m.
     X,
     /// Position of the frame's origin along the ground's y, m.
     Y,
-    /// Angle of the frame against the ground, rad, counter-clockwise, never wrapped.
+    /// Position of the frame's origin along the ground's z, m.
+    Z,
+    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
     Angle,
+    /// Euler parameter p0 (cosine of half the angle) to p3.
+    Euler(usize),
 }
 
-/// A rigid planar body.
+impl Coordinate {
+    /// The Euler parameters.
+    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
+
+    /// Whether it is a length rather than a part of the orientation.
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z)
+    }
+}
+
+/// A rotation from one frame to another.
+#[derive(Clone, Debug)]
+pub enum Rotation {
+    /// Turned about the fixed x, then y, then z, rad.
+    RollPitchYaw([Formula; 3]),
+    /// About an axis of any length but zero, by an angle in rad.
+    AxisAngle([Formula; 3], Formula),
+    /// Euler parameters p0 to p3, of any length but zero.
+    Quaternion([Formula; 4]),
+}
+
+/// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
+/// URDF. A body that only turns about z needs no more than zz.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Inertia {
+    pub xx: Formula,
+    pub yy: Formula,
+    pub zz: Formula,
+    pub xy: Formula,
+    pub xz: Formula,
+    pub yz: Formula,
+}
+
+impl Inertia {
+    /// The same about every axis.
+    pub fn scalar(value: &Formula) -> Self {
+        let zero = || Formula::number(0.0);
+        Self { xx: value.clone(), yy: value.clone(), zz: value.clone(), xy: zero(), xz: zero(), yz: zero() }
+    }
+}
+
+/// A rigid body.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Its name.
     pub name: String,
     /// kg; absent only where no declared coordinate needs it (ground).
     pub mass: Option<Formula>,
-    /// About the centre of mass, kg m²; absent only where the angle is not a coordinate.
-    pub inertia: Option<Formula>,
+    /// Absent only where the body does not turn.
+    pub inertia: Option<Inertia>,
     /// Centre of mass in the body's frame, m; by default the origin.
-    pub center_of_mass: Option<[Formula; 2]>,
+    pub center_of_mass: Option<[Formula; 3]>,
     /// The coordinates that the body has; the others are held. Empty for the ground.
     pub coordinates: Vec<Coordinate>,
     /// Values of coordinates that the body does not have (zero where not named).
     pub held: Vec<(Coordinate, Formula)>,
+    /// Orientation of a body that does not turn, where it is more than an angle about z.
+    pub held_orientation: Option<Rotation>,
     /// Named points in the body's frame, m.
     pub points: Vec<Point>,
 }
 
-/// A named point of a body.
+impl Body {
+    /// Whether its orientation is that of Euler parameters, and not an angle about z.
+    pub fn has_orientation(&self) -> bool {
+        self.held_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
+    }
+}
+
+/// A named point of a body, and a frame there.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Its name within the body.
     pub name: String,
     /// In the body's frame, m.
-    pub position: [Formula; 2],
+    pub position: [Formula; 3],
+    /// From the frame at the point to the body's; absent where their axes are parallel.
+    pub rotation: Option<Rotation>,
 }
 
 /// A point of a body; the frame's origin where `point` is absent.
@@ -116,63 +187,6 @@ pub struct Joint {
     pub kind: JointKind,
 }
 
-/// What a joint constrains; equations stand in `mechanics::joints`.
-#[derive(Clone, Debug)]
-pub enum JointKind {
-    /// Two points coincide.
-    Revolute {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-    },
-    /// The second point moves along a line through the first, fixed in the first body; no relative rotation:
-    /// angle₂ − angle₁ = `angle`.
-    Prismatic {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// Direction in the first body's frame; any length but zero.
-        axis: [Formula; 2],
-        /// rad
-        angle: Formula,
-    },
-    /// Welded: points coincide and angle₂ − angle₁ = `angle`.
-    Fixed {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// rad
-        angle: Formula,
-    },
-    /// The second point moves along a line through the first, fixed in the first body; it may turn.
-    PinInSlot {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// Direction in the first body's frame; any length but zero.
-        axis: [Formula; 2],
-    },
-    /// The points keep a distance, m.
-    Distance {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// m, > 0
-        length: Formula,
-    },
-    /// angle₂ = ratio · angle₁ + offset. An external gear pair has a negative ratio.
-    Gear {
-        /// Body indices.
-        between: [usize; 2],
-        #[allow(missing_docs)]
-        ratio: Formula,
-        /// rad
-        offset: Formula,
-    },
-    /// left = right, a formula of coordinates, points, parameters and t.
-    Equation {
-        #[allow(missing_docs)]
-        left: Formula,
-        #[allow(missing_docs)]
-        right: Formula,
-    },
-}
-
 /// A named effect.
 #[derive(Clone, Debug)]
 pub struct Effect {
@@ -180,72 +194,6 @@ pub struct Effect {
     pub name: String,
     /// What it does.
     pub kind: EffectKind,
-}
-
-/// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
-/// velocities.
-#[derive(Clone, Debug)]
-pub enum EffectKind {
-    /// The same acceleration on every body, m/s².
-    Gravity {
-        #[allow(missing_docs)]
-        acceleration: [Formula; 2],
-    },
-    /// A force at a point, N.
-    Force {
-        #[allow(missing_docs)]
-        on: PointRef,
-        #[allow(missing_docs)]
-        value: [Formula; 2],
-        /// Components in the body's frame instead of the ground's.
-        in_body: bool,
-    },
-    /// A torque on a body, N m; its reaction acts on `from` (0: the ground).
-    Torque {
-        /// Body index.
-        on: usize,
-        /// Body index.
-        from: usize,
-        #[allow(missing_docs)]
-        value: Formula,
-    },
-    /// Between two points: along their connecting line, or along an axis of the ground.
-    SpringDamper {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// Direction in the ground's frame; absent: along the connecting line.
-        along: Option<[Formula; 2]>,
-        /// N/m
-        stiffness: Formula,
-        /// N s/m
-        damping: Formula,
-        /// m
-        free_length: Formula,
-    },
-    /// Between two bodies' angles.
-    TorsionalSpringDamper {
-        /// Body indices.
-        between: [usize; 2],
-        /// N m/rad
-        stiffness: Formula,
-        /// N m s/rad
-        damping: Formula,
-        /// rad
-        free_angle: Formula,
-    },
-}
-
-impl EffectKind {
-    /// The word for it in a model file.
-    pub fn keyword(&self) -> &'static str {
-        match self {
-            Self::Gravity { .. } => "gravity",
-            Self::Force { .. } => "force",
-            Self::Torque { .. } => "torque",
-            Self::SpringDamper { .. } => "spring_damper",
-            Self::TorsionalSpringDamper { .. } => "torsional_spring_damper",
-        }
-    }
 }
 
 /// How often a quantity is differentiated by time.
@@ -257,17 +205,47 @@ pub enum TimeOrder {
     Acceleration,
 }
 
-/// A value at the start.
+/// A value at the start; formulas are of parameters.
 #[derive(Clone, Debug)]
-pub struct StartValue {
-    /// Body index, not the ground.
-    pub body: usize,
-    /// One that the body has.
-    pub coordinate: Coordinate,
-    /// Position or velocity.
-    pub order: TimeOrder,
-    /// Formula of parameters.
-    pub value: Formula,
+pub enum StartValue {
+    /// Of a coordinate.
+    Coordinate {
+        /// Body index, not the ground.
+        body: usize,
+        /// One that the body has.
+        coordinate: Coordinate,
+        /// Position or velocity.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        value: Formula,
+    },
+    /// Of a body's Euler parameters.
+    Orientation {
+        /// Body index.
+        body: usize,
+        #[allow(missing_docs)]
+        rotation: Rotation,
+    },
+    /// Of a body that has an orientation, rad/s.
+    AngularVelocity {
+        /// Body index.
+        body: usize,
+        #[allow(missing_docs)]
+        value: [Formula; 3],
+        /// Components in the body's frame instead of the ground's.
+        in_body: bool,
+    },
+    /// Of a joint's coordinate.
+    Joint {
+        /// Joint index.
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        /// Position or velocity.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        value: Formula,
+    },
 }
 
 /// Something observed.
@@ -288,7 +266,7 @@ pub enum Referent {
     Parameter(usize),
     /// `t`, s.
     Time,
-    /// `body.x`, `.y`, `.angle`, `.vx`, `.vy`, `.angular_velocity`, `.ax`, `.ay`, `.angular_acceleration`.
+    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
     Coordinate {
         #[allow(missing_docs)]
         body: usize,
@@ -297,7 +275,34 @@ pub enum Referent {
         #[allow(missing_docs)]
         order: TimeOrder,
     },
-    /// `body.point.x`, `.y`, `.vx`, `.vy`, `.ax`, `.ay`; `coordinate` is X or Y.
+    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
+    AngularMotion {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: x, y, z.
+        axis: usize,
+        /// Velocity or acceleration.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        in_body: bool,
+    },
+    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
+    RollPitchYaw {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: roll, pitch, yaw.
+        angle: usize,
+    },
+    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
+    JointCoordinate {
+        #[allow(missing_docs)]
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        #[allow(missing_docs)]
+        order: TimeOrder,
+    },
+    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
     Point {
         #[allow(missing_docs)]
         body: usize,
@@ -308,7 +313,7 @@ pub enum Referent {
         #[allow(missing_docs)]
         order: TimeOrder,
     },
-    /// `joint.force`, `.force.x`, `.force.y`, `.torque`.
+    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
     Reaction {
         #[allow(missing_docs)]
         joint: usize,
@@ -324,12 +329,12 @@ pub enum Referent {
 pub enum ReactionComponent {
     /// Magnitude of the force, N.
     Force,
-    /// N
-    ForceX,
-    /// N
-    ForceY,
-    /// N m, about the second point.
+    /// Along an axis (0 to 2: x, y, z), N.
+    ForceAlong(usize),
+    /// About the second point, N m: in the plane the component about z, in space the magnitude.
     Torque,
+    /// About an axis (0 to 2: x, y, z) through the second point, N m.
+    TorqueAbout(usize),
 }
 
 /// Which energy.

@@ -26,12 +26,20 @@ enum Number {
     Text(String),
 }
 
-/// Direction: `x`, `y` or components.
+/// Components along x and y, and in space along z, which is 0 where it is left out.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum Components {
+    Planar([Number; 2]),
+    Spatial([Number; 3]),
+}
+
+/// Direction: `x`, `y`, `z` or components.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
 enum Direction {
     Named(Axis),
-    Components([Number; 2]),
+    Components(Components),
 }
 
 #[derive(JsonSchema)]
@@ -39,6 +47,7 @@ enum Direction {
 enum Axis {
     X,
     Y,
+    Z,
 }
 
 #[derive(JsonSchema)]
@@ -46,7 +55,64 @@ enum Axis {
 enum CoordinateName {
     X,
     Y,
+    Z,
+    /// About z.
     Angle,
+    /// Euler parameters: any rotation.
+    Orientation,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum SpaceName {
+    /// z = 0, and rotations about z only.
+    Planar,
+    /// Bodies that say nothing else have six freedoms.
+    Spatial,
+}
+
+/// A place in a body's frame, or a frame there.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum PointFile {
+    At(Components),
+    Frame(Box<PointFrame>),
+}
+
+/// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum InertiaFile {
+    /// About z; in space the same about every axis.
+    Scalar(Number),
+    /// xx, yy and zz.
+    Principal([Number; 3]),
+    Full(Tensor),
+}
+
+/// A number of the frame's axes each, or one for all.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum PerAxis {
+    All(Number),
+    Each([Number; 3]),
+}
+
+/// A number; three of a vector; or a rotation.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum StartFile {
+    Number(Number),
+    Vector([Number; 3]),
+    Rotation(Rotation),
+}
+
+/// A number (in the plane, about z), or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum TorqueValue {
+    Scalar(Number),
+    Vector([Number; 3]),
 }
 
 #[derive(JsonSchema)]
@@ -129,6 +195,8 @@ grammar! {
         model: Option<String>,
         /// One line for people.
         description: Option<String>,
+        /// Whether the mechanism stays in the plane; by default it does where nothing in the file leaves it.
+        space: Option<SpaceName>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Rigid bodies. `ground` is there already, and may be given points.
@@ -138,9 +206,9 @@ grammar! {
         /// What moves the bodies.
         effects: Option<IndexMap<String, Effect>>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
-        initial: Option<IndexMap<String, Number>>,
+        initial: Option<IndexMap<String, StartFile>>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
-        guess: Option<IndexMap<String, Number>>,
+        guess: Option<IndexMap<String, StartFile>>,
         /// What is observed: names with formulas, e.g. `x3: slider.x`.
         outputs: IndexMap<String, Number>,
         /// How long, and in which steps.
@@ -172,15 +240,51 @@ grammar! {
         /// kg
         mass: Option<Number>,
         /// About the centre of mass, kg*m^2.
-        inertia: Option<Number>,
+        inertia: Option<InertiaFile>,
         /// In the body's frame, m; by default the frame's origin.
-        center_of_mass: Option<[Number; 2]>,
-        /// What can change; by default x, y and angle.
+        center_of_mass: Option<Components>,
+        /// What can change; by default x, y and angle, in space x, y, z and orientation.
         coordinates: Option<Vec<CoordinateName>>,
         /// Values of the coordinates that cannot change; by default 0.
         held: Option<Held>,
         /// Named points in the body's frame, m.
-        points: Option<IndexMap<String, [Number; 2]>>,
+        points: Option<IndexMap<String, PointFile>>,
+    }
+
+    /// A frame at a point.
+    PointFrame is "a point" {
+        /// In the body's frame, m; by default its origin.
+        position: Option<Components>,
+        /// Of the frame at the point against the body's; by default none.
+        rotation: Option<Rotation>,
+    }
+
+    /// A rotation: one of `rpy`, `axis` with `angle`, and `quaternion`.
+    Rotation is "a rotation" {
+        /// Roll, pitch and yaw: about the fixed x, then y, then z, rad.
+        rpy: Option<[Number; 3]>,
+        /// The axis of a rotation by `angle`.
+        axis: Option<Direction>,
+        /// rad
+        angle: Option<Number>,
+        /// Euler parameters p0 (cosine of half the angle) to p3, of any length.
+        quaternion: Option<[Number; 4]>,
+    }
+
+    /// Elements of the inertia tensor; xy is the integral of -x*y, as in URDF.
+    Tensor is "an inertia tensor" {
+        /// kg*m^2
+        xx: Number,
+        /// kg*m^2
+        yy: Number,
+        /// kg*m^2
+        zz: Number,
+        /// kg*m^2; by default 0.
+        xy: Option<Number>,
+        /// kg*m^2; by default 0.
+        xz: Option<Number>,
+        /// kg*m^2; by default 0.
+        yz: Option<Number>,
     }
 
     /// Values of coordinates that cannot change.
@@ -189,32 +293,86 @@ grammar! {
         x: Option<Number>,
         /// m
         y: Option<Number>,
-        /// rad
+        /// m
+        z: Option<Number>,
+        /// rad, about z
         angle: Option<Number>,
+        /// Instead of `angle`.
+        orientation: Option<Rotation>,
     }
 
     /// A joint: one kind with its details.
     Joint is "a joint" with "minProperties" = 1 with "maxProperties" = 1 {
-        /// Two points coincide.
-        revolute: Option<OrBetween<Between>>,
+        /// Two points coincide, and the bodies turn about an axis against one another.
+        revolute: Option<OrBetween<AboutAxis>>,
         /// The second point moves along a line through the first, without turning against the first body.
         prismatic: Option<Prismatic>,
         /// Two points coincide and the bodies do not turn against one another.
         fixed: Option<OrBetween<Fixed>>,
-        /// The second point moves along a line through the first, fixed in the first body; it may turn.
+        /// The second point moves along a line through the first, fixed in the first body; it may turn about z.
         pin_in_slot: Option<PinInSlot>,
+        /// The second point moves along an axis through the first, and the bodies turn about it.
+        cylindrical: Option<OrBetween<AboutAxis>>,
+        /// A cylindrical joint that advances as it turns.
+        screw: Option<Screw>,
+        /// Two points coincide.
+        spherical: Option<OrBetween<Between>>,
+        /// Two points coincide, and an axis of the first frame stays perpendicular to one of the second.
+        universal: Option<OrBetween<Universal>>,
+        /// The second point moves in a plane through the first, and the bodies turn about its normal.
+        planar: Option<OrBetween<InPlane>>,
+        /// The second point moves along a line through the first, fixed in the first body.
+        point_on_line: Option<PinInSlot>,
+        /// The second point moves in a plane through the first, fixed in the first body.
+        point_on_plane: Option<OrBetween<InPlane>>,
         /// Two points keep their distance.
         distance: Option<Distance>,
         /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
         gear: Option<Gear>,
+        /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
+        rack: Option<Rack>,
         /// `left = right` between coordinates, parameters and t, e.g. `crank.angle = omega*t`.
         equation: Option<String>,
     }
 
     /// Two points.
-    Between is "a revolute joint" {
+    Between is "a spherical joint" {
         /// Two points, each `body.point` or `body`.
         between: [String; 2],
+    }
+
+    /// A joint that turns about an axis.
+    AboutAxis is "a joint about an axis" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction in both points' frames; by default z.
+        axis: Option<Direction>,
+    }
+
+    /// A screw joint.
+    Screw is "a screw joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction in both points' frames; by default z.
+        axis: Option<Direction>,
+        /// Advance of the second point in a turn, m; positive for a right-handed thread.
+        pitch: Number,
+    }
+
+    /// A universal joint.
+    Universal is "a universal joint" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// The arms of the cross: one in the first point's frame, one in the second's; by default [x, y].
+        axes: Option<[Direction; 2]>,
+    }
+
+    /// A joint that keeps a point in a plane.
+    InPlane is "a joint on a plane" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Direction in both points' frames; by default z.
+        normal: Option<Direction>,
     }
 
     /// A prismatic joint.
@@ -251,9 +409,21 @@ grammar! {
         length: Number,
     }
 
+    /// A rack and pinion.
+    Rack is "a rack" {
+        /// The joint about which the pinion turns.
+        pinion: String,
+        /// The joint along which the rack slides.
+        rack: String,
+        /// m a radian; negative where the rack goes against the angle.
+        radius: Number,
+        /// m; by default 0.
+        offset: Option<Number>,
+    }
+
     /// A gear pair.
     Gear is "a gear" {
-        /// Two bodies.
+        /// Two bodies (their angles about z) or two joints.
         between: [String; 2],
         /// Angle of the second per angle of the first; negative for external gears.
         ratio: Number,
@@ -271,14 +441,16 @@ grammar! {
         torque: Option<Torque>,
         /// A spring and damper between two points.
         spring_damper: Option<SpringDamper>,
-        /// A spring and damper between the angles of two bodies.
+        /// A spring and damper between the angles of two bodies, or on the angle of a joint.
         torsional_spring_damper: Option<TorsionalSpringDamper>,
+        /// Springs and dampers between two frames.
+        bushing: Option<Bushing>,
     }
 
     /// Gravity.
     Gravity is "`gravity`" {
         /// m/s^2, e.g. [0, -9.81].
-        acceleration: [Number; 2],
+        acceleration: Components,
     }
 
     /// A force.
@@ -286,19 +458,21 @@ grammar! {
         /// `body.point` or `body`.
         on: String,
         /// N; may depend on t, positions and velocities.
-        value: [Number; 2],
+        value: Components,
         /// Whose axes the components are along; by default the ground's.
         frame: Option<Frame>,
     }
 
     /// A torque.
     Torque is "a torque" {
-        /// The body it acts on.
+        /// The body it acts on, or the joint: then on its second body about its axis, and back on its first.
         on: String,
         /// The body its reaction acts on; by default the ground.
         from: Option<String>,
-        /// N*m; may depend on t, positions and velocities.
-        value: Number,
+        /// N*m, one number about z; may depend on t, positions and velocities.
+        value: TorqueValue,
+        /// Whose axes the components are along; by default the ground's.
+        frame: Option<Frame>,
     }
 
     /// A spring and damper.
@@ -317,14 +491,30 @@ grammar! {
 
     /// A torsional spring and damper.
     TorsionalSpringDamper is "`torsional_spring_damper`" {
-        /// Two bodies.
-        between: [String; 2],
+        /// Two bodies, by their angles about z.
+        between: Option<[String; 2]>,
+        /// Instead of `between`: a joint.
+        on: Option<String>,
         /// N*m/rad; by default 0.
         stiffness: Option<Number>,
         /// N*m*s/rad; by default 0.
         damping: Option<Number>,
         /// rad; by default 0.
         free_angle: Option<Number>,
+    }
+
+    /// A bushing.
+    Bushing is "a bushing" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Along the axes of the first point's frame, N/m; by default 0.
+        stiffness: Option<PerAxis>,
+        /// N*s/m; by default 0.
+        damping: Option<PerAxis>,
+        /// About those axes, for small rotations, N*m/rad; by default 0.
+        torsional_stiffness: Option<PerAxis>,
+        /// N*m*s/rad; by default 0.
+        torsional_damping: Option<PerAxis>,
     }
 
     /// How time is stepped.
@@ -449,6 +639,9 @@ mod tests {
         same_keys::<Held>();
         same_keys::<Joint>();
         same_keys::<Prismatic>();
+        same_keys::<Screw>();
+        same_keys::<Rotation>();
+        same_keys::<Bushing>();
         same_keys::<Effect>();
         same_keys::<SpringDamper>();
         same_keys::<Simulation>();

@@ -2,11 +2,12 @@
 
 use symdiff::Formula;
 
-use super::description::{Joint, JointKind, Referent};
+use super::description::{Joint, PointRef, Referent};
 use super::file::{self, Grammar};
+use super::kinds::{JointCoordinate, JointKind, Turning};
 use super::names::Context;
 use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::reader::{Fields, Reader, Written};
 use super::yaml::{Entry, Node, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
@@ -19,11 +20,20 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
     }
 }
 
-/// Reads the joints that were declared.
+/// Kinds that speak of other joints.
+const COUPLINGS: [&str; 3] = ["gear", "rack", "equation"];
+
+/// Reads the joints that were declared; what couples joints comes after the joints.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {
-    for (index, entry) in entries.iter().enumerate() {
-        if let Some(kind) = joint(reader, entry) {
-            reader.model.joints[index].kind = kind;
+    let couples = |entry: &Entry| match &entry.value.value {
+        Value::Mapping(kinds) => kinds.iter().any(|kind| COUPLINGS.contains(&kind.key.as_str())),
+        _ => false,
+    };
+    for coupling in [false, true] {
+        for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| couples(entry) == coupling) {
+            if let Some(kind) = joint(reader, entry) {
+                reader.model.joints[index].kind = kind;
+            }
         }
     }
 }
@@ -36,11 +46,14 @@ enum Details<'n> {
 
 impl<'n> Details<'n> {
     fn read<G: Grammar>(reader: &mut Reader, entry: &'n Entry) -> Option<Self> {
+        reader.fields::<G>(&entry.value, entry.key_span.clone()).map(Self::Full)
+    }
+
+    /// Of a joint that needs nothing but what it is between.
+    fn read_short<G: Grammar>(reader: &mut Reader, entry: &'n Entry) -> Option<Self> {
         match entry.value.value {
-            Value::Sequence(_) if G::KEYS == file::Between::KEYS || G::KEYS == file::Fixed::KEYS => {
-                Some(Self::Short(&entry.value))
-            }
-            _ => reader.fields::<G>(&entry.value, entry.key_span.clone()).map(Self::Full),
+            Value::Sequence(_) => Some(Self::Short(&entry.value)),
+            _ => Self::read::<G>(reader, entry),
         }
     }
 
@@ -68,20 +81,66 @@ impl<'n> Details<'n> {
 
 fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
     let kind = reader.only::<file::Joint>(&entry.value, entry.key_span.clone())?;
+    if !reader.model.space.spatial && super::space::SPATIAL_JOINTS.contains(&kind.key.as_str()) {
+        reader.leaves_the_plane(&kind.value);
+    }
     match kind.key.as_str() {
         "revolute" => {
-            let details = Details::read::<file::Between>(reader, kind)?;
-            Some(JointKind::Revolute { between: points(reader, &details)? })
+            let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
+            Some(JointKind::Revolute { between: between?, axis: axis? })
+        }
+        "cylindrical" => {
+            let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
+            Some(JointKind::Cylindrical { between: between?, axis: axis? })
+        }
+        "screw" => {
+            let details = Details::read::<file::Screw>(reader, kind)?;
+            let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
+            let pitch = pitch(reader, &details);
+            Some(JointKind::Screw { between: between?, axis: axis?, pitch: pitch? })
+        }
+        "spherical" => {
+            let details = Details::read_short::<file::Between>(reader, kind)?;
+            Some(JointKind::Spherical { between: points(reader, &details)? })
+        }
+        "universal" => {
+            let details = Details::read_short::<file::Universal>(reader, kind)?;
+            let between = points(reader, &details);
+            let axes = match details.get("axes") {
+                Some(node) => {
+                    reader.two(node, "a list of two directions").map(|axes| axes.map(|axis| reader.direction(axis)))
+                }
+                None => Some([Some(along(0)), Some(along(1))]),
+            };
+            let [first, second] = axes?;
+            Some(JointKind::Universal { between: between?, axes: [first?, second?] })
+        }
+        "planar" => {
+            let details = Details::read_short::<file::InPlane>(reader, kind)?;
+            let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
+            Some(JointKind::Planar { between: between?, normal: normal? })
+        }
+        "point_on_plane" => {
+            let details = Details::read_short::<file::InPlane>(reader, kind)?;
+            let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
+            Some(JointKind::PointOnPlane { between: between?, normal: normal? })
+        }
+        "point_on_line" => {
+            let details = Details::read::<file::PinInSlot>(reader, kind)?;
+            let (between, axis) = (points(reader, &details), axis(reader, &details));
+            Some(JointKind::PointOnLine { between: between?, axis: axis? })
         }
         "prismatic" => {
             let details = Details::read::<file::Prismatic>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis(reader, &details));
-            let angle = angle(reader, &details, "angle");
+            let angle = number(reader, &details, "angle", Dimension::ANGLE);
             Some(JointKind::Prismatic { between: between?, axis: axis?, angle: angle? })
         }
         "fixed" => {
-            let details = Details::read::<file::Fixed>(reader, kind)?;
-            let (between, angle) = (points(reader, &details), angle(reader, &details, "angle"));
+            let details = Details::read_short::<file::Fixed>(reader, kind)?;
+            let (between, angle) = (points(reader, &details), number(reader, &details, "angle", Dimension::ANGLE));
             Some(JointKind::Fixed { between: between?, angle: angle? })
         }
         "pin_in_slot" => {
@@ -100,32 +159,100 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         }
         "gear" => {
             let details = Details::read::<file::Gear>(reader, kind)?;
-            let between = details.between(reader).and_then(|node| reader.between_bodies(node));
-            let ratio = details.required(reader, "ratio").and_then(|node| {
-                let turns = |value| value != 0.0;
-                reader.formula_that(node, Context::Constant, Dimension::NUMBER, turns, "must not be zero")
-            });
-            let offset = angle(reader, &details, "offset");
+            let between = details.between(reader).and_then(|node| turning(reader, node));
+            let ratio = ratio(reader, &details, "ratio", Dimension::NUMBER);
+            let offset = number(reader, &details, "offset", Dimension::ANGLE);
             Some(JointKind::Gear { between: between?, ratio: ratio?, offset: offset? })
+        }
+        "rack" => {
+            let details = Details::read::<file::Rack>(reader, kind)?;
+            let mut joint = |key: &str, coordinate: JointCoordinate| {
+                let node = details.required(reader, key)?;
+                reader.joint_ref(node, coordinate)
+            };
+            let pinion = joint("pinion", JointCoordinate::Angle);
+            let rack = joint("rack", JointCoordinate::Displacement);
+            let radius = ratio(reader, &details, "radius", Dimension::LENGTH);
+            let offset = number(reader, &details, "offset", Dimension::LENGTH);
+            Some(JointKind::Rack { pinion: pinion?, rack: rack?, radius: radius?, offset: offset? })
         }
         // `only` lets through the kinds of the grammar; this is the last.
         _ => equation(reader, &kind.value),
     }
 }
 
-fn points(reader: &mut Reader, details: &Details) -> Option<[super::description::PointRef; 2]> {
+fn points(reader: &mut Reader, details: &Details) -> Option<[PointRef; 2]> {
     details.between(reader).and_then(|node| reader.between_points(node))
 }
 
-fn axis(reader: &mut Reader, details: &Details) -> Option<[Formula; 2]> {
+fn axis(reader: &mut Reader, details: &Details) -> Option<[Formula; 3]> {
     details.required(reader, "axis").and_then(|node| reader.direction(node))
 }
 
-fn angle(reader: &mut Reader, details: &Details, key: &str) -> Option<Formula> {
+/// A turning axis or a normal; z where there is none.
+fn axis_or_z(reader: &mut Reader, details: &Details, key: &str) -> Option<[Formula; 3]> {
     match details.get(key) {
-        Some(node) => reader.formula(node, Context::Constant, Dimension::ANGLE),
+        Some(node) if key == "axis" => reader.turning_axis(node),
+        Some(node) => reader.direction(node),
+        None => Some(along(2)),
+    }
+}
+
+fn along(axis: usize) -> [Formula; 3] {
+    [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))))
+}
+
+/// A number, or 0.
+fn number(reader: &mut Reader, details: &Details, key: &str, dimension: Dimension) -> Option<Formula> {
+    match details.get(key) {
+        Some(node) => reader.formula(node, Context::Constant, dimension),
         None => Some(Formula::number(0.0)),
     }
+}
+
+/// A factor that is not zero.
+fn ratio(reader: &mut Reader, details: &Details, key: &str, dimension: Dimension) -> Option<Formula> {
+    let node = details.required(reader, key)?;
+    reader.formula_that(node, Context::Constant, dimension, |value| value != 0.0, "must not be zero")
+}
+
+/// The advance in a turn. `5 mm/rev` is read as a length a radian like any other, and would be taken for that in a turn.
+fn pitch(reader: &mut Reader, details: &Details) -> Option<Formula> {
+    let node = details.required(reader, "pitch")?;
+    let pitch = ratio(reader, details, "pitch", Dimension::LENGTH)?;
+    let per_angle = match reader.written(node)? {
+        Written::Quantity { unit, .. } => unit.dimension.is_per_angle(),
+        Written::Formula(formula) => reader.kind(node, &formula, 0).dimension().is_some_and(Dimension::is_per_angle),
+    };
+    if per_angle {
+        let help = "a pitch is the advance in a turn: write `5 mm` for 5 mm/rev".to_owned();
+        reader.error(node.span.clone(), "a length an angle stands where a length (m) belongs", help);
+        return None;
+    }
+    Some(pitch)
+}
+
+/// Two bodies by their angles, or two joints by theirs.
+fn turning(reader: &mut Reader, node: &Node) -> Option<[Turning; 2]> {
+    let pair = reader.two(node, "a list of two bodies or joints")?;
+    if !pair.iter().any(|node| reader.names_joint(node)) {
+        let bodies = reader.between_bodies(node)?;
+        for (body, node) in bodies.into_iter().zip(pair) {
+            if reader.model.bodies[body].has_orientation() {
+                let name = reader.model.bodies[body].name.clone();
+                let help =
+                    "name two joints, or give the body the coordinate `angle` instead of `orientation`".to_owned();
+                reader.error(node.span.clone(), format!("`{name}` turns about more than z, so it has no angle"), help);
+            }
+        }
+        return Some(bodies.map(Turning::Body));
+    }
+    let [first, second] = pair.map(|node| reader.joint_ref(node, JointCoordinate::Angle));
+    let (first, second) = (first?, second?);
+    if first == second {
+        reader.error(pair[1].span.clone(), "a joint is not geared with itself", None);
+    }
+    Some([Turning::Joint(first), Turning::Joint(second)])
 }
 
 /// `left = right`.
@@ -152,7 +279,10 @@ fn equation(reader: &mut Reader, node: &Node) -> Option<JointKind> {
         reader.error(node.span.clone(), format!("{a} cannot equal {b}"), None);
     }
     let moves = left.names().chain(right.names()).any(|(name, _)| {
-        matches!(reader.model.referent(name), Some(Referent::Coordinate { .. } | Referent::Point { .. }))
+        matches!(
+            reader.model.referent(name),
+            Some(Referent::Coordinate { .. } | Referent::Point { .. } | Referent::JointCoordinate { .. })
+        )
     });
     if !moves {
         reader.error(node.span.clone(), "the equation constrains nothing: no coordinate stands in it", None);

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use super::description::{BoundsRequest, Description, Simulation, Stepping};
+use super::description::{BoundsRequest, Description, Simulation, Space, Stepping};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::file;
 use super::overrides::Override;
@@ -12,7 +12,7 @@ use super::reader::Reader;
 use super::source::Span;
 use super::suggest::clip;
 use super::yaml::{self, Entry, Node};
-use super::{bodies, bounds, effects, joints, parameters, requests};
+use super::{bodies, bounds, effects, joints, parameters, requests, space};
 
 /// Largest file that is read.
 const MAX_BYTES: u64 = 10_000_000;
@@ -122,6 +122,7 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
     let model = Description {
         name: Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned()),
         description: None,
+        space: Space { spatial: false, why: String::new() },
         parameters: Vec::new(),
         bodies: Vec::new(),
         joints: Vec::new(),
@@ -150,6 +151,7 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
         reader.model.description = text;
     }
+    reader.model.space = space::read(&mut reader, &fields);
     let body_entries = section(&mut reader, fields.get("bodies"), "bodies");
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");

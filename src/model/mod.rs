@@ -5,6 +5,7 @@
 
 mod description;
 mod diagnostic;
+mod kinds;
 mod render;
 mod source;
 mod suggest;
@@ -12,6 +13,7 @@ mod suggest;
 mod yaml;
 
 mod dimension;
+mod motions;
 mod names;
 mod quantity;
 
@@ -26,12 +28,15 @@ mod load;
 mod overrides;
 mod parameters;
 mod requests;
+mod space;
 #[cfg(test)]
 mod tests;
+mod vectors;
 
 pub use description::*;
 pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
 pub use file::schema;
+pub use kinds::*;
 pub use load::{Reading, load, load_str, read, read_str};
 pub use overrides::Override;
 pub use source::{Place, Source, Sources, Span};

@@ -4,24 +4,15 @@ use std::ops::Range;
 
 use super::description::{Coordinate, Description, EnergyKind, ReactionComponent, Referent, TimeOrder};
 use super::dimension::Kind;
+use super::kinds::JointCoordinate;
+use super::motions::{
+    ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
+};
 use super::quantity::Dimension;
 use super::suggest;
 
 /// The ground's name.
 pub const GROUND: &str = "ground";
-
-/// Parts of a body's or a point's motion: name, coordinate, how often it is differentiated.
-pub const MOTIONS: [(&str, Coordinate, TimeOrder); 9] = [
-    ("x", Coordinate::X, TimeOrder::Position),
-    ("y", Coordinate::Y, TimeOrder::Position),
-    ("angle", Coordinate::Angle, TimeOrder::Position),
-    ("vx", Coordinate::X, TimeOrder::Velocity),
-    ("vy", Coordinate::Y, TimeOrder::Velocity),
-    ("angular_velocity", Coordinate::Angle, TimeOrder::Velocity),
-    ("ax", Coordinate::X, TimeOrder::Acceleration),
-    ("ay", Coordinate::Y, TimeOrder::Acceleration),
-    ("angular_acceleration", Coordinate::Angle, TimeOrder::Acceleration),
-];
 
 /// Names without a dot that are taken.
 const ENERGIES: [(&str, EnergyKind); 3] = [
@@ -61,25 +52,40 @@ pub fn is_reserved(name: &str) -> bool {
         || symdiff::formula::FUNCTIONS.iter().any(|(function, _)| *function == name)
 }
 
-/// The coordinate's name, as in `body.angle`.
-pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
-    MOTIONS.iter().find(|(_, c, o)| (*c, *o) == (coordinate, order)).map_or("", |(name, ..)| name)
-}
-
 impl Description {
     /// What a name in a formula stands for; `None` where it stands for nothing.
     pub fn referent(&self, name: &str) -> Option<Referent> {
         let mut parts = name.split('.');
         match (parts.next()?, parts.next(), parts.next(), parts.next()) {
             (word, None, ..) => self.word(word),
-            (owner, Some(member), None, _) => {
-                self.body_motion(owner, member).or_else(|| self.reaction(owner, member, None))
-            }
-            (owner, Some(member), Some(part), None) => {
-                self.point_motion(owner, member, part).or_else(|| self.reaction(owner, member, Some(part)))
-            }
+            (owner, Some(member), None, _) => self
+                .body_motion(owner, member)
+                .or_else(|| self.attitude(owner, member))
+                .or_else(|| self.joint_motion(owner, member))
+                .or_else(|| self.reaction(owner, member, None)),
+            (owner, Some(member), Some(part), None) => self
+                .point_motion(owner, member, part)
+                .or_else(|| self.turning(owner, member, part))
+                .or_else(|| self.reaction(owner, member, Some(part))),
             _ => None,
         }
+    }
+
+    /// Whether a joint has a coordinate.
+    pub(super) fn has(&self, joint: usize, coordinate: JointCoordinate) -> bool {
+        self.joints[joint].kind.axis_of(coordinate).is_some()
+    }
+
+    /// The parts of a body's motion.
+    fn motions(&self, body: usize) -> impl Iterator<Item = &'static Motion<Coordinate>> {
+        let spatial = self.space.spatial;
+        let turns_any_way = self.bodies[body].has_orientation();
+        MOTIONS.iter().filter(move |(_, coordinate, _)| match coordinate {
+            Coordinate::X | Coordinate::Y => true,
+            Coordinate::Z => spatial,
+            Coordinate::Angle => !turns_any_way,
+            Coordinate::Euler(_) => turns_any_way,
+        })
     }
 
     fn word(&self, word: &str) -> Option<Referent> {
@@ -94,29 +100,47 @@ impl Description {
 
     fn body_motion(&self, body: &str, member: &str) -> Option<Referent> {
         let body = self.bodies.iter().position(|known| known.name == body)?;
-        let (_, coordinate, order) = MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
+        let (_, coordinate, order) = self.motions(body).find(|(motion, ..)| *motion == member)?;
         (body != 0).then_some(Referent::Coordinate { body, coordinate: *coordinate, order: *order })
+    }
+
+    fn attitude(&self, body: &str, member: &str) -> Option<Referent> {
+        let body = self.bodies.iter().position(|known| known.name == body)?;
+        let angle = ATTITUDE.iter().position(|angle| *angle == member)?;
+        self.bodies[body].has_orientation().then_some(Referent::RollPitchYaw { body, angle })
+    }
+
+    fn turning(&self, body: &str, member: &str, part: &str) -> Option<Referent> {
+        let body = self.bodies.iter().position(|known| known.name == body)?;
+        let &(_, in_body, order) = TURNING.iter().find(|(vector, ..)| *vector == member)?;
+        let axis = AXES.iter().position(|axis| *axis == part)?;
+        (body != 0 && self.space.spatial).then_some(Referent::AngularMotion { body, axis, order, in_body })
     }
 
     fn point_motion(&self, body: &str, point: &str, member: &str) -> Option<Referent> {
         let body = self.bodies.iter().position(|known| known.name == body)?;
         let point = self.bodies[body].points.iter().position(|known| known.name == point)?;
-        let (_, coordinate, order) = MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
-        (*coordinate != Coordinate::Angle).then_some(Referent::Point {
-            body,
-            point,
-            coordinate: *coordinate,
-            order: *order,
-        })
+        let (_, coordinate, order) = self.motions(body).find(|(motion, ..)| *motion == member)?;
+        coordinate.is_length().then_some(Referent::Point { body, point, coordinate: *coordinate, order: *order })
+    }
+
+    fn joint_motion(&self, joint: &str, member: &str) -> Option<Referent> {
+        let joint = self.joints.iter().position(|known| known.name == joint)?;
+        let &(_, coordinate, order) = JOINT_MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
+        self.has(joint, coordinate).then_some(Referent::JointCoordinate { joint, coordinate, order })
     }
 
     fn reaction(&self, joint: &str, member: &str, part: Option<&str>) -> Option<Referent> {
         let joint = self.joints.iter().position(|known| known.name == joint)?;
-        let component = match (member, part) {
+        let axis = match part {
+            Some(part) => Some(AXES.iter().position(|axis| *axis == part)?),
+            None => None,
+        };
+        let component = match (member, axis) {
             ("force", None) => ReactionComponent::Force,
-            ("force", Some("x")) => ReactionComponent::ForceX,
-            ("force", Some("y")) => ReactionComponent::ForceY,
+            ("force", Some(axis)) if axis < 2 || self.space.spatial => ReactionComponent::ForceAlong(axis),
             ("torque", None) => ReactionComponent::Torque,
+            ("torque", Some(axis)) if self.space.spatial => ReactionComponent::TorqueAbout(axis),
             _ => return None,
         };
         Some(Referent::Reaction { joint, component })
@@ -136,7 +160,16 @@ impl Description {
                 Some("reactions are known only when the motion is; only outputs may use them")
             }
             (_, Referent::Energy(_)) => Some("only outputs may use energies"),
-            (_, Referent::Coordinate { order, .. } | Referent::Point { order, .. }) => match (context, order) {
+            (_, Referent::RollPitchYaw { .. }) => {
+                Some("these angles jump by a turn, so only outputs may use them; a joint's `angle` does not")
+            }
+            (
+                _,
+                Referent::Coordinate { order, .. }
+                | Referent::Point { order, .. }
+                | Referent::AngularMotion { order, .. }
+                | Referent::JointCoordinate { order, .. },
+            ) => match (context, order) {
                 (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
                 (Context::Equation, TimeOrder::Velocity) => {
                     Some("an equation constrains positions, so it cannot use velocities")
@@ -168,6 +201,7 @@ impl Description {
         if self.bodies.iter().any(|body| body.name == name) {
             let help = match context {
                 Context::Constant => "only parameters can stand here".to_owned(),
+                _ if self.space.spatial => format!("say what of it: `{name}.x`, `{name}.omega.x`, …"),
                 _ => format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
             };
             return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
@@ -193,9 +227,9 @@ impl Description {
         let body = self.bodies.iter().position(|body| body.name == owner);
         let joint = self.joints.iter().any(|joint| joint.name == owner);
         let after = owner.len() + 1;
-        let motions = MOTIONS.iter().map(|(motion, ..)| *motion);
         match (body, joint) {
             (Some(body), joint) => {
+                let motions = self.motions(body).map(|(motion, ..)| *motion);
                 let points = self.bodies[body].points.iter().map(|point| point.name.as_str());
                 let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
                 let point = points.clone().any(|point| point == member);
@@ -208,11 +242,31 @@ impl Description {
                     let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
                     return NameError { message, part: 0..name.len(), help };
                 }
+                let along_z = matches!(part, "z" | "vz" | "az");
+                if !self.space.spatial && if point { along_z } else { is_motion(member) } {
+                    let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
+                    let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
+                    return NameError { message, part: 0..name.len(), help: Some(help) };
+                }
                 if point {
                     let start = after + member.len() + 1;
                     let message = format!("a point has no `{}`", suggest::clip(part));
-                    let help = suggest::help(part, "parts of its motion", ["x", "y", "vx", "vy", "ax", "ay"]);
+                    let lengths = self.motions(body).filter(|(_, coordinate, _)| coordinate.is_length());
+                    let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
                     return NameError { message, part: start..name.len(), help };
+                }
+                if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
+                    let message = format!("`{vector}` is a vector: it has the parts x, y and z");
+                    let help = Some(format!("e.g. `{owner}.{vector}.z`"));
+                    return NameError { message, part: 0..name.len(), help };
+                }
+                if member == "angle" || member.starts_with("angular_") {
+                    let message =
+                        format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
+                    let help =
+                        "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
+                    let part = after..after + member.len();
+                    return NameError { message, part, help: Some(help.to_owned()) };
                 }
                 let reactions: &[&str] = if joint { &["force", "torque"] } else { &[] };
                 let known: Vec<&str> = if part.is_empty() {
@@ -230,7 +284,7 @@ impl Description {
             (None, true) => NameError {
                 message: format!("joint `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
                 part: after..name.len(),
-                help: Some("a joint has `force`, `force.x`, `force.y` and `torque`".to_owned()),
+                help: Some(self.parts_of_joint(owner)),
             },
             (None, false) => {
                 let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
@@ -249,6 +303,22 @@ impl Description {
     }
 }
 
+impl Description {
+    /// What can be said of a joint.
+    fn parts_of_joint(&self, name: &str) -> String {
+        let mut parts = if self.space.spatial {
+            vec!["force", "force.x", "force.y", "force.z", "torque", "torque.x", "torque.y", "torque.z"]
+        } else {
+            vec!["force", "force.x", "force.y", "torque"]
+        };
+        if let Some(joint) = self.joints.iter().position(|joint| joint.name == name) {
+            let coordinates = JOINT_MOTIONS.iter().filter(|(_, coordinate, _)| self.has(joint, *coordinate));
+            parts.extend(coordinates.map(|(motion, ..)| *motion));
+        }
+        format!("a joint has {}", suggest::list(&parts))
+    }
+}
+
 /// The dimension of what a name stands for; `parameters` has those of the parameters.
 pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
     Kind::motion(match referent {
@@ -257,19 +327,11 @@ pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
         Referent::Coordinate { coordinate, order, .. } | Referent::Point { coordinate, order, .. } => {
             motion_dimension(coordinate, order)
         }
-        Referent::Reaction { component: ReactionComponent::Torque, .. } | Referent::Energy(_) => Dimension::TORQUE,
+        Referent::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
+        Referent::RollPitchYaw { .. } => Dimension::ANGLE,
+        Referent::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
+        Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
+        | Referent::Energy(_) => Dimension::TORQUE,
         Referent::Reaction { .. } => Dimension::FORCE,
     })
-}
-
-/// The dimension of a coordinate and of its derivatives.
-pub fn motion_dimension(coordinate: Coordinate, order: TimeOrder) -> Dimension {
-    match (coordinate, order) {
-        (Coordinate::Angle, TimeOrder::Position) => Dimension::ANGLE,
-        (Coordinate::Angle, TimeOrder::Velocity) => Dimension::ANGULAR_VELOCITY,
-        (Coordinate::Angle, TimeOrder::Acceleration) => Dimension::ANGULAR_ACCELERATION,
-        (_, TimeOrder::Position) => Dimension::LENGTH,
-        (_, TimeOrder::Velocity) => Dimension::VELOCITY,
-        (_, TimeOrder::Acceleration) => Dimension::ACCELERATION,
-    }
 }

@@ -91,6 +91,11 @@ impl Dimension {
         Self { angle: 0, ..self } == Self { angle: 0, ..other }
     }
 
+    /// Whether it is an amount of something an angle.
+    pub fn is_per_angle(self) -> bool {
+        self.angle < 0
+    }
+
     /// Of the generalised force on a coordinate of this dimension: what does work on it, N on a length, N m on an angle.
     pub fn conjugate(self) -> Self {
         Self::TORQUE.per(Self { angle: 0, ..self })

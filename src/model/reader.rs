@@ -7,10 +7,11 @@ use std::collections::HashMap;
 
 use symdiff::{Formula, Graph};
 
-use super::description::{Description, JointKind, ReactionComponent, Referent};
+use super::description::{Description, ReactionComponent, Referent};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::dimension::{self, Kind};
 use super::file::Grammar;
+use super::kinds::JointKind;
 use super::names::{self, Context};
 use super::quantity::{Dimension, Unit, number_and_unit};
 use super::source::Span;
@@ -422,45 +423,6 @@ impl Reader<'_> {
             return None;
         }
         self.evaluate(&formula, 0).filter(|value| value.is_finite())
-    }
-
-    /// Two formulas of a dimension: components.
-    pub fn pair(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 2]> {
-        let [x, y] = self.two(node, "a list of two numbers")?;
-        let x = self.formula(x, context, wanted);
-        let y = self.formula(y, context, wanted);
-        Some([x?, y?])
-    }
-
-    /// `x`, `y` or components of any length but zero.
-    pub fn direction(&mut self, node: &Node) -> Option<[Formula; 2]> {
-        match node.scalar().map(|scalar| scalar.text.as_str()) {
-            Some("x") => return Some([Formula::number(1.0), Formula::number(0.0)]),
-            Some("y") => return Some([Formula::number(0.0), Formula::number(1.0)]),
-            _ => {}
-        }
-        let [first, second] = self.two(node, "`x`, `y` or a list of two numbers")?;
-        let mut component = |node: &Node| match self.written(node)? {
-            Written::Quantity { value, unit } => Some(Formula::number(unit.to_si(value))),
-            Written::Formula(formula) => self.check_names(node, &formula, 0, Context::Constant).then(|| {
-                self.kind(node, &formula, 0);
-                self.require(node, &formula, |_| true, "");
-                formula
-            }),
-        };
-        let x = component(first);
-        let y = component(second);
-        let axis = [x?, y?];
-        for corner in 0..self.corners.len() {
-            let zero = |formula| self.evaluate(formula, corner) == Some(0.0);
-            if zero(&axis[0]) && zero(&axis[1]) {
-                let label = &self.corners[corner].label;
-                let message = format!("a direction of length zero points nowhere{label}");
-                self.error(node.span.clone(), message, None);
-                break;
-            }
-        }
-        Some(axis)
     }
 }
 

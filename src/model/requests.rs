@@ -1,10 +1,13 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
-use super::description::{Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder};
+use super::description::{
+    Coordinate, Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder,
+};
 use super::diagnostic::Diagnostic;
 use super::dimension::Kind;
 use super::file;
-use super::names::{Context, motion_dimension, motion_name};
+use super::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader, Written};
 use super::suggest::clip;
@@ -23,6 +26,9 @@ pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) ->
 
 fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<StartValue> {
     let name = entry.key.as_str();
+    if let Some(value) = turning_value(reader, entry, velocities) {
+        return value;
+    }
     let referent = match reader.model.referent(name).ok_or_else(|| reader.model.unknown(name, Context::Equation)) {
         Ok(referent) => referent,
         Err(error) => {
@@ -32,32 +38,79 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             return None;
         }
     };
-    let Referent::Coordinate { body, coordinate, order } = referent else {
-        let message = format!("`{}` is not a coordinate of a body", clip(name));
-        let help = "name coordinates of bodies here, such as `crank.angle` or `slider.vx`".to_owned();
-        reader.error(entry.key_span.clone(), message, help);
-        return None;
+    let (order, dimension) = match referent {
+        Referent::Coordinate { body, coordinate, order } if !matches!(coordinate, Coordinate::Euler(_)) => {
+            if !reader.model.bodies[body].coordinates.contains(&coordinate) {
+                let owner = reader.model.bodies[body].name.clone();
+                let coordinate_name = motion_name(coordinate, TimeOrder::Position);
+                let message = format!("body `{owner}` has no coordinate `{coordinate_name}`");
+                let help = format!("add it to `coordinates` of `{owner}`, or give its constant value in `held`");
+                reader.error(entry.key_span.clone(), message, help);
+            }
+            (order, motion_dimension(coordinate, order))
+        }
+        Referent::JointCoordinate { coordinate, order, .. } => (order, joint_dimension(coordinate, order)),
+        _ => {
+            let message = format!("`{}` is not a coordinate of a body", clip(name));
+            let help = if reader.model.space.spatial {
+                "name coordinates of bodies or joints here, such as `hinge.angle` or `slider.vx`, `body.orientation`, \
+                 `body.omega` or `body.omega_body`"
+            } else {
+                "name coordinates of bodies here, such as `crank.angle` or `slider.vx`"
+            };
+            reader.error(entry.key_span.clone(), message, help.to_owned());
+            return None;
+        }
     };
-    if !reader.model.bodies[body].coordinates.contains(&coordinate) {
-        let owner = reader.model.bodies[body].name.clone();
-        let coordinate_name = motion_name(coordinate, TimeOrder::Position);
-        let message = format!("body `{owner}` has no coordinate `{coordinate_name}`");
-        let help = format!("add it to `coordinates` of `{owner}`, or give its constant value in `held`");
-        reader.error(entry.key_span.clone(), message, help);
-    }
     let refusal = match order {
         TimeOrder::Position => None,
         TimeOrder::Velocity if velocities => None,
-        TimeOrder::Velocity => Some("only positions are guessed: velocities follow from them"),
+        TimeOrder::Velocity => Some(ONLY_POSITIONS),
         TimeOrder::Acceleration => Some("an acceleration cannot be chosen: it follows from the forces"),
     };
     if let Some(refusal) = refusal {
         reader.error(entry.key_span.clone(), refusal, None);
         return None;
     }
-    let value = reader.formula(&entry.value, Context::Constant, motion_dimension(coordinate, order))?;
-    Some(StartValue { body, coordinate, order, value })
+    let value = reader.formula(&entry.value, Context::Constant, dimension)?;
+    match referent {
+        Referent::Coordinate { body, coordinate, .. } => {
+            Some(StartValue::Coordinate { body, coordinate, order, value })
+        }
+        Referent::JointCoordinate { joint, coordinate, .. } => {
+            Some(StartValue::Joint { joint, coordinate, order, value })
+        }
+        _ => None,
+    }
 }
+
+/// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
+fn turning_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
+    let (owner, part) = entry.key.split_once('.')?;
+    let velocity = TURNING.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
+    if part != ORIENTATION && velocity.is_none() {
+        return None;
+    }
+    let body = reader.model.bodies.iter().position(|body| body.name == owner && owner != GROUND)?;
+    if !reader.model.bodies[body].coordinates.contains(&Coordinate::Euler(0)) {
+        let help = "a body in space has the coordinate `orientation` unless it says otherwise".to_owned();
+        reader.error(entry.key_span.clone(), format!("body `{owner}` does not turn freely in space"), help);
+        return Some(None);
+    }
+    let Some(&(_, in_body, _)) = velocity else {
+        let rotation = reader.rotation(&entry.value, entry.key_span.clone());
+        return Some(rotation.map(|rotation| StartValue::Orientation { body, rotation }));
+    };
+    if !velocities {
+        reader.error(entry.key_span.clone(), ONLY_POSITIONS, None);
+        return Some(None);
+    }
+    let value = reader.three(&entry.value, Context::Constant, Dimension::ANGULAR_VELOCITY);
+    Some(value.map(|value| StartValue::AngularVelocity { body, value, in_body }))
+}
+
+/// Why a velocity is not guessed.
+const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from them";
 
 /// Reads `outputs:`.
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
@@ -94,7 +147,9 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
     let [(symdiff::formula::Term::Name(name), _)] = formula.terms() else { return None };
     match reader.model.referent(name)? {
         Referent::Energy(_) => Some("J".to_owned()),
-        Referent::Reaction { component: ReactionComponent::Torque, .. } => Some("N*m".to_owned()),
+        Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. } => {
+            Some("N*m".to_owned())
+        }
         Referent::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
         _ => None,
     }

@@ -49,14 +49,14 @@ fn the_slider_crank_is_what_its_file_says() {
     assert!(model.bodies[0].coordinates.is_empty());
     assert_eq!(model.bodies[1].coordinates, [Coordinate::X, Coordinate::Y, Coordinate::Angle]);
     assert_eq!(model.bodies[3].coordinates, [Coordinate::X]);
-    let JointKind::Revolute { between } = &model.joints[2].kind else { panic!("revolute") };
+    let JointKind::Revolute { between, .. } = &model.joints[2].kind else { panic!("revolute") };
     assert_eq!(*between, [PointRef { body: 2, point: Some(1) }, PointRef { body: 3, point: None }]);
-    let EffectKind::SpringDamper { along: Some([x, y]), free_length, .. } = &model.effects[1].kind else {
+    let EffectKind::SpringDamper { along: Some([x, y, _]), free_length, .. } = &model.effects[1].kind else {
         panic!("a spring along x")
     };
     assert_eq!((x.as_number(), y.as_number()), (Some(1.0), Some(0.0)));
     assert_eq!(free_length.names().count(), 2);
-    assert_eq!(model.initial[1].order, TimeOrder::Velocity);
+    assert!(matches!(model.initial[1], StartValue::Coordinate { order: TimeOrder::Velocity, .. }));
     assert_eq!((model.outputs[0].name.as_str(), model.outputs[0].unit.as_str()), ("x3", "m"));
     assert_eq!(model.simulation.stepping, Stepping::Fixed(1e-3));
     assert_eq!(model.simulation.output_step, 0.01);
@@ -180,7 +180,7 @@ guess: { bar.y: 2 }"#,
     assert_eq!(model.bodies[0].points[0].name, "O");
     assert!(model.bodies[1].mass.is_none());
     let EffectKind::Torque { from, value, .. } = &model.effects[2].kind else { panic!("a torque") };
-    assert_eq!((*from, value.as_number()), (1, Some(1000.0)));
+    assert_eq!((*from, value[2].as_number()), (1, Some(1000.0)));
 }
 
 #[test]
@@ -221,4 +221,48 @@ fn records_are_for_machines() {
             "help": "did you mean `bar`?",
         }])
     );
+}
+
+#[test]
+fn what_leaves_the_plane_makes_a_model_spatial() {
+    let in_bar = |part: &str| BAR.replace("points: { A: [-l/2, 0] }", part).replace("bar.angle", "bar.x");
+    let joint = |joint: &str| BAR.replace("joints: {}", joint).replace("bar.angle", "bar.x");
+    let effect = |effect: &str| BAR.replace("effects: {}", effect).replace("bar.angle", "bar.x");
+    for (text, why) in [
+        (BAR.to_owned(), None),
+        (in_bar("points: { A: [l, 0, 0] }, center_of_mass: [0, l, 0.0]"), None),
+        (joint("joints: { j: { revolute: { between: [ground, bar], axis: [0, 0, 2] } } }"), None),
+        (effect("effects: { g: { gravity: { acceleration: [0, -9.81, 0] } } }"), None),
+        (effect("effects: { m: { torque: { on: bar, value: [0, 0, 1] } } }"), None),
+        (in_bar("points: { A: [l, 0, l] }"), Some("point `A` of body `bar` leaves the plane")),
+        (in_bar("points: { A: { rotation: { rpy: [0, 0, 1] } } }"), Some("point `A` of body `bar` leaves the plane")),
+        (in_bar("center_of_mass: [0, l, l]"), Some("the centre of mass of body `bar` leaves the plane")),
+        (in_bar("coordinates: [x, z]"), Some("a coordinate of body `bar` leaves the plane")),
+        (joint("joints: { j: { spherical: [ground, bar] } }"), Some("the kind of joint `j` leaves the plane")),
+        (
+            joint("joints: { j: { revolute: { between: [ground, bar], axis: x } } }"),
+            Some("the axis of joint `j` leaves the plane"),
+        ),
+        (
+            joint("joints: { j: { prismatic: { between: [ground, bar], axis: z } } }"),
+            Some("the axis of joint `j` leaves the plane"),
+        ),
+        (
+            effect("effects: { g: { gravity: { acceleration: [0, 0, -9.81] } } }"),
+            Some("`acceleration` of effect `g` leaves the plane"),
+        ),
+        (
+            effect("effects: { m: { torque: { on: bar, value: [1, 0, 0] } } }"),
+            Some("`value` of effect `m` leaves the plane"),
+        ),
+        (
+            in_bar("").replace("outputs", "initial: { bar.z: 1 }\noutputs"),
+            Some("`bar.z` in `initial` leaves the plane"),
+        ),
+        (format!("space: spatial\n{}", in_bar("")), Some("the model says so")),
+    ] {
+        let space = good(&text).space;
+        assert_eq!(space.spatial, why.is_some(), "{text}");
+        assert_eq!(space.why, why.unwrap_or("nothing leaves the plane"), "{text}");
+    }
 }

@@ -139,7 +139,9 @@ pub fn compile(
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
     let mut numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
-    let equilibration = equilibrate(&newton, &numbers, n);
+    let mut heavy = vec![false; n];
+    system.mass.iter().filter(|(row, column, _)| row == column).for_each(|&(row, _, _)| heavy[row] = true);
+    let equilibration = equilibrate(&newton, &numbers, &heavy);
 
     // A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.
     let mut regular = newton.matrix.clone();
@@ -157,8 +159,9 @@ pub fn compile(
         numbers.insert(place + offset, [-weight; PROBES]);
     }
 
+    let pivoting = if system.space.spatial { Pivoting::Symmetric { heavy: &heavy } } else { Pivoting::Any };
     let plan = |graph: &mut Graph, numbers: &[Numbers]| {
-        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, Pivoting::Any)
+        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, pivoting)
     };
     // A start in a singular configuration has no pivots of its own: then states in general position decide.
     let factors = plan(&mut graph, &numbers).or_else(|_| {
@@ -246,20 +249,33 @@ fn probe_numbers(
     (0..entries.len()).map(|entry| std::array::from_fn(|probe| values[probe][entry])).collect()
 }
 
-/// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints.
-fn equilibrate(newton: &NewtonSystem, numbers: &[Numbers], n: usize) -> Vec<f64> {
+/// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints. A
+/// coordinate without inertia (`heavy` says which have some) is scaled by the constraints that define it instead, and
+/// constraints between such coordinates after those.
+fn equilibrate(newton: &NewtonSystem, numbers: &[Numbers], heavy: &[bool]) -> Vec<f64> {
+    let n = heavy.len();
     let mut scale = vec![1.0; newton.matrix.rows.len()];
-    let nominal = |place: usize| numbers[place][0].abs();
-    for (place, (row, column, _)) in newton.matrix.entries().enumerate() {
-        if row == column && row < n && nominal(place) > 0.0 {
-            scale[row] = 1.0 / nominal(place).sqrt();
+    let entries =
+        || newton.matrix.entries().zip(numbers).map(|((row, column, _), numbers)| (row, column, numbers[0].abs()));
+    for (row, column, size) in entries() {
+        if row == column && row < n && heavy[row] && size > 0.0 {
+            scale[row] = 1.0 / size.sqrt();
         }
     }
     let mut largest = vec![0.0_f64; scale.len()];
-    for (place, (row, column, _)) in newton.matrix.entries().enumerate() {
-        if row >= n && column < n {
-            largest[row] = largest[row].max(nominal(place) * scale[column]);
-        }
+    let slopes = || entries().filter(|&(row, column, _)| row >= n && column < n);
+    for (row, column, size) in slopes().filter(|&(_, column, _)| heavy[column]) {
+        largest[row] = largest[row].max(size * scale[column]);
+    }
+    let mut light = vec![0.0_f64; n];
+    for (row, column, size) in slopes().filter(|&(row, column, _)| !heavy[column] && largest[row] > 0.0) {
+        light[column] = light[column].max(size / largest[row]);
+    }
+    for (scale, size) in scale.iter_mut().zip(light).filter(|(_, size)| *size > 0.0) {
+        *scale = 1.0 / size;
+    }
+    for (row, column, size) in slopes().filter(|&(_, column, _)| !heavy[column]) {
+        largest[row] = largest[row].max(size * scale[column]);
     }
     for (row, &size) in largest.iter().enumerate().skip(n) {
         if size > 0.0 {

@@ -28,9 +28,19 @@ const SEARCHED: usize = 4;
 
 /// Which entries may be pivots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pivoting {
+pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
     Any,
+    /// What cannot vanish wherever the mechanism goes, in a matrix [M Φᵀ; Φ 0] with M positive definite but for coordinates
+    /// without inertia (`heavy` says which have some, and how many coordinates there are): diagonal entries of M; a slope of
+    /// Φ that does not change or is by a coordinate without inertia, twice, which takes the coordinate and the multiplier
+    /// out together; and, where nothing of its row is left in Φ, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
+    ///
+    /// Bodies that turn freely need it: each of their Euler parameters, and so each slope by them, passes through zero.
+    Symmetric {
+        #[allow(missing_docs)]
+        heavy: &'m [bool],
+    },
     /// The diagonal only, of the rows before `constraints` first: for quasi-definite matrices, where this order exists
     /// whatever the numbers.
     Diagonal {
@@ -39,10 +49,10 @@ pub enum Pivoting {
     },
 }
 
-impl Pivoting {
+impl Pivoting<'_> {
     fn smallest(self) -> f64 {
         match self {
-            Self::Any => SINGULAR,
+            Self::Any | Self::Symmetric { .. } => SINGULAR,
             Self::Diagonal { .. } => SINGULAR_DIAGONAL,
         }
     }
@@ -103,7 +113,9 @@ struct Active<'g> {
     dear: usize,
     rows: Vec<BTreeMap<usize, Entry>>,
     columns: Vec<BTreeSet<usize>>,
-    pivoting: Pivoting,
+    pivoting: Pivoting<'g>,
+    /// The second pivot of a pair, to be taken next.
+    mate: Option<(usize, usize)>,
     /// The rows and columns left.
     sparsest_rows: BTreeSet<Key>,
     sparsest_columns: BTreeSet<Key>,
@@ -114,14 +126,14 @@ struct Active<'g> {
 ///
 /// # Errors
 /// [`Singular`] where no entry of the rows left is large enough at every probe.
-pub fn factorise(
-    graph: &mut Graph,
+pub fn factorise<'g>(
+    graph: &'g mut Graph,
     matrix: &SparseMatrix,
     numbers: &[Numbers],
     scale: &[f64],
     stages: Stages,
     dear: usize,
-    pivoting: Pivoting,
+    pivoting: Pivoting<'g>,
 ) -> Result<Factors, Singular> {
     let size = matrix.rows.len();
     let mut rows = vec![BTreeMap::new(); size];
@@ -133,7 +145,8 @@ pub fn factorise(
     }
     let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| pivoting.key(entries.len(), row)).collect();
     let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| pivoting.key(rows.len(), column)).collect();
-    let mut active = Active { graph, stages, dear, pivoting, rows, columns, sparsest_rows, sparsest_columns };
+    let mut active =
+        Active { graph, stages, dear, pivoting, mate: None, rows, columns, sparsest_rows, sparsest_columns };
     let mut pivots = Vec::with_capacity(size);
     while pivots.len() < size {
         match active.choose() {
@@ -148,14 +161,20 @@ impl Active<'_> {
     /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where none
     /// has, the threshold is lowered.
     fn choose(&mut self) -> Option<(usize, usize)> {
+        if let Some(mate) = self.mate.take() {
+            return Some(mate);
+        }
         self.stages.update(self.graph);
         let singular = self.pivoting.smallest();
         let mut threshold = THRESHOLD;
         while threshold > singular {
             let mut searched = SEARCHED;
             loop {
-                if let Some(best) = self.best_of(searched, threshold) {
-                    return Some(best);
+                if let Some((row, column)) = self.best_of(searched, threshold) {
+                    if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
+                        self.mate = Some((column, row));
+                    }
+                    return Some((row, column));
                 }
                 if searched >= self.sparsest_columns.len() {
                     break;
@@ -192,7 +211,29 @@ impl Active<'_> {
             .iter()
             .take(searched)
             .flat_map(|&(_, _, row)| self.rows[row].keys().map(move |&column| (row, column)));
-        in_columns.chain(in_rows).filter(|(row, column)| self.pivoting == Pivoting::Any || row == column)
+        in_columns.chain(in_rows).filter(|&(row, column)| self.may_be_pivot(row, column))
+    }
+
+    fn may_be_pivot(&self, row: usize, column: usize) -> bool {
+        match self.pivoting {
+            Pivoting::Any => true,
+            Pivoting::Diagonal { .. } => row == column,
+            Pivoting::Symmetric { heavy } if row == column => match heavy.get(row) {
+                Some(heavy) => *heavy,
+                None => self.rows[row].range(..heavy.len()).next().is_none(),
+            },
+            Pivoting::Symmetric { heavy } => {
+                let slope = row < heavy.len() && column >= heavy.len();
+                let steady = |value: Expr| self.stages.of(value) != Some(self.dear);
+                let mate = self.rows[column].get(&row).filter(|_| slope);
+                mate.is_some_and(|mate| {
+                    !heavy[row]
+                        || !self.rows[column].contains_key(&column)
+                            && steady(mate.value)
+                            && steady(self.rows[row][&column].value)
+                })
+            }
+        }
     }
 
     /// |entry| over the largest of its column, at the worst probe.
@@ -339,6 +380,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn solve_numbers(dense: &[Vec<f64>], right: &[f64]) -> Result<Vec<f64>, Singular> {
+        solve_by(dense, right, Pivoting::Any).map(|(x, _)| x)
+    }
+
+    /// The solution, and the factors.
+    fn solve_by(dense: &[Vec<f64>], right: &[f64], pivoting: Pivoting) -> Result<(Vec<f64>, Factors), Singular> {
         let mut graph = Graph::new();
         let mut matrix = SparseMatrix::zero(dense.len(), dense.len());
         let mut numbers = Vec::new();
@@ -350,10 +396,32 @@ mod tests {
             }
         }
         let scale = vec![1.0; dense.len()];
-        let factors = factorise(&mut graph, &matrix, &numbers, &scale, Stages::new(&[]), 0, Pivoting::Any)?;
+        let factors = factorise(&mut graph, &matrix, &numbers, &scale, Stages::new(&[]), 0, pivoting)?;
         let right: Vec<Expr> = right.iter().map(|&value| graph.constant(value)).collect();
         let x = factors.solve(&mut graph, &right);
-        Ok(x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect())
+        let x = x.into_iter().map(|expr| graph.as_constant(expr).unwrap()).collect();
+        Ok((x, factors))
+    }
+
+    /// Three coordinates, the last without inertia and defined by the second constraint.
+    #[test]
+    fn what_has_inertia_or_defines_is_a_pivot() {
+        let dense = [
+            vec![2.0, 0.5, 0.0, 1.0, 0.3],
+            vec![0.5, 3.0, 0.0, 0.7, -0.4],
+            vec![0.0, 0.0, 0.0, 0.0, -1.0],
+            vec![1.0, 0.7, 0.0, 0.0, 0.0],
+            vec![0.3, -0.4, -1.0, 0.0, 0.0],
+        ];
+        let right = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let (x, factors) = solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false] }).unwrap();
+        for (row, b) in dense.iter().zip(right) {
+            let product: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+            assert!((product - b).abs() < 1e-13);
+        }
+        let pivots: Vec<(usize, usize)> = factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect();
+        let place = pivots.iter().position(|&pivot| pivot == (2, 4)).unwrap();
+        assert_eq!(pivots[place + 1], (4, 2), "{pivots:?}");
     }
 
     #[test]

@@ -8,6 +8,9 @@
 //!                 [ Φ_q  −ε ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! A coordinate without inertia has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
+//! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
+//!
 //! D = diag(1/scale²) makes the change of the coordinates that are not kept smallest; kept ones have no column. ε > 0 makes
 //! the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order exists, also
 //! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
@@ -122,7 +125,8 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let zero = vec![builder.graph.constant(0.0); system.q.len()];
     let position = builder.correction(&diagonal, &kept(&system.start.position), &zero, &system.constraint)?;
     let velocity = builder.correction(&diagonal, &kept(&system.start.velocity), &zero, &rate)?;
-    let acceleration = builder.correction(&system.mass, &vec![false; system.q.len()], &motion, &rate_of_rate)?;
+    let (mass, motion) = builder.with_defined_coordinates(motion, &rate_of_rate);
+    let acceleration = builder.correction(&mass, &vec![false; system.q.len()], &motion, &rate_of_rate)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
@@ -235,12 +239,49 @@ impl Builder<'_> {
         Ok(factors.solve(&mut self.graph, &right))
     }
 
-    fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
+    /// M and the equations of motion, augmented by the constraints that define coordinates without inertia. μ makes the
+    /// defined coordinate about as heavy as those that define it.
+    fn with_defined_coordinates(
+        &mut self,
+        mut motion: Vec<Expr>,
+        rate_of_rate: &[Expr],
+    ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {
+        let mut mass = self.system.mass.clone();
+        let mut diagonal = vec![0.0; self.system.q.len()];
+        let entries: Vec<Expr> = mass.iter().map(|&(_, _, value)| value).collect();
+        for (&(row, column, _), value) in mass.iter().zip(self.at_probe(&entries)) {
+            if row == column {
+                diagonal[row] = value;
+            }
+        }
+        for (constraint, slopes) in self.slopes.rows.iter().enumerate() {
+            let defines = slopes.iter().any(|&(column, _)| diagonal[column] == 0.0);
+            let weight = slopes.iter().fold(0.0, |heaviest: f64, &(column, _)| heaviest.max(diagonal[column]));
+            if !defines || weight == 0.0 {
+                continue;
+            }
+            for &(row, slope) in slopes {
+                let pull = self.graph.scale(weight, slope);
+                let residual = self.graph.mul(pull, rate_of_rate[constraint]);
+                motion[row] = self.graph.add(motion[row], residual);
+                for &(column, other) in slopes {
+                    mass.push((row, column, self.graph.mul(pull, other)));
+                }
+            }
+        }
+        (mass, motion)
+    }
+
+    /// Values at the probe.
+    fn at_probe(&self, exprs: &[Expr]) -> Vec<f64> {
         let slot_of: rustc_hash::FxHashMap<Expr, usize> =
             self.inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
+        self.graph.evaluate(exprs, |symbol| self.probe[slot_of[&symbol]])
+    }
+
+    fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-        let values = self.graph.evaluate(&entries, |symbol| self.probe[slot_of[&symbol]]);
-        values.into_iter().map(|value| [value; PROBES]).collect()
+        self.at_probe(&entries).into_iter().map(|value| [value; PROBES]).collect()
     }
 
     /// Σ Φ_ki² / metric_ii: a constraint's own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.

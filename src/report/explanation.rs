@@ -9,6 +9,8 @@ use crate::integrate::Simulator;
 pub struct Explanation {
     /// The model's name.
     pub model: String,
+    /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
+    pub space: String,
     /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.
     pub coordinates: Vec<String>,
     /// Constraint equations by name, e.g. `pin.x`.
@@ -40,6 +42,7 @@ impl Explanation {
         let (nonzeros, factor_nonzeros) = program.nonzeros;
         Self {
             model: model.to_owned(),
+            space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
             coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
             constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
             degrees_of_freedom: simulator.mobility.degrees_of_freedom,

@@ -216,5 +216,6 @@ pub fn reference(file: &str) -> Option<Vec<Vec<f64>>> {
     let path = Path::new(&folder).join(file);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
-    Some(lines.map(|line| line.split(',').map(|field| field.parse().unwrap()).collect()).collect())
+    let fields = |line: &str| line.split([',', '\t']).map(|field| field.parse().unwrap()).collect();
+    Some(lines.map(fields).collect())
 }

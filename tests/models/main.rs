@@ -4,6 +4,7 @@
 //! One binary for all of them, so that the library is linked once. Every tolerance says where it comes from: rounding and
 //! Newton's tolerance (1e-11 of a position), the scheme's order (2), or a measurement that is written beside it.
 
+mod adams_joints;
 mod assembly;
 mod bounds_laws;
 mod car_axis;
@@ -15,11 +16,13 @@ mod honesty;
 mod invariants;
 mod linkages;
 mod reproducibility;
+mod rotation;
 mod run_all;
 mod runge_kutta;
 mod schemes;
 mod singular;
 mod slider_crank;
 mod snapshots;
+mod spatial_linkages;
 mod step_control;
 mod tolerance;

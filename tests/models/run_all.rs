@@ -13,7 +13,10 @@ fn every_model_runs() {
         let description = load(&path);
         assert_eq!(path.file_stem().unwrap().to_string_lossy(), description.name, "a model has the name of its file");
         let (bounds, summary) = run_methods(&description, None);
-        assert!(summary.redundant_constraints.is_empty(), "{}: {:?}", description.name, summary.redundant_constraints);
+        // Bricard's loop moves because one of its constraints is implied by the others.
+        let redundant = usize::from(description.name == "bricard");
+        let found = &summary.redundant_constraints;
+        assert_eq!(found.len(), redundant, "{}: {found:?}", description.name);
         assert!(!summary.parameters.is_empty(), "{} has no uncertain parameter", description.name);
         let rows = (description.simulation.duration / description.simulation.output_step).round() as usize + 1;
         assert_eq!(bounds.times.len(), rows, "{}", description.name);

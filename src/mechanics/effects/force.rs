@@ -19,7 +19,7 @@ pub fn apply(
     m: &Mechanism,
     loads: &mut Loads,
     on: PointRef,
-    value: &[Formula; 2],
+    value: &[Formula; 3],
     in_body: bool,
 ) -> Result<(), BuildError> {
     let mut force = m.vector(g, value, Context::Motion)?;

@@ -10,17 +10,17 @@ use symdiff::{Formula, Graph};
 
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
-use crate::mechanics::plane;
+use crate::mechanics::space;
 
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 2]) -> Result<(), BuildError> {
+pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
     let acceleration = m.vector(g, acceleration, Context::Motion)?;
     for (index, body) in m.bodies.iter().enumerate() {
-        let weight = plane::scale(g, body.mass, acceleration);
+        let weight = space::scale(g, body.mass, acceleration);
         let center = m.point_at(g, index, body.center);
         loads.add_force(g, &center, weight);
-        let height = plane::dot(g, weight, center.position);
+        let height = space::dot(g, weight, center.position);
         let potential = g.neg(height);
         loads.add_potential(g, m, &weight, potential);
     }

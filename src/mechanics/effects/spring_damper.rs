@@ -17,7 +17,7 @@ use symdiff::{Expr, Formula, Graph};
 use crate::mechanics::body::MaterialPoint;
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
-use crate::mechanics::plane::{self, Vector};
+use crate::mechanics::space::{self, Vector};
 use crate::model::PointRef;
 
 use super::Loads;
@@ -38,7 +38,7 @@ pub fn apply(
     m: &Mechanism,
     loads: &mut Loads,
     between: [PointRef; 2],
-    along: Option<&[Formula; 2]>,
+    along: Option<&[Formula; 3]>,
     spring: Spring<&Formula>,
 ) -> Result<(), BuildError> {
     let spring = Spring {
@@ -65,19 +65,19 @@ pub fn apply(
 
 /// F_A and ℓ − ℓ₀.
 fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> (Vector, Expr) {
-    let line = plane::sub(g, b.position, a.position);
-    let rate = plane::sub(g, b.velocity, a.velocity);
-    let square = plane::dot(g, line, line);
+    let line = space::sub(g, b.position, a.position);
+    let rate = space::sub(g, b.velocity, a.velocity);
+    let square = space::dot(g, line, line);
     let length = g.sqrt(square);
     let one = g.constant(1.0);
     let share = g.div(spring.free_length, length);
     let strain = g.sub(one, share);
     let elastic = g.mul(spring.stiffness, strain);
-    let growth = plane::dot(g, line, rate);
+    let growth = space::dot(g, line, rate);
     let relative = g.div(growth, square);
     let viscous = g.mul(spring.damping, relative);
     let tension = g.add(elastic, viscous);
-    (plane::scale(g, tension, line), g.sub(length, spring.free_length))
+    (space::scale(g, tension, line), g.sub(length, spring.free_length))
 }
 
 /// F_A and s − ℓ₀.
@@ -88,13 +88,13 @@ fn along_axis(
     axis: Vector,
     spring: Spring<Expr>,
 ) -> (Vector, Expr) {
-    let axis = plane::unit(g, axis);
-    let line = plane::sub(g, b.position, a.position);
-    let rate = plane::sub(g, b.velocity, a.velocity);
-    let (extent, growth) = (plane::dot(g, axis, line), plane::dot(g, axis, rate));
+    let axis = space::unit(g, axis);
+    let line = space::sub(g, b.position, a.position);
+    let rate = space::sub(g, b.velocity, a.velocity);
+    let (extent, growth) = (space::dot(g, axis, line), space::dot(g, axis, rate));
     let stretch = g.sub(extent, spring.free_length);
     let elastic = g.mul(spring.stiffness, stretch);
     let viscous = g.mul(spring.damping, growth);
     let tension = g.add(elastic, viscous);
-    (plane::scale(g, tension, axis), stretch)
+    (space::scale(g, tension, axis), stretch)
 }

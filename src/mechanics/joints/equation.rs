@@ -12,12 +12,12 @@ use symdiff::{Formula, Graph};
 
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
-use crate::mechanics::plane;
+use crate::mechanics::space;
 
 use super::Row;
 
 pub fn rows(g: &mut Graph, m: &Mechanism, left: &Formula, right: &Formula) -> Result<Vec<Row>, BuildError> {
     let (left, right) = (m.formula(g, left, Context::Positions)?, m.formula(g, right, Context::Positions)?);
     let value = g.sub(left, right);
-    Ok(vec![Row { name: "", value, force: plane::zero(g), torque: g.constant(0.0) }])
+    Ok(vec![Row { name: "", value, force: space::zero(g), torque: space::zero(g) }])
 }

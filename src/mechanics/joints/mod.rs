@@ -6,21 +6,32 @@
 //!
 //! To add a joint: its file here, its variant in [`JointKind`], its line in [`rows`].
 
+mod cylindrical;
 mod distance;
 mod equation;
 mod fixed;
 mod gear;
+mod pair;
 mod pin_in_slot;
+mod planar;
+mod point_on_line;
+mod point_on_plane;
 mod prismatic;
+mod rack;
 mod revolute;
+mod screw;
+mod spherical;
+mod universal;
 
-use symdiff::{Expr, Graph};
+use symdiff::{Expr, Formula, Graph};
 
-use crate::model::JointKind;
+use crate::model::{JointCoordinate, JointKind};
 
 use super::error::BuildError;
-use super::mechanism::Mechanism;
-use super::plane::{self, Vector};
+use super::mechanism::{Context, Mechanism};
+use super::space::{self, Vector};
+
+pub use pair::Pair;
 
 /// One scalar constraint.
 #[derive(Clone, Copy, Debug)]
@@ -31,32 +42,59 @@ pub struct Row {
     pub value: Expr,
     /// Force on the second body for λ = 1, in the ground's axes: a unit vector where Φ = 0, or zero.
     pub force: Vector,
-    /// Torque on the second body about the second point for λ = 1.
-    pub torque: Expr,
+    /// Torque on the second body about the second point for λ = 1, in the ground's axes.
+    pub torque: Vector,
 }
 
-/// A joint's reaction on its second body.
+/// A joint's reaction on its second body, in the ground's axes.
 #[derive(Clone, Copy, Debug)]
 pub struct Reaction {
-    /// In the ground's axes, N.
+    /// N
     pub force: Vector,
     /// |force|, N; for an `equation` its multiplier.
     pub magnitude: Expr,
     /// About the second point, N m.
-    pub torque: Expr,
+    pub torque: Vector,
 }
 
 /// A joint's rows.
-pub fn rows(g: &mut Graph, m: &Mechanism, kind: &JointKind) -> Result<Vec<Row>, BuildError> {
-    match kind {
-        JointKind::Revolute { between } => Ok(revolute::rows(g, m, *between)),
+pub fn rows(g: &mut Graph, m: &Mechanism, joint: usize) -> Result<Vec<Row>, BuildError> {
+    match &m.description.joints[joint].kind {
+        JointKind::Revolute { between, axis } => revolute::rows(g, m, *between, axis),
         JointKind::Prismatic { between, axis, angle } => prismatic::rows(g, m, *between, axis, angle),
         JointKind::Fixed { between, angle } => fixed::rows(g, m, *between, angle),
         JointKind::PinInSlot { between, axis } => pin_in_slot::rows(g, m, *between, axis),
+        JointKind::Cylindrical { between, axis } => cylindrical::rows(g, m, *between, axis),
+        JointKind::Screw { between, axis, pitch } => screw::rows(g, m, joint, *between, axis, pitch),
+        JointKind::Spherical { between } => Ok(spherical::rows(g, m, *between)),
+        JointKind::Universal { between, axes } => universal::rows(g, m, *between, axes),
+        JointKind::Planar { between, normal } => planar::rows(g, m, *between, normal),
+        JointKind::PointOnLine { between, axis } => point_on_line::rows(g, m, *between, axis),
+        JointKind::PointOnPlane { between, normal } => point_on_plane::rows(g, m, *between, normal),
         JointKind::Distance { between, length } => distance::rows(g, m, *between, length),
         JointKind::Gear { between, ratio, offset } => gear::rows(g, m, *between, ratio, offset),
+        JointKind::Rack { pinion, rack, radius, offset } => rack::rows(g, m, [*pinion, *rack], radius, offset),
         JointKind::Equation { left, right } => equation::rows(g, m, left, right),
     }
+}
+
+/// A direction of a joint's frames, of length 1.
+fn unit_vector(g: &mut Graph, m: &Mechanism, direction: &[Formula; 3]) -> Result<Vector, BuildError> {
+    let direction = m.vector(g, direction, Context::Time)?;
+    Ok(space::unit(g, direction))
+}
+
+/// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
+pub fn axis_in_ground(
+    g: &mut Graph,
+    m: &Mechanism,
+    joint: usize,
+    coordinate: JointCoordinate,
+) -> Result<Vector, BuildError> {
+    let kind = &m.description.joints[joint].kind;
+    let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { return Ok(space::zero(g)) };
+    let axis = unit_vector(g, m, axis)?;
+    Ok(Pair::of(g, m, between).outward(g, axis))
 }
 
 /// The reaction Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept.
@@ -64,14 +102,13 @@ pub fn rows(g: &mut Graph, m: &Mechanism, kind: &JointKind) -> Result<Vec<Row>, 
 /// A dropped row (both sides held) has no multiplier: how much the ground carries there is not determined by the
 /// motion, and it counts as zero.
 pub fn reaction(g: &mut Graph, kind: &JointKind, kept: &[(Row, Expr)]) -> Reaction {
-    let mut force = plane::zero(g);
-    let mut torque = g.constant(0.0);
+    let (mut force, mut torque) = (space::zero(g), space::zero(g));
     let mut along = Vec::new();
     for (row, lambda) in kept {
-        let part = plane::scale(g, *lambda, row.force);
-        force = plane::add(g, force, part);
-        let part = g.mul(*lambda, row.torque);
-        torque = g.add(torque, part);
+        let part = space::scale(g, *lambda, row.force);
+        force = space::add(g, force, part);
+        let part = space::scale(g, *lambda, row.torque);
+        torque = space::add(g, torque, part);
         if !row.force.iter().all(|&component| g.is_zero(component)) {
             along.push(*lambda);
         }
@@ -80,10 +117,7 @@ pub fn reaction(g: &mut Graph, kind: &JointKind, kept: &[(Row, Expr)]) -> Reacti
         (JointKind::Equation { .. }, [(_, lambda)], _) => *lambda,
         // One unit vector: no root is needed, which would have no derivative where the force vanishes.
         (_, _, [lambda]) => g.unary(symdiff::Unary::Abs, *lambda),
-        _ => {
-            let square = plane::dot(g, force, force);
-            g.sqrt(square)
-        }
+        _ => space::norm(g, force),
     };
     Reaction { force, magnitude, torque }
 }

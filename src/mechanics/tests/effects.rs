@@ -1,7 +1,7 @@
 use crate::mechanics::System;
-use crate::model::EffectKind;
+use crate::model::{EffectKind, Twisted};
 
-use super::model::{Model, formula, pair};
+use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_close, output};
 
 /// Two free bodies with an offset point and centre of mass each.
@@ -75,7 +75,12 @@ fn a_force_in_the_body_turns_with_it() {
 #[test]
 fn a_torque_drives_one_body_against_the_other() {
     let mut m = two_bodies();
-    m.effect(EffectKind::Torque { on: m.body_index("b"), from: m.body_index("a"), value: formula("4") });
+    m.effect(EffectKind::Torque {
+        on: m.body_index("b"),
+        from: m.body_index("a"),
+        value: vector(["0", "0", "4"]),
+        in_body: false,
+    });
     let system = m.build();
     let state = State::random(&system, 3);
     let rate = value(&system, &state, "b.angular_velocity - a.angular_velocity");
@@ -92,7 +97,7 @@ fn gravity_pulls_down_and_has_its_potential() {
     assert_close(power(&system, &state), -potential_rate(&system, &state), 1e-8);
 }
 
-fn spring(m: &Model, along: Option<[symdiff::Formula; 2]>, stiffness: &str, damping: &str) -> EffectKind {
+fn spring(m: &Model, along: Option<[symdiff::Formula; 3]>, stiffness: &str, damping: &str) -> EffectKind {
     EffectKind::SpringDamper {
         between: m.between("a.P", "b.P"),
         along,
@@ -164,7 +169,7 @@ fn tension_pulls_the_points_together() {
 fn a_torsional_spring_turns_back() {
     let mut m = two_bodies();
     m.effect(EffectKind::TorsionalSpringDamper {
-        between: [m.body_index("a"), m.body_index("b")],
+        on: Twisted::Bodies([m.body_index("a"), m.body_index("b")]),
         stiffness: formula("k"),
         damping: formula("0.3"),
         free_angle: formula("0.2"),
@@ -206,7 +211,8 @@ fn effects_may_speak_of_reactions() {
     let mut m = Model::new();
     m.body("a", "1", "1", "xya", &[("P", "1", "0")]);
     m.revolute("pin", "ground", "a.P");
-    m.effect(EffectKind::Torque { on: 1, from: 0, value: formula("-0.01*pin.force*tanh(100*a.angular_velocity)") });
+    let friction = vector(["0", "0", "-0.01*pin.force*tanh(100*a.angular_velocity)"]);
+    m.effect(EffectKind::Torque { on: 1, from: 0, value: friction, in_body: false });
     let system = m.build();
     let symbols = system.graph.symbols_of(&[system.force[2]]);
     assert!(system.lambda.iter().all(|lambda| symbols.contains(lambda)));

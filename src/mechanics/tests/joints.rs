@@ -1,7 +1,7 @@
 use crate::mechanics::{self, System};
-use crate::model::JointKind;
+use crate::model::{JointKind, Turning};
 
-use super::model::{Model, formula, pair};
+use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_all_close, assert_close, constraint_forces, output};
 
 fn two_bodies() -> Model {
@@ -22,12 +22,12 @@ fn value(system: &System, state: &State, name: &str) -> f64 {
 fn kinds(m: &Model) -> Vec<JointKind> {
     let between = m.between("a.P", "b.P");
     vec![
-        JointKind::Revolute { between },
+        JointKind::Revolute { between, axis: vector(["0", "0", "1"]) },
         JointKind::Prismatic { between, axis: pair("1", "2"), angle: formula("0.3") },
         JointKind::Fixed { between, angle: formula("0.3") },
         JointKind::PinInSlot { between, axis: pair("1", "2") },
         JointKind::Distance { between, length: formula("d") },
-        JointKind::Gear { between: [1, 2], ratio: formula("-2"), offset: formula("0.1") },
+        JointKind::Gear { between: [Turning::Body(1), Turning::Body(2)], ratio: formula("-2"), offset: formula("0.1") },
     ]
 }
 

@@ -6,5 +6,6 @@ mod effects;
 mod joints;
 pub mod model;
 mod numbers;
+mod spatial;
 mod start;
 mod systems;

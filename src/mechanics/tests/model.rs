@@ -9,16 +9,23 @@ pub fn formula(text: &str) -> Formula {
     Formula::parse(text).unwrap()
 }
 
-pub fn pair(x: &str, y: &str) -> [Formula; 2] {
-    [formula(x), formula(y)]
+pub fn vector(components: [&str; 3]) -> [Formula; 3] {
+    components.map(formula)
 }
 
-fn coordinate(letter: char) -> Coordinate {
+/// A vector of the plane.
+pub fn pair(x: &str, y: &str) -> [Formula; 3] {
+    vector([x, y, "0"])
+}
+
+fn coordinates(letter: char) -> Vec<Coordinate> {
     match letter {
-        'x' => Coordinate::X,
-        'y' => Coordinate::Y,
-        'a' => Coordinate::Angle,
-        _ => panic!("coordinates are x, y and a"),
+        'x' => vec![Coordinate::X],
+        'y' => vec![Coordinate::Y],
+        'z' => vec![Coordinate::Z],
+        'a' => vec![Coordinate::Angle],
+        'o' => Coordinate::ORIENTATION.to_vec(),
+        _ => panic!("coordinates are x, y, z, a and o"),
     }
 }
 
@@ -30,6 +37,7 @@ impl Model {
         let mut model = Self(Description {
             name: "test".to_owned(),
             description: None,
+            space: Space { spatial: false, why: String::new() },
             parameters: Vec::new(),
             bodies: Vec::new(),
             joints: Vec::new(),
@@ -44,6 +52,13 @@ impl Model {
         model
     }
 
+    /// Only the ground, in space.
+    pub fn spatial() -> Self {
+        let mut model = Self::new();
+        model.0.space.spatial = true;
+        model
+    }
+
     pub fn parameter(&mut self, name: &str, value: &str) {
         let value = ParameterValue::Formula(formula(value));
         self.0.parameters.push(Parameter { name: name.to_owned(), unit: String::new(), value });
@@ -54,22 +69,40 @@ impl Model {
         self.0.parameters.push(Parameter { name: name.to_owned(), unit: String::new(), value });
     }
 
-    /// `coordinates` are letters of `xya`.
-    pub fn body(&mut self, name: &str, mass: &str, inertia: &str, coordinates: &str, points: &[(&str, &str, &str)]) {
-        let points = points.iter().map(|&(name, x, y)| Point { name: name.to_owned(), position: pair(x, y) });
+    /// `letters` are coordinates, of `xyzao`.
+    pub fn body(&mut self, name: &str, mass: &str, inertia: &str, letters: &str, points: &[(&str, &str, &str)]) {
+        let point =
+            |&(name, x, y): &(&str, &str, &str)| Point { name: name.to_owned(), position: pair(x, y), rotation: None };
+        let points = points.iter().map(point).collect();
         self.0.bodies.push(Body {
             name: name.to_owned(),
             mass: Some(formula(mass)),
-            inertia: Some(formula(inertia)),
+            inertia: Some(Inertia::scalar(&formula(inertia))),
             center_of_mass: None,
-            coordinates: coordinates.chars().map(coordinate).collect(),
+            coordinates: letters.chars().flat_map(coordinates).collect(),
             held: Vec::new(),
-            points: points.collect(),
+            held_orientation: None,
+            points,
         });
     }
 
+    /// A body of mass 2 in space with a full inertia tensor and its centre of mass off the origin.
+    pub fn lump(&mut self, name: &str) {
+        self.body(name, "2", "1", "xyzo", &[]);
+        let [xx, yy, zz, xy, xz, yz] = ["0.4", "0.5", "0.7", "0.05", "-0.1", "0.08"].map(formula);
+        let body = self.0.bodies.last_mut().unwrap();
+        body.inertia = Some(Inertia { xx, yy, zz, xy, xz, yz });
+        body.center_of_mass = Some(vector(["0.1", "-0.2", "0.3"]));
+    }
+
+    /// A point of the last body.
+    pub fn frame(&mut self, name: &str, position: [&str; 3], rotation: Option<Rotation>) {
+        let point = Point { name: name.to_owned(), position: vector(position), rotation };
+        self.0.bodies.last_mut().unwrap().points.push(point);
+    }
+
     pub fn ground_point(&mut self, name: &str, x: &str, y: &str) {
-        self.0.bodies[0].points.push(Point { name: name.to_owned(), position: pair(x, y) });
+        self.0.bodies[0].points.push(Point { name: name.to_owned(), position: pair(x, y), rotation: None });
     }
 
     /// Of the last body.
@@ -79,7 +112,7 @@ impl Model {
 
     /// A coordinate of the last body.
     pub fn hold(&mut self, letter: char, value: &str) {
-        self.0.bodies.last_mut().unwrap().held.push((coordinate(letter), formula(value)));
+        self.0.bodies.last_mut().unwrap().held.push((coordinates(letter)[0], formula(value)));
     }
 
     pub fn body_index(&self, name: &str) -> usize {
@@ -104,7 +137,7 @@ impl Model {
 
     pub fn revolute(&mut self, name: &str, first: &str, second: &str) {
         let between = self.between(first, second);
-        self.joint(name, JointKind::Revolute { between });
+        self.joint(name, JointKind::Revolute { between, axis: vector(["0", "0", "1"]) });
     }
 
     pub fn effect(&mut self, kind: EffectKind) {
@@ -116,9 +149,8 @@ impl Model {
     }
 
     pub fn initial(&mut self, body: &str, letter: char, order: TimeOrder, value: &str) {
-        let value =
-            StartValue { body: self.body_index(body), coordinate: coordinate(letter), order, value: formula(value) };
-        self.0.initial.push(value);
+        let (body, coordinate) = (self.body_index(body), coordinates(letter)[0]);
+        self.0.initial.push(StartValue::Coordinate { body, coordinate, order, value: formula(value) });
     }
 
     pub fn output(&mut self, text: &str) {
@@ -145,7 +177,7 @@ pub fn slider_crank() -> Model {
     m.revolute("pivot", "ground", "crank.A");
     m.revolute("pin", "crank.B", "rod.B");
     m.revolute("wrist", "rod.C", "slider");
-    m.effect(EffectKind::Torque { on: 1, from: 0, value: formula("tau") });
+    m.effect(EffectKind::Torque { on: 1, from: 0, value: vector(["0", "0", "tau"]), in_body: false });
     let spring = EffectKind::SpringDamper {
         between: m.between("ground", "slider"),
         along: Some(pair("1", "0")),

@@ -1,0 +1,153 @@
+//! Coordinates of joints: the angle about an axis, the displacement along it.
+//!
+//! One that a formula, the start or a coupling names becomes a coordinate of the mechanism, without inertia, with a
+//! constraint that defines it. With q = (q₀, e) the rotation of the second frame against the first and a the axis,
+//!
+//! ```text
+//! angle φ:           Φ = 2 [cos(φ/2) e·a − sin(φ/2) q₀] = 0          (for a rotation by ψ about a: 2 sin((ψ − φ)/2))
+//! displacement s:    Φ = R₁ a · (r_B − r_A) − s = 0
+//! ```
+//!
+//! so that angles are continuous over any number of turns, and can be driven, coupled and kept at the start like any other
+//! coordinate. Forces on them reach the bodies through the constraint's multiplier, which is no part of the joint's reaction.
+//! In the plane an angle is the difference θ₂ − θ₁, and is a coordinate of its own only where the start names it.
+
+use std::collections::BTreeSet;
+
+use symdiff::{Expr, Formula, Graph};
+
+use crate::model::{
+    Description, EffectKind, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning, Twisted,
+};
+
+use super::body::ANGLE;
+use super::error::BuildError;
+use super::joints::Pair;
+use super::mechanism::{Context, Mechanism};
+use super::space;
+
+/// The coordinates of joints that are coordinates of their own.
+pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate)> {
+    let mut found = BTreeSet::new();
+    for value in description.initial.iter().chain(&description.guess) {
+        if let StartValue::Joint { joint, coordinate, .. } = value {
+            found.insert((*joint, *coordinate));
+        }
+    }
+    let mut add = |joint: usize, coordinate: JointCoordinate| {
+        if description.space.spatial || coordinate != JointCoordinate::Angle {
+            found.insert((joint, coordinate));
+        }
+    };
+    for (index, joint) in description.joints.iter().enumerate() {
+        match &joint.kind {
+            JointKind::Screw { .. } => add(index, JointCoordinate::Angle),
+            JointKind::Gear { between, .. } => between.iter().for_each(|turning| {
+                if let Turning::Joint(joint) = turning {
+                    add(*joint, JointCoordinate::Angle);
+                }
+            }),
+            JointKind::Rack { pinion, rack, .. } => {
+                add(*pinion, JointCoordinate::Angle);
+                add(*rack, JointCoordinate::Displacement);
+            }
+            _ => {}
+        }
+    }
+    for effect in &description.effects {
+        if let EffectKind::TorsionalSpringDamper { on: Twisted::Joint(joint), .. } = effect.kind {
+            add(joint, JointCoordinate::Angle);
+        }
+    }
+    for formula in formulas(description) {
+        for (name, _) in formula.names() {
+            if let Some(Referent::JointCoordinate { joint, coordinate, .. }) = description.referent(name) {
+                add(joint, coordinate);
+            }
+        }
+    }
+    found
+}
+
+/// Formulas that may speak of the motion.
+fn formulas(description: &Description) -> Vec<&Formula> {
+    let mut found: Vec<&Formula> = description.outputs.iter().map(|output| &output.formula).collect();
+    for joint in &description.joints {
+        if let JointKind::Equation { left, right } = &joint.kind {
+            found.extend([left, right]);
+        }
+    }
+    for effect in &description.effects {
+        match &effect.kind {
+            EffectKind::Gravity { acceleration: value }
+            | EffectKind::Force { value, .. }
+            | EffectKind::Torque { value, .. } => found.extend(value),
+            EffectKind::JointTorque { value, .. } => found.push(value),
+            EffectKind::SpringDamper { stiffness, damping, free_length: free, along, .. } => {
+                found.extend([stiffness, damping, free]);
+                found.extend(along.iter().flatten());
+            }
+            EffectKind::TorsionalSpringDamper { stiffness, damping, free_angle: free, .. } => {
+                found.extend([stiffness, damping, free]);
+            }
+            EffectKind::Bushing { stiffness, damping, torsional_stiffness, torsional_damping, .. } => {
+                found.extend([stiffness, damping, torsional_stiffness, torsional_damping].into_iter().flatten());
+            }
+        }
+    }
+    found
+}
+
+impl Mechanism<'_> {
+    /// A joint's coordinate or its derivative. One that is not a coordinate of its own is an angle of the plane.
+    pub fn joint_coordinate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
+        if let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) {
+            let list = match order {
+                TimeOrder::Position => &self.q,
+                TimeOrder::Velocity => &self.v,
+                TimeOrder::Acceleration => &self.w,
+            };
+            return list[index];
+        }
+        let Some(between) = self.description.joints[joint].kind.between() else { return g.constant(0.0) };
+        let [first, second] = between.map(|point| {
+            let body = &self.bodies[point.body];
+            match order {
+                TimeOrder::Position => body.position[ANGLE],
+                TimeOrder::Velocity => body.velocity[ANGLE],
+                TimeOrder::Acceleration => body.acceleration[ANGLE],
+            }
+        });
+        g.sub(second, first)
+    }
+
+    /// The constraints that define a joint's own coordinates: name and Φ.
+    pub fn definitions(&self, g: &mut Graph, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
+        let kind = &self.description.joints[joint].kind;
+        let mut rows = Vec::new();
+        for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
+            let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
+            let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { continue };
+            let value = self.q[index];
+            let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
+            let row = if planar_angle {
+                let [first, second] = between.map(|point| self.bodies[point.body].position[ANGLE]);
+                let turned = g.sub(second, first);
+                g.sub(turned, value)
+            } else {
+                let pair = Pair::of(g, self, between);
+                let axis = self.vector(g, axis, Context::Time)?;
+                let axis = space::unit(g, axis);
+                match coordinate {
+                    JointCoordinate::Angle => pair.turned_by(g, axis, value),
+                    JointCoordinate::Displacement => {
+                        let moved = pair.displacement(g, axis);
+                        g.sub(moved, value)
+                    }
+                }
+            };
+            rows.push((name, row));
+        }
+        Ok(rows)
+    }
+}

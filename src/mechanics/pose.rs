@@ -1,0 +1,287 @@
+//! A first guess of where the bodies are in space, in numbers, at the nominal parameters.
+//!
+//! Bodies are placed one after the other, each onto a joint with a body that is already placed, so that a chain of joints
+//! is closed from the start and only loops are left to assembly:
+//!
+//! - at a joint that leaves the frames an axis or less, with the joint's angle and displacement where they are known, else
+//!   at zero; these joints are walked first;
+//! - at a spherical joint, and after those, with its next spherical joint towards its place where that is on a placed body,
+//!   else along the ground's axes;
+//! - at what holds less, last: a distance away along x.
+//!
+//! What is known of a body's own coordinates is kept. Bodies that nothing joins to the ground stay at 0.
+
+use std::collections::VecDeque;
+
+use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
+use symdiff::{Expr, Graph};
+
+use crate::model::{JointCoordinate, JointKind, PointRef};
+
+use super::body::{ANGLE, Body, EULER, Turn};
+use super::error::BuildError;
+use super::mechanism::{Context, Mechanism, Owner, freedom};
+use super::rotation;
+
+/// A frame against another, in numbers.
+#[derive(Clone, Copy)]
+struct Pose {
+    position: Vector3<f64>,
+    orientation: UnitQuaternion<f64>,
+}
+
+impl Pose {
+    const fn at(position: Vector3<f64>, orientation: UnitQuaternion<f64>) -> Self {
+        Self { position, orientation }
+    }
+
+    /// First this, then, in its frame, the other.
+    fn then(&self, other: &Self) -> Self {
+        Self::at(self.position + self.orientation * other.position, self.orientation * other.orientation)
+    }
+
+    fn inverse(&self) -> Self {
+        let back = self.orientation.inverse();
+        Self::at(-(back * self.position), back)
+    }
+}
+
+/// What is known of a body's pose.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    position: [Option<f64>; 3],
+    orientation: Option<UnitQuaternion<f64>>,
+}
+
+/// A joint as seen from one of its bodies: the frames on this body and on the other, and how they are to each other.
+#[derive(Clone, Copy)]
+struct Link {
+    here: Pose,
+    there: Pose,
+    other: usize,
+    kind: LinkKind,
+}
+
+#[derive(Clone, Copy)]
+enum LinkKind {
+    /// The other frame against this one.
+    Axis(Pose),
+    /// Points coincide.
+    Ball,
+    /// The other point is so far away along x.
+    Loose(f64),
+}
+
+/// Poses of all bodies.
+pub struct Poses<'m, 'd> {
+    mechanism: &'m Mechanism<'d>,
+    known: Vec<Known>,
+    /// Known values of joints' own coordinates, by their place in q.
+    values: Vec<Option<f64>>,
+    links: Vec<Vec<Link>>,
+    poses: Vec<Option<Pose>>,
+}
+
+impl<'m, 'd> Poses<'m, 'd> {
+    /// Places all bodies; `known` are the coordinates with a value at the start.
+    pub fn of(g: &mut Graph, m: &'m Mechanism<'d>, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+        let values: Vec<Option<f64>> = known.iter().map(|known| known.map(|value| m.nominal(g, &[value])[0])).collect();
+        let known: Vec<Known> = m.bodies.iter().map(|body| known_of(g, m, body, &values)).collect();
+        let complete = |known: &Known| {
+            let [x, y, z] = known.position;
+            Some(Pose::at(Vector3::new(x?, y?, z?), known.orientation?))
+        };
+        let poses = known.iter().map(complete).collect();
+        let mut placed = Self { mechanism: m, known, values, links: vec![Vec::new(); m.bodies.len()], poses };
+        placed.find_links(g)?;
+        placed.walk();
+        Ok(placed)
+    }
+
+    /// Values of all coordinates.
+    pub fn coordinates(&self, g: &mut Graph) -> Result<Vec<f64>, BuildError> {
+        let m = self.mechanism;
+        let mut values = Vec::with_capacity(m.coordinates.len());
+        for &owner in &m.coordinates {
+            values.push(match owner {
+                Owner::Body(body, coordinate) => {
+                    let pose = self.pose(body);
+                    let place = freedom(coordinate);
+                    match (place, m.bodies[body].turn) {
+                        (0..3, _) => pose.position[place],
+                        (_, Turn::Angle) => angle_about(&pose.orientation, &Vector3::z()),
+                        // nalgebra keeps the scalar part last.
+                        (_, Turn::Euler) => pose.orientation.coords[(place - EULER + 3) % 4],
+                    }
+                }
+                Owner::Joint(joint, coordinate) => self.joint(g, joint, coordinate)?,
+            });
+        }
+        Ok(values)
+    }
+
+    fn joint(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate) -> Result<f64, BuildError> {
+        let kind = &self.mechanism.description.joints[joint].kind;
+        let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { return Ok(0.0) };
+        let axis = self.direction(g, axis)?;
+        let [first, second] = between.map(|point| self.pose(point.body).then(&local(g, self.mechanism, point)));
+        let relative = first.inverse().then(&second);
+        Ok(match coordinate {
+            JointCoordinate::Angle => angle_about(&relative.orientation, &axis),
+            JointCoordinate::Displacement => relative.position.dot(&axis),
+        })
+    }
+
+    fn direction(&self, g: &mut Graph, axis: &[symdiff::Formula; 3]) -> Result<Vector3<f64>, BuildError> {
+        let axis = self.mechanism.vector(g, axis, Context::Time)?;
+        let values = self.mechanism.nominal(g, &axis);
+        Ok(Vector3::from_column_slice(&values).normalize())
+    }
+
+    fn pose(&self, body: usize) -> Pose {
+        self.poses[body].unwrap_or_else(|| self.known[body].or(Vector3::zeros(), UnitQuaternion::identity()))
+    }
+
+    fn find_links(&mut self, g: &mut Graph) -> Result<(), BuildError> {
+        let m = self.mechanism;
+        for (index, joint) in m.description.joints.iter().enumerate() {
+            let Some(between) = joint.kind.between() else { continue };
+            let kind = match &joint.kind {
+                JointKind::Spherical { .. } => LinkKind::Ball,
+                JointKind::PointOnLine { .. } | JointKind::PointOnPlane { .. } => LinkKind::Loose(0.0),
+                JointKind::Distance { length, .. } => {
+                    let length = m.formula(g, length, Context::Time)?;
+                    LinkKind::Loose(m.nominal(g, &[length])[0])
+                }
+                kind => LinkKind::Axis(self.across(g, index, kind)?),
+            };
+            let [here, there] = between.map(|point| local(g, m, point));
+            let link = Link { here, there, other: between[1].body, kind };
+            let kind = match kind {
+                LinkKind::Axis(pose) => LinkKind::Axis(pose.inverse()),
+                kind => kind,
+            };
+            let back = Link { here: there, there: here, other: between[0].body, kind };
+            self.links[between[0].body].push(link);
+            self.links[between[1].body].push(back);
+        }
+        Ok(())
+    }
+
+    /// A joint's second frame against the first, its coordinates zero where they are not known.
+    fn across(&self, g: &mut Graph, joint: usize, kind: &JointKind) -> Result<Pose, BuildError> {
+        let mut pose = Pose::at(Vector3::zeros(), UnitQuaternion::identity());
+        if let JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } = kind {
+            let angle = self.mechanism.formula(g, angle, Context::Time)?;
+            let angle = self.mechanism.nominal(g, &[angle])[0];
+            pose.orientation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+        }
+        for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
+            let place = self.mechanism.joint_coordinates.get(&(joint, coordinate));
+            let value = place.and_then(|&place| self.values[place]);
+            if let (Some(axis), Some(value)) = (kind.axis_of(coordinate), value) {
+                let axis = self.direction(g, axis)?;
+                match coordinate {
+                    JointCoordinate::Angle => {
+                        pose.orientation = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(axis), value);
+                    }
+                    JointCoordinate::Displacement => pose.position = value * axis,
+                }
+            }
+        }
+        Ok(pose)
+    }
+
+    fn walk(&mut self) {
+        let mut queues = [VecDeque::new(), VecDeque::new(), VecDeque::new()];
+        for body in 0..self.poses.len() {
+            if self.poses[body].is_some() {
+                self.enqueue(&mut queues, body);
+            }
+        }
+        while let Some((body, link)) = queues.iter_mut().find_map(VecDeque::pop_front) {
+            if self.poses[link.other].is_none() {
+                self.poses[link.other] = Some(self.placed(body, link));
+                self.enqueue(&mut queues, link.other);
+            }
+        }
+    }
+
+    fn enqueue(&self, queues: &mut [VecDeque<(usize, Link)>; 3], body: usize) {
+        for &link in &self.links[body] {
+            let urgency = match link.kind {
+                LinkKind::Axis(_) => 0,
+                LinkKind::Ball => 1,
+                LinkKind::Loose(_) => 2,
+            };
+            queues[urgency].push_back((body, link));
+        }
+    }
+
+    /// The pose of `link.other` on its joint with `body`, which is placed.
+    fn placed(&self, body: usize, link: Link) -> Pose {
+        let here = self.pose(body).then(&link.here);
+        let wanted = match link.kind {
+            LinkKind::Axis(across) => here.then(&across).then(&link.there.inverse()).orientation,
+            LinkKind::Ball => self.aimed(link, here.position).unwrap_or_else(UnitQuaternion::identity),
+            LinkKind::Loose(_) => UnitQuaternion::identity(),
+        };
+        let anchor = match link.kind {
+            LinkKind::Axis(across) => here.then(&across).position,
+            LinkKind::Ball => here.position,
+            LinkKind::Loose(distance) => here.position + distance * Vector3::x(),
+        };
+        let known = self.known[link.other];
+        let orientation = known.orientation.unwrap_or(wanted);
+        known.or(anchor - orientation * link.there.position, orientation)
+    }
+
+    /// The orientation of `link.other` that has its next ball, on a placed body, in the right direction.
+    fn aimed(&self, link: Link, anchor: Vector3<f64>) -> Option<UnitQuaternion<f64>> {
+        self.links[link.other].iter().find_map(|next| {
+            let goal = self.poses[next.other]?.then(&next.there).position;
+            let (own, wanted) = (next.here.position - link.there.position, goal - anchor);
+            let other_end = matches!(next.kind, LinkKind::Ball) && own.norm() > 0.0;
+            other_end.then(|| UnitQuaternion::rotation_between(&own, &wanted)).flatten()
+        })
+    }
+}
+
+impl Known {
+    /// This pose, but for what is known.
+    fn or(&self, position: Vector3<f64>, orientation: UnitQuaternion<f64>) -> Pose {
+        let position = Vector3::from_fn(|axis, _| self.position[axis].unwrap_or(position[axis]));
+        Pose::at(position, self.orientation.unwrap_or(orientation))
+    }
+}
+
+fn known_of(g: &mut Graph, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> Known {
+    let value = |place: usize| match body.index[place] {
+        Some(index) => values[index],
+        None => Some(m.nominal(g, &[body.position[place]])[0]),
+    };
+    let orientation = match body.turn {
+        Turn::Angle => value(ANGLE).map(|angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle)),
+        Turn::Euler => {
+            let p: Option<Vec<f64>> = (EULER..EULER + 4).map(value).collect();
+            p.map(|p| UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3])))
+        }
+    };
+    Known { position: [0, 1, 2].map(value), orientation }
+}
+
+/// Angle of the part of a rotation about an axis, between −π and π.
+fn angle_about(rotation: &UnitQuaternion<f64>, axis: &Vector3<f64>) -> f64 {
+    let (sin, cos) = (rotation.imag().dot(axis), rotation.w);
+    if cos < 0.0 { 2.0 * (-sin).atan2(-cos) } else { 2.0 * sin.atan2(cos) }
+}
+
+/// The frame at a point against its body's.
+fn local(g: &mut Graph, m: &Mechanism, point: PointRef) -> Pose {
+    let position = m.local(g, point);
+    let frame = point.point.and_then(|index| m.bodies[point.body].frames[index]);
+    let frame = frame.unwrap_or_else(|| rotation::identity(g));
+    let (position, p) = (m.nominal(g, &position), m.nominal(g, &frame));
+    let orientation = UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3]));
+    Pose::at(Vector3::from_column_slice(&position), orientation)
+}

@@ -1,0 +1,69 @@
+//! Vectors of space, as expressions. What stays in the plane has z = 0, a constant that folds away.
+
+use symdiff::{Expr, Graph};
+
+/// (x, y, z).
+pub type Vector = [Expr; 3];
+
+/// (0, 0, 0).
+pub fn zero(g: &mut Graph) -> Vector {
+    [g.constant(0.0); 3]
+}
+
+/// The unit vector along an axis, 0 to 2.
+pub fn along(g: &mut Graph, axis: usize) -> Vector {
+    let mut vector = zero(g);
+    vector[axis] = g.constant(1.0);
+    vector
+}
+
+/// `a + b`.
+pub fn add(g: &mut Graph, a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|i| g.add(a[i], b[i]))
+}
+
+/// `a − b`.
+pub fn sub(g: &mut Graph, a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|i| g.sub(a[i], b[i]))
+}
+
+/// `factor · a`.
+pub fn scale(g: &mut Graph, factor: Expr, a: Vector) -> Vector {
+    a.map(|component| g.mul(factor, component))
+}
+
+/// `−a`.
+pub fn neg(g: &mut Graph, a: Vector) -> Vector {
+    a.map(|component| g.neg(component))
+}
+
+/// `a · b`.
+pub fn dot(g: &mut Graph, a: Vector, b: Vector) -> Expr {
+    g.dot(&a, &b)
+}
+
+/// `a × b`.
+pub fn cross(g: &mut Graph, a: Vector, b: Vector) -> Vector {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (left, right) = (g.mul(a[j], b[k]), g.mul(a[k], b[j]));
+        g.sub(left, right)
+    })
+}
+
+/// `a` turned about z by a right angle, counter-clockwise: (−a_y, aₓ, 0).
+pub fn perpendicular(g: &mut Graph, a: Vector) -> Vector {
+    [g.neg(a[1]), a[0], g.constant(0.0)]
+}
+
+/// `|a|`.
+pub fn norm(g: &mut Graph, a: Vector) -> Expr {
+    let square = dot(g, a, a);
+    g.sqrt(square)
+}
+
+/// `a / |a|`; not a number where a = 0.
+pub fn unit(g: &mut Graph, a: Vector) -> Vector {
+    let length = norm(g, a);
+    a.map(|component| g.div(component, length))
+}

@@ -1,0 +1,89 @@
+//! Parts of motions that names can speak of: `body.vx`, `body.omega.z`, `joint.angle`.
+
+use super::description::{Coordinate, TimeOrder};
+use super::kinds::JointCoordinate;
+use super::quantity::Dimension;
+
+/// A part of a motion: its name, what it is a part of, how often that is differentiated.
+pub type Motion<T> = (&'static str, T, TimeOrder);
+
+/// Parts of a body's or a point's motion.
+pub const MOTIONS: [Motion<Coordinate>; 16] = [
+    ("x", Coordinate::X, TimeOrder::Position),
+    ("y", Coordinate::Y, TimeOrder::Position),
+    ("angle", Coordinate::Angle, TimeOrder::Position),
+    ("vx", Coordinate::X, TimeOrder::Velocity),
+    ("vy", Coordinate::Y, TimeOrder::Velocity),
+    ("angular_velocity", Coordinate::Angle, TimeOrder::Velocity),
+    ("ax", Coordinate::X, TimeOrder::Acceleration),
+    ("ay", Coordinate::Y, TimeOrder::Acceleration),
+    ("angular_acceleration", Coordinate::Angle, TimeOrder::Acceleration),
+    ("z", Coordinate::Z, TimeOrder::Position),
+    ("vz", Coordinate::Z, TimeOrder::Velocity),
+    ("az", Coordinate::Z, TimeOrder::Acceleration),
+    ("p0", Coordinate::Euler(0), TimeOrder::Position),
+    ("p1", Coordinate::Euler(1), TimeOrder::Position),
+    ("p2", Coordinate::Euler(2), TimeOrder::Position),
+    ("p3", Coordinate::Euler(3), TimeOrder::Position),
+];
+
+/// Vectors of a body's rotation in space, in the ground's axes or in the body's.
+pub const TURNING: [Motion<bool>; 4] = [
+    ("omega", false, TimeOrder::Velocity),
+    ("alpha", false, TimeOrder::Acceleration),
+    ("omega_body", true, TimeOrder::Velocity),
+    ("alpha_body", true, TimeOrder::Acceleration),
+];
+
+/// Angles of a body's orientation.
+pub const ATTITUDE: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// A body's orientation, which is no number but can be given at the start.
+pub const ORIENTATION: &str = "orientation";
+
+/// Coordinates of a joint and their derivatives.
+pub const JOINT_MOTIONS: [Motion<JointCoordinate>; 6] = [
+    ("angle", JointCoordinate::Angle, TimeOrder::Position),
+    ("angular_velocity", JointCoordinate::Angle, TimeOrder::Velocity),
+    ("angular_acceleration", JointCoordinate::Angle, TimeOrder::Acceleration),
+    ("displacement", JointCoordinate::Displacement, TimeOrder::Position),
+    ("velocity", JointCoordinate::Displacement, TimeOrder::Velocity),
+    ("acceleration", JointCoordinate::Displacement, TimeOrder::Acceleration),
+];
+
+/// Components of a vector.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Whether it is the name of a part of a body's motion, so that no point can be called so.
+pub fn is_motion(name: &str) -> bool {
+    MOTIONS.iter().any(|(motion, ..)| *motion == name)
+        || TURNING.iter().any(|(vector, ..)| *vector == name)
+        || ATTITUDE.contains(&name)
+        || name == ORIENTATION
+}
+
+/// The coordinate's name, as in `body.angle`.
+pub fn motion_name(coordinate: Coordinate, order: TimeOrder) -> &'static str {
+    MOTIONS.iter().find(|(_, c, o)| (*c, *o) == (coordinate, order)).map_or("", |(name, ..)| name)
+}
+
+/// The dimension of a joint's coordinate and of its derivatives.
+pub fn joint_dimension(coordinate: JointCoordinate, order: TimeOrder) -> Dimension {
+    match coordinate {
+        JointCoordinate::Angle => motion_dimension(Coordinate::Angle, order),
+        JointCoordinate::Displacement => motion_dimension(Coordinate::X, order),
+    }
+}
+
+/// The dimension of a coordinate and of its derivatives.
+pub fn motion_dimension(coordinate: Coordinate, order: TimeOrder) -> Dimension {
+    match (coordinate, order) {
+        (Coordinate::Euler(_), _) => Dimension::NUMBER,
+        (Coordinate::Angle, TimeOrder::Position) => Dimension::ANGLE,
+        (Coordinate::Angle, TimeOrder::Velocity) => Dimension::ANGULAR_VELOCITY,
+        (Coordinate::Angle, TimeOrder::Acceleration) => Dimension::ANGULAR_ACCELERATION,
+        (_, TimeOrder::Position) => Dimension::LENGTH,
+        (_, TimeOrder::Velocity) => Dimension::VELOCITY,
+        (_, TimeOrder::Acceleration) => Dimension::ACCELERATION,
+    }
+}

@@ -1,0 +1,124 @@
+//! Whether a model stays in the plane: what the file says, or whether anything in it leaves the plane.
+//!
+//! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
+
+use super::description::Space;
+use super::reader::{Fields, Reader};
+use super::yaml::{Entry, Node, Value};
+
+/// Kinds of joints that only make sense in space.
+pub const SPATIAL_JOINTS: [&str; 5] = ["spherical", "cylindrical", "screw", "universal", "planar"];
+
+/// Parts of names at the start that only bodies in space have.
+const SPATIAL_STARTS: [&str; 5] = ["z", "vz", "orientation", "omega", "omega_body"];
+
+/// Reads `space:`, or decides.
+pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
+    let planar = || Space { spatial: false, why: "nothing leaves the plane".to_owned() };
+    if let Some(node) = fields.get("space") {
+        let Some(spatial) = reader.choice(node, &[("planar", false), ("spatial", true)]) else { return planar() };
+        return Space { spatial, why: "the model says so".to_owned() };
+    }
+    let entries = |key: &str| fields.get(key).map_or(&[][..], mapping);
+    let bodies = entries("bodies").iter().find_map(|body| Some((body, body_leaves(&body.value)?)));
+    let bodies = bodies.map(|(body, why)| format!("{why} of body `{}` leaves the plane", body.key));
+    let joints = entries("joints").iter().find_map(|joint| Some((joint, joint_leaves(&joint.value)?)));
+    let joints = joints.map(|(joint, why)| format!("{why} of joint `{}` leaves the plane", joint.key));
+    let effects = entries("effects").iter().find_map(|effect| Some((effect, effect_leaves(&effect.value)?)));
+    let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves the plane", effect.key));
+    let start = ["initial", "guess"].into_iter().find_map(|section| {
+        let names = entries(section).iter().map(|entry| entry.key.as_str());
+        let name =
+            names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
+        Some(format!("`{name}` in `{section}` leaves the plane"))
+    });
+    match bodies.or(joints).or(effects).or(start) {
+        Some(why) => Space { spatial: true, why },
+        None => planar(),
+    }
+}
+
+/// Whether a list of components has a third that is not just 0.
+pub fn leaves_plane(node: &Node) -> bool {
+    let Value::Sequence(items) = &node.value else { return false };
+    let zero = |node: &Node| node.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
+    items.get(2).is_some_and(|third| !zero(third))
+}
+
+fn mapping(node: &Node) -> &[Entry] {
+    match &node.value {
+        Value::Mapping(entries) => entries,
+        _ => &[],
+    }
+}
+
+fn get<'n>(node: &'n Node, key: &str) -> Option<&'n Node> {
+    mapping(node).iter().find(|entry| entry.key == key).map(|entry| &entry.value)
+}
+
+fn is(node: &Node, word: &str) -> bool {
+    node.scalar().is_some_and(|scalar| scalar.text == word)
+}
+
+fn body_leaves(body: &Node) -> Option<String> {
+    for point in get(body, "points").map_or(&[][..], mapping) {
+        let position = get(&point.value, "position").unwrap_or(&point.value);
+        if leaves_plane(position) || get(&point.value, "rotation").is_some() {
+            return Some(format!("point `{}`", point.key));
+        }
+    }
+    if get(body, "center_of_mass").is_some_and(leaves_plane) {
+        return Some("the centre of mass".to_owned());
+    }
+    if get(body, "inertia").is_some_and(|inertia| matches!(inertia.value, Value::Sequence(_) | Value::Mapping(_))) {
+        return Some("the inertia tensor".to_owned());
+    }
+    let listed = |node: &Node| matches!(&node.value, Value::Sequence(items) if items.iter().any(|item| is(item, "z") || is(item, "orientation")));
+    if get(body, "coordinates").is_some_and(listed) {
+        return Some("a coordinate".to_owned());
+    }
+    let held = get(body, "held")?;
+    (get(held, "z").is_some() || get(held, "orientation").is_some()).then(|| "what is held".to_owned())
+}
+
+fn joint_leaves(joint: &Node) -> Option<String> {
+    let [kind] = mapping(joint) else { return None };
+    if SPATIAL_JOINTS.contains(&kind.key.as_str()) {
+        return Some("the kind".to_owned());
+    }
+    let axis = get(&kind.value, "axis").or_else(|| get(&kind.value, "normal"))?;
+    let leaves = if kind.key == "revolute" { turns_out(axis) } else { points_out(axis) };
+    leaves.then(|| "the axis".to_owned())
+}
+
+/// Whether a torque has components that turn out of the plane.
+pub fn leaves_plane_about(torque: &Node) -> bool {
+    let Value::Sequence(items) = &torque.value else { return false };
+    let zero = |node: &Node| node.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
+    !items.iter().take(2).all(zero)
+}
+
+/// Whether moving along the direction leaves the plane.
+pub fn points_out(direction: &Node) -> bool {
+    is(direction, "z") || leaves_plane(direction)
+}
+
+/// Whether turning about the axis leaves the plane.
+pub fn turns_out(axis: &Node) -> bool {
+    match &axis.value {
+        Value::Sequence(items) => !items.iter().take(2).all(|item| is(item, "0")),
+        _ => !is(axis, "z"),
+    }
+}
+
+fn effect_leaves(effect: &Node) -> Option<String> {
+    let [kind] = mapping(effect) else { return None };
+    if kind.key == "torque" && get(&kind.value, "value").is_some_and(leaves_plane_about) {
+        return Some("`value`".to_owned());
+    }
+    let components = ["acceleration", "value", "along"].into_iter().find(|key| {
+        let value = get(&kind.value, key);
+        kind.key != "torque" && value.is_some_and(points_out)
+    });
+    components.map(|key| format!("`{key}`"))
+}

@@ -1,0 +1,158 @@
+//! Vectors, directions and rotations: `[x, y, z]`, `x`, `{ rpy: … }`, `{ axis: …, angle: … }`, `{ quaternion: … }`.
+
+use symdiff::Formula;
+
+use super::description::Rotation;
+use super::file;
+use super::names::Context;
+use super::quantity::Dimension;
+use super::reader::{Reader, Written};
+use super::source::Span;
+use super::space;
+use super::yaml::{Node, Value};
+
+impl Reader<'_> {
+    /// Components of a dimension: two, in the plane z = 0, or three.
+    pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
+        let items = self.two_or_three(node, "a list of two or three numbers")?;
+        if !self.model.space.spatial && space::leaves_plane(node) {
+            self.leaves_the_plane(&items[2]);
+        }
+        let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
+        let [x, y] = [read.next()?, read.next()?];
+        let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
+        Some([x?, y?, z?])
+    }
+
+    /// A list of a vector's components.
+    fn two_or_three<'n>(&mut self, node: &'n Node, wanted: &str) -> Option<&'n [Node]> {
+        let found = match &node.value {
+            Value::Sequence(items) if (2..=3).contains(&items.len()) => return Some(items),
+            Value::Sequence(items) => format!("a list of {}", items.len()),
+            _ => node.kind().to_owned(),
+        };
+        self.error(node.span.clone(), format!("{wanted} belongs here, but here is {found}"), None);
+        None
+    }
+
+    /// Something that a model which says `space: planar` cannot have.
+    pub fn leaves_the_plane(&mut self, node: &Node) {
+        let help = "write `space: spatial`, or leave `space` out".to_owned();
+        self.error(node.span.clone(), "this leaves the plane, but the model is planar", help);
+    }
+
+    /// Three formulas of a dimension.
+    pub fn three(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
+        let Value::Sequence(items) = &node.value else {
+            self.error(
+                node.span.clone(),
+                format!("a list of three numbers belongs here, but here is {}", node.kind()),
+                None,
+            );
+            return None;
+        };
+        let [x, y, z] = items.as_slice() else {
+            let message = format!("a list of three numbers belongs here, but here is a list of {}", items.len());
+            self.error(node.span.clone(), message, None);
+            return None;
+        };
+        let [x, y, z] = [x, y, z].map(|node| self.formula(node, context, wanted));
+        Some([x?, y?, z?])
+    }
+
+    /// A direction along which something moves: in the plane, where the mechanism is planar.
+    pub fn direction(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        if !self.model.space.spatial && space::points_out(node) {
+            self.leaves_the_plane(node);
+        }
+        self.axis(node)
+    }
+
+    /// An axis about which something turns: z, where the mechanism is planar.
+    pub fn turning_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        if !self.model.space.spatial && space::turns_out(node) {
+            self.leaves_the_plane(node);
+        }
+        self.axis(node)
+    }
+
+    /// `x`, `y`, `z` or components of any length but zero.
+    fn axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        let along = |axis: usize| [0, 1, 2].map(|other| Formula::number(f64::from(u8::from(axis == other))));
+        match node.scalar().map(|scalar| scalar.text.as_str()) {
+            Some("x") => return Some(along(0)),
+            Some("y") => return Some(along(1)),
+            Some("z") => return Some(along(2)),
+            _ => {}
+        }
+        let items = self.two_or_three(node, "`x`, `y`, `z` or a list of two or three numbers")?;
+        let mut component = |node: &Node| match self.written(node)? {
+            Written::Quantity { value, unit } => Some(Formula::number(unit.to_si(value))),
+            Written::Formula(formula) => self.check_names(node, &formula, 0, Context::Constant).then(|| {
+                self.kind(node, &formula, 0);
+                self.require(node, &formula, |_| true, "");
+                formula
+            }),
+        };
+        let mut read = items.iter().map(&mut component).collect::<Vec<_>>().into_iter();
+        let [x, y] = [read.next()?, read.next()?];
+        let z = read.next().unwrap_or_else(|| Some(Formula::number(0.0)));
+        let axis = [x?, y?, z?];
+        for corner in 0..self.corners.len() {
+            if axis.iter().all(|formula| self.evaluate(formula, corner) == Some(0.0)) {
+                let label = &self.corners[corner].label;
+                let message = format!("a direction of length zero points nowhere{label}");
+                self.error(node.span.clone(), message, None);
+                break;
+            }
+        }
+        Some(axis)
+    }
+
+    /// A rotation of parameters; `at` is where to say that something is missing.
+    pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
+        let fields = self.fields::<file::Rotation>(node, at)?;
+        let given: Vec<&str> =
+            ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+        let [kind] = given.as_slice() else {
+            let help = "e.g. `{ rpy: [0, 90 deg, 0] }`, `{ axis: z, angle: 30 deg }` or `{ quaternion: [1, 0, 0, 0] }`";
+            let message = "a rotation is one of `rpy`, `axis` with `angle`, and `quaternion`";
+            self.error(node.span.clone(), message, help.to_owned());
+            return None;
+        };
+        if *kind != "axis" && fields.get("angle").is_some() {
+            self.error(fields.key_span("angle"), format!("`angle` goes with `axis`, not with `{kind}`"), None);
+            return None;
+        }
+        let value = fields.get(kind)?;
+        match *kind {
+            "rpy" => Some(Rotation::RollPitchYaw(self.three(value, Context::Constant, Dimension::ANGLE)?)),
+            "axis" => {
+                let axis = self.turning_axis(value);
+                let angle = self.required(&fields, "angle");
+                let angle = angle.and_then(|node| self.formula(node, Context::Constant, Dimension::ANGLE));
+                Some(Rotation::AxisAngle(axis?, angle?))
+            }
+            _ => self.quaternion(value),
+        }
+    }
+
+    fn quaternion(&mut self, node: &Node) -> Option<Rotation> {
+        let items = match &node.value {
+            Value::Sequence(items) if items.len() == 4 => items,
+            _ => {
+                let help = "the cosine of half the angle first, then the axis times the sine of it".to_owned();
+                self.error(node.span.clone(), "a quaternion is a list of four numbers", help);
+                return None;
+            }
+        };
+        let mut read = items.iter().map(|item| self.formula(item, Context::Constant, Dimension::NUMBER));
+        let [a, b, c, d] = [read.next()?, read.next()?, read.next()?, read.next()?];
+        let p: [Formula; 4] = [a?, b?, c?, d?];
+        if p.iter().all(|formula| self.evaluate(formula, 0) == Some(0.0)) {
+            self.error(node.span.clone(), "a quaternion of length zero is no rotation", None);
+            return None;
+        }
+        Some(Rotation::Quaternion(p))
+    }
+}
