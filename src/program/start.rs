@@ -166,7 +166,7 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
 }
 
 /// Parameters at stage 0, everything else at stage 1.
-fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
+pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     let mut inputs = Vec::new();
     let mut add = |symbols: &[Expr], start: usize, stage: usize| {
         inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input { symbol, stage, slot: slot as u32 }));
@@ -182,7 +182,7 @@ fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
 }
 
 /// d/dt of expressions of t, q and v, along v and w.
-fn time_derivative(system: &System, graph: &mut Graph, of: &[Expr]) -> Vec<Expr> {
+pub(super) fn time_derivative(system: &System, graph: &mut Graph, of: &[Expr]) -> Vec<Expr> {
     let along = [(&system.q, &system.v), (&system.v, &system.w)];
     let mut rates: Vec<Expr> = of.iter().map(|&value| graph.derivative(value, system.time)).collect();
     for (coordinates, speeds) in along {
