@@ -1,5 +1,7 @@
 //! Matrices of Taylor models.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 use symdiff::taylor_model::{ModelSpace, Norms};
 
@@ -43,9 +45,32 @@ impl Models {
         &self.values[row * self.columns * self.size..][..self.columns * self.size]
     }
 
-    /// What is known of an entry's distance from its polynomial.
-    pub fn radius(&self, row: usize, column: usize) -> f64 {
-        self.at(row, column)[self.size - 1]
+    /// Some rows and columns.
+    pub fn part(&self, space: &ModelSpace, rows: Range<usize>, columns: Range<usize>) -> Self {
+        let mut part = Self::zero(space, rows.len(), columns.len());
+        for (place, row) in rows.enumerate() {
+            let length = columns.len() * self.size;
+            part.values[place * length..][..length].copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
+        }
+        part
+    }
+
+    /// [self, other].
+    pub fn beside(&self, space: &ModelSpace, other: &Self) -> Self {
+        let mut both = Self::zero(space, self.rows, self.columns + other.columns);
+        for row in 0..self.rows {
+            let (left, right) = (self.row(row), other.row(row));
+            let length = left.len() + right.len();
+            both.values[row * length..][..left.len()].copy_from_slice(left);
+            both.values[row * length + left.len()..][..right.len()].copy_from_slice(right);
+        }
+        both
+    }
+
+    /// Multiplies a row by a power of two.
+    pub fn scale_row(&mut self, row: usize, factor: f64) {
+        let length = self.columns * self.size;
+        self.values[row * length..][..length].iter_mut().for_each(|c| *c *= factor);
     }
 
     /// Only the polynomials.
@@ -123,6 +148,16 @@ impl Models {
     /// `self ← −self`.
     pub fn negate(&mut self) {
         self.values.chunks_exact_mut(self.size).for_each(|model| model[..self.size - 1].iter_mut().for_each(|c| *c = -*c));
+    }
+
+    /// `self − other`.
+    pub fn minus(&self, space: &ModelSpace, other: &Self) -> Self {
+        let mut difference = self.clone();
+        let models = self.values.chunks_exact(self.size).zip(other.values.chunks_exact(self.size));
+        for (target, (a, b)) in difference.values.chunks_exact_mut(self.size).zip(models) {
+            space.sub(a, b, target);
+        }
+        difference
     }
 
     /// `self += other`.

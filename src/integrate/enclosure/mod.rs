@@ -35,7 +35,13 @@ use symdiff::{Interval, ModelMemory};
 use super::simulator::Simulator;
 use super::steps::Schedule;
 use crate::program::{Coefficients, EquationsProgram, compile_equations};
+use frame::Frame;
 use matrix::Models;
+
+fn env(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
+
+/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder hangs on it.
+const MOTION_TIME: f64 = 0.1;
 
 /// Why an enclosure ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -100,14 +106,13 @@ impl Gains {
 #[derive(Debug)]
 pub struct Enclosure<'s> {
     space: &'s ModelSpace,
-    simulator: &'s Simulator,
     program: &'s EquationsProgram,
     memory: ModelMemory<'s>,
     gains: Gains,
     /// q̂, v̂, w in that order, 3n: polynomials only.
     state: Models,
-    /// A, columns in units of `scale`.
-    frame: Models,
+    /// A, in units of `scale`.
+    frame: Frame,
     /// r.
     radii: Vec<f64>,
     /// Units of q̂, v̂, w: powers of two, so that they come and go without rounding.
@@ -144,22 +149,24 @@ impl<'s> Enclosure<'s> {
         let n = program.layout.q.len();
         let unit = |size: f64| 2.0_f64.powi(size.log2().round() as i32);
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
-        let scale = [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
+        let scale: Vec<f64> =
+            [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
+        let (tangent, independent) = start::tangent(simulator, program, &mut memory, &scale[..n])?;
+        let frame = Frame::new(space, &tangent, &independent, unit(env("TAU", MOTION_TIME) / h));
         let mut enclosure = Self {
             space,
-            simulator,
             program,
             memory,
             gains: Gains::new(coefficients, h),
             state: Models::zero(space, 3 * n, 1),
-            frame: Models::identity(space, 3 * n),
+            frame,
             radii: vec![0.0; 3 * n],
             scale,
             before: Vec::new(),
             inverse: None,
             spread: Vec::new(),
         };
-        enclosure.begin();
+        enclosure.begin()?;
         Ok(enclosure)
     }
 

@@ -1,11 +1,13 @@
 //! The start, enclosed: positions, velocities, accelerations and multipliers as solutions of their equations.
 
+use nalgebra::DMatrix;
 use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
 use super::Lost;
 use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds};
+use crate::integrate::closure::choose_independent;
 use crate::integrate::simulator::Simulator;
 use crate::program::EquationsProgram;
 
@@ -85,6 +87,37 @@ pub(super) fn assemble(
     }
     set_time(space, memory, layout.time, 0.0);
     Ok(())
+}
+
+/// ∂q/∂(independent coordinates) at the centre of the start, in units of `scale`, and which they are.
+pub(super) fn tangent(
+    simulator: &Simulator,
+    program: &EquationsProgram,
+    memory: &mut ModelMemory,
+    scale: &[f64],
+) -> Result<(DMatrix<f64>, Vec<usize>), Lost> {
+    let layout = &program.layout;
+    let n = layout.q.len();
+    let motion = &simulator.nominal[layout.q.start..layout.v.end];
+    let parameters = &simulator.nominal[layout.parameters.clone()];
+    let independent = choose_independent(simulator, parameters, motion, 0.0);
+    let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
+    if dependent.len() != program.constraint.len() {
+        return Err(Lost::Undetermined);
+    }
+    memory.run(program.slopes());
+    let mut slopes = DMatrix::zeros(dependent.len(), n);
+    for &(row, column, slot) in &program.constraint_by_position {
+        slopes[(row, column)] = memory.model(slot)[0] * scale[column];
+    }
+    let follow = slopes.select_columns(&dependent).lu().solve(&-slopes.select_columns(&independent));
+    let follow = follow.ok_or(Lost::Undetermined)?;
+    let mut tangent = DMatrix::zeros(n, independent.len());
+    independent.iter().enumerate().for_each(|(column, &row)| tangent[(row, column)] = 1.0);
+    for (place, &row) in dependent.iter().enumerate() {
+        tangent.row_mut(row).copy_from(&follow.row(place));
+    }
+    Ok((tangent, independent))
 }
 
 fn set_time(space: &ModelSpace, memory: &mut ModelMemory, slot: usize, time: f64) {

@@ -5,7 +5,7 @@ use symdiff::taylor_model::up;
 
 use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds, larger};
-use super::{Enclosure, Lost, frame};
+use super::{Enclosure, Lost};
 
 /// Corrections of X before its residual is taken as it is: what is left is bounded in any case.
 const MAX_CORRECTIONS: usize = 4;
@@ -27,10 +27,11 @@ impl Enclosure<'_> {
     }
 
     /// From the start's q, v, a, w to the first q̂, v̂, w and their radii.
-    pub(super) fn begin(&mut self) {
+    pub(super) fn begin(&mut self) -> Result<(), Lost> {
         let (n, space) = (self.coordinates(), self.space);
         let layout = self.program.layout.clone();
         let radius = space.size() - 1;
+        let mut spread = vec![0.0; 3 * n];
         for i in 0..n {
             let model = |slot: usize| self.memory.model(slot + i);
             let [q, v, a, w] = [layout.q.start, layout.v.start, layout.a.start, layout.w.start].map(model);
@@ -38,7 +39,7 @@ impl Enclosure<'_> {
             for (block, model) in [&predicted[0][..], &predicted[1], w].into_iter().enumerate() {
                 let row = block * n + i;
                 self.state.at_mut(row, 0)[..radius].copy_from_slice(&model[..radius]);
-                self.radii[row] = up(model[radius] / self.scale[row]);
+                spread[row] = up(model[radius] / self.scale[row]);
             }
         }
         let unknowns = layout.w.chain(layout.lambda);
@@ -47,6 +48,8 @@ impl Enclosure<'_> {
             first.at_mut(row, 0)[..radius].copy_from_slice(&self.memory.model(slot)[..radius]);
         }
         self.before.push(first);
+        self.radii = self.frame.radii_of(space, &spread)?;
+        Ok(())
     }
 
     /// q̂ = q + h v + q_a a − q_w w,   v̂ = v + v_a a − v_w w.
@@ -93,9 +96,10 @@ impl Enclosure<'_> {
 
         // How the solution follows the remainder, Y, at the polynomials.
         let columns = self.columns();
+        let of_state = columns.part(space, 0..2 * n, 0..3 * n);
         let Slopes { by_state, .. } = self.slopes();
         let inverse = self.inverse.clone().ok_or(Lost::Unproven)?;
-        let pull = by_state.approximate_times(space, &columns);
+        let pull = by_state.approximate_times(space, &of_state);
         let mut follows = inverse.approximate_times(space, &pull).without_radii();
         follows.negate();
         let sizes = inverse.bounds(space);
@@ -121,6 +125,7 @@ impl Enclosure<'_> {
         } else {
             self.spread.iter().map(|spread| 1.5 * spread).collect()
         };
+        let (mut forcing, mut rest) = (Vec::new(), Vec::new());
         let found = {
             let radii = self.radii.clone();
             let spreads = |y: &[f64]| spread_of(y);
@@ -131,16 +136,23 @@ impl Enclosure<'_> {
                 let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
                 let contraction = inverse.times(space, &by_unknown).from_identity(space).bounds(space);
                 let mut left = by_unknown.times(space, &follows);
-                left.add(space, &by_state.times(space, &columns));
+                left.add(space, &by_state.times(space, &of_state));
                 let of_remainder = apply_bounds(&left.bounds(space), &radii);
                 let total: Vec<f64> = missed.iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
-                Image { missed: apply_bounds(&sizes, &total), contraction }
+                let missed = apply_bounds(&sizes, &total);
+                (forcing, rest) = (total, contraction.clone());
+                Image { missed, contraction }
             })?
         };
         let spreads = spread_of(&found);
         self.place(&solution, Some(&spreads));
 
-        self.finish(&solution, &turned, &found[..n])?;
+        // y = −C η + (I − C J) y, |η| ≤ `forcing`: what the first part does is known, of the second only how large it is.
+        let forced = self.force(&inverse);
+        let mass = self.mass();
+        let rest = apply_bounds(&rest, &found);
+        let radii = [&self.radii[..], &forcing].concat();
+        self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &mass)?;
         debug_assert_eq!(count, found.len());
         self.spread = found;
         self.before.insert(0, solution);
@@ -272,16 +284,11 @@ impl Enclosure<'_> {
         Slopes { by_unknown, by_state }
     }
 
-    /// The rows of q̂ and v̂ of the frame, in their own units.
+    /// The frame's columns in SI units, 3n × 3n.
     fn columns(&self) -> Models {
-        let n = self.coordinates();
-        let mut columns = Models::zero(self.space, 2 * n, 3 * n);
-        for row in 0..2 * n {
-            for column in 0..3 * n {
-                let scaled = columns.at_mut(row, column);
-                scaled.copy_from_slice(self.frame.at(row, column));
-                scaled.iter_mut().for_each(|c| *c *= self.scale[row]);
-            }
+        let mut columns = self.frame.columns(self.space);
+        for row in 0..columns.rows {
+            columns.scale_row(row, self.scale[row]);
         }
         columns
     }
@@ -290,30 +297,58 @@ impl Enclosure<'_> {
     fn turn(&self, columns: &Models, follows: &Models) -> (Models, Models) {
         let (n, space) = (self.coordinates(), self.space);
         let (mut turned, mut moved) = (Models::zero(space, 3 * n, 3 * n), Models::zero(space, 2 * n, 3 * n));
-        let mut w = vec![0.0; space.size()];
         for column in 0..3 * n {
             for i in 0..n {
-                w.copy_from_slice(self.frame.at(2 * n + i, column));
-                w.iter_mut().for_each(|c| *c *= self.scale[2 * n + i]);
                 let x = follows.at(i, column);
-                let [q, v, position, velocity] =
-                    self.advance_coordinate(columns.at(i, column), columns.at(n + i, column), &w, x);
+                let of = |block: usize| columns.at(block * n + i, column);
+                let [q, v, position, velocity] = self.advance_coordinate(of(0), of(1), of(2), x);
                 moved.at_mut(i, column).copy_from_slice(&q);
                 moved.at_mut(n + i, column).copy_from_slice(&v);
                 for (block, model) in [&position[..], &velocity, x].into_iter().enumerate() {
-                    let row = block * n + i;
-                    let unit = 1.0 / self.scale[row];
-                    let target = turned.at_mut(row, column);
-                    target.copy_from_slice(model);
-                    target.iter_mut().for_each(|c| *c *= unit);
+                    turned.at_mut(block * n + i, column).copy_from_slice(model);
                 }
             }
+        }
+        for row in 0..3 * n {
+            turned.scale_row(row, 1.0 / self.scale[row]);
         }
         (turned, moved)
     }
 
-    /// The next state's polynomials, frame and radii; |y| ≤ `found`, n.
-    fn finish(&mut self, solution: &Models, turned: &Models, found: &[f64]) -> Result<(), Lost> {
+    /// What corrections C η of x do to the next q̂, v̂, w, in units of `scale`: 3n × (n + m).
+    fn force(&self, inverse: &Models) -> Models {
+        let (n, space) = (self.coordinates(), self.space);
+        let mut forced = Models::zero(space, 3 * n, inverse.columns);
+        let zero = vec![0.0; space.size()];
+        for column in 0..inverse.columns {
+            for i in 0..n {
+                let x = inverse.at(i, column);
+                let [_, _, position, velocity] = self.advance_coordinate(&zero, &zero, &zero, x);
+                for (block, model) in [&position[..], &velocity, x].into_iter().enumerate() {
+                    forced.at_mut(block * n + i, column).copy_from_slice(model);
+                }
+            }
+        }
+        for row in 0..3 * n {
+            forced.scale_row(row, 1.0 / self.scale[row]);
+        }
+        forced
+    }
+
+    /// M in units of `scale`, polynomials only; the slopes' tape has run.
+    fn mass(&self) -> Models {
+        let n = self.coordinates();
+        let mut mass = Models::zero(self.space, n, n);
+        for &(row, column, slot) in &self.program.motion_by[2] {
+            let target = mass.at_mut(row, column);
+            target.copy_from_slice(self.memory.model(slot));
+            target.iter_mut().for_each(|c| *c *= self.scale[row] * self.scale[column]);
+        }
+        mass.without_radii()
+    }
+
+    /// The next state's polynomials, frame and radii; |yᵢ| ≤ `found` apart from what `turned` has, n.
+    fn finish(&mut self, solution: &Models, turned: &Models, radii: &[f64], found: &[f64], mass: &Models) -> Result<(), Lost> {
         let (n, space) = (self.coordinates(), self.space);
         let radius = space.size() - 1;
         let gains = self.gains;
@@ -335,26 +370,13 @@ impl Enclosure<'_> {
             }
         }
 
-        let next = frame::orthonormal(space, turned, &self.radii);
-        let back = next.transposed();
-        // z₊ = Aᵀ(B z + fresh) + (I − AᵀA) z₊.
-        let mapped = apply_bounds(&back.times(space, turned).bounds(space), &self.radii);
-        let entering = apply_bounds(&back.bounds(space), &fresh);
-        let rest = back.times(space, &next).from_identity(space);
-        let skew = rest.row_norm(space);
-        let rough: Vec<f64> = mapped.iter().zip(&entering).map(|(a, b)| up(a + b)).collect();
-        // Written so that not a number is lost too.
-        if !(skew < 0.5) {
-            return Err(Lost::Unproven);
+        let (next, radii) = self.frame.next(space, turned, radii, &fresh, mass)?;
+        if std::env::var("DBG").is_ok() {
+            let rr: Vec<String> = radii.iter().map(|r| format!("{r:.1e}")).collect();
+            let ff: Vec<String> = fresh.iter().map(|r| format!("{r:.1e}")).collect();
+            eprintln!("radii {} fresh {} {}", rr.join(" "), ff.join(" "), next.debug());
         }
-        let largest = up(rough.iter().copied().fold(0.0, larger) / (1.0 - skew));
-        let rows = rest.bounds(space);
-        self.radii = rough
-            .iter()
-            .zip(rows.chunks_exact(3 * n))
-            .map(|(rough, row)| up(rough + up(row.iter().sum::<f64>()) * largest))
-            .collect();
-        self.frame = next;
+        (self.frame, self.radii) = (next, radii);
         Ok(())
     }
 }
