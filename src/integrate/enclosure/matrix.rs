@@ -32,6 +32,15 @@ impl Models {
         identity
     }
 
+    /// Numbers that do not depend on ξ.
+    pub fn constant(space: &ModelSpace, numbers: &DMatrix<f64>) -> Self {
+        let mut models = Self::zero(space, numbers.nrows(), numbers.ncols());
+        for row in 0..models.rows {
+            (0..models.columns).for_each(|column| models.at_mut(row, column)[0] = numbers[(row, column)]);
+        }
+        models
+    }
+
     pub fn at(&self, row: usize, column: usize) -> &[f64] {
         &self.values[(row * self.columns + column) * self.size..][..self.size]
     }
@@ -53,6 +62,17 @@ impl Models {
             part.values[place * length..][..length].copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
         }
         part
+    }
+
+    /// Some columns.
+    pub fn columns_at(&self, space: &ModelSpace, columns: &[usize]) -> Self {
+        let mut chosen = Self::zero(space, self.rows, columns.len());
+        for row in 0..self.rows {
+            for (place, &column) in columns.iter().enumerate() {
+                chosen.at_mut(row, place).copy_from_slice(self.at(row, column));
+            }
+        }
+        chosen
     }
 
     /// [self, other].
@@ -77,16 +97,6 @@ impl Models {
     pub fn without_radii(mut self) -> Self {
         self.values.chunks_exact_mut(self.size).for_each(|model| model[self.size - 1] = 0.0);
         self
-    }
-
-    pub fn transposed(&self) -> Self {
-        let mut transposed = Self { rows: self.columns, columns: self.rows, ..self.clone() };
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                transposed.at_mut(column, row).copy_from_slice(self.at(row, column));
-            }
-        }
-        transposed
     }
 
     fn norms(&self, space: &ModelSpace) -> Vec<Option<Norms>> {
@@ -150,16 +160,6 @@ impl Models {
         self.values.chunks_exact_mut(self.size).for_each(|model| model[..self.size - 1].iter_mut().for_each(|c| *c = -*c));
     }
 
-    /// `self − other`.
-    pub fn minus(&self, space: &ModelSpace, other: &Self) -> Self {
-        let mut difference = self.clone();
-        let models = self.values.chunks_exact(self.size).zip(other.values.chunks_exact(self.size));
-        for (target, (a, b)) in difference.values.chunks_exact_mut(self.size).zip(models) {
-            space.sub(a, b, target);
-        }
-        difference
-    }
-
     /// `self += other`.
     pub fn add(&mut self, space: &ModelSpace, other: &Self) {
         let mut sum = vec![0.0; self.size];
@@ -191,13 +191,7 @@ impl Models {
     pub fn inverse_at_centre(&self, space: &ModelSpace) -> Option<Self> {
         let centre = DMatrix::from_fn(self.rows, self.columns, |row, column| self.at(row, column)[0]);
         let inverse = centre.try_inverse()?;
-        let mut models = Self::zero(space, self.rows, self.columns);
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                models.at_mut(row, column)[0] = inverse[(row, column)];
-            }
-        }
-        Some(models)
+        Some(Self::constant(space, &inverse))
     }
 
     /// Makes `self` a better inverse of a matrix: C ← C + (I − C J) C (Schulz). Whether it is one.

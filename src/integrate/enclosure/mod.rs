@@ -35,7 +35,7 @@ use symdiff::{Interval, ModelMemory};
 use super::simulator::Simulator;
 use super::steps::Schedule;
 use crate::program::{Coefficients, EquationsProgram, compile_equations};
-use frame::Frame;
+use frame::{Frame, Units};
 use matrix::Models;
 
 fn env(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
@@ -115,8 +115,7 @@ pub struct Enclosure<'s> {
     frame: Frame,
     /// r.
     radii: Vec<f64>,
-    /// Units of q̂, v̂, w: powers of two, so that they come and go without rounding.
-    scale: Vec<f64>,
+    units: Units,
     /// X of the last steps, the last first.
     before: Vec<Models>,
     /// C.
@@ -151,17 +150,19 @@ impl<'s> Enclosure<'s> {
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
         let scale: Vec<f64> =
             [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
-        let (tangent, independent) = start::tangent(simulator, program, &mut memory, &scale[..n])?;
-        let frame = Frame::new(space, &tangent, &independent, unit(env("TAU", MOTION_TIME) / h));
+        let units = Units { scale, step: h, motion: unit(env("TAU", MOTION_TIME) / h) };
+        let gains = Gains::new(coefficients, h);
+        let (tangent, push, independent) = start::tangent(simulator, program, space, &mut memory)?;
+        let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);
         let mut enclosure = Self {
             space,
             program,
             memory,
-            gains: Gains::new(coefficients, h),
+            gains,
             state: Models::zero(space, 3 * n, 1),
             frame,
             radii: vec![0.0; 3 * n],
-            scale,
+            units,
             before: Vec::new(),
             inverse: None,
             spread: Vec::new(),

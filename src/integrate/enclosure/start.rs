@@ -1,6 +1,5 @@
 //! The start, enclosed: positions, velocities, accelerations and multipliers as solutions of their equations.
 
-use nalgebra::DMatrix;
 use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
@@ -89,35 +88,48 @@ pub(super) fn assemble(
     Ok(())
 }
 
-/// ∂q/∂(independent coordinates) at the centre of the start, in units of `scale`, and which they are.
+/// ∂q/∂(independent coordinates), n × f, and P (see [`super::frame`]), n × m, at the start, and which coordinates
+/// are independent.
 pub(super) fn tangent(
     simulator: &Simulator,
     program: &EquationsProgram,
+    space: &ModelSpace,
     memory: &mut ModelMemory,
-    scale: &[f64],
-) -> Result<(DMatrix<f64>, Vec<usize>), Lost> {
+) -> Result<(Models, Models, Vec<usize>), Lost> {
     let layout = &program.layout;
-    let n = layout.q.len();
+    let (n, m) = (layout.q.len(), program.constraint.len());
     let motion = &simulator.nominal[layout.q.start..layout.v.end];
     let parameters = &simulator.nominal[layout.parameters.clone()];
     let independent = choose_independent(simulator, parameters, motion, 0.0);
     let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
-    if dependent.len() != program.constraint.len() {
+    if dependent.len() != m {
         return Err(Lost::Undetermined);
     }
     memory.run(program.slopes());
-    let mut slopes = DMatrix::zeros(dependent.len(), n);
+    let (mut mass, mut slopes) = (Models::zero(space, n + m, n + m), Models::zero(space, m, n));
+    for &(row, column, slot) in &program.motion_by[2] {
+        mass.at_mut(row, column).copy_from_slice(memory.model(slot));
+    }
     for &(row, column, slot) in &program.constraint_by_position {
-        slopes[(row, column)] = memory.model(slot)[0] * scale[column];
+        mass.at_mut(n + row, column).copy_from_slice(memory.model(slot));
+        mass.at_mut(column, n + row).copy_from_slice(memory.model(slot));
+        slopes.at_mut(row, column).copy_from_slice(memory.model(slot));
     }
-    let follow = slopes.select_columns(&dependent).lu().solve(&-slopes.select_columns(&independent));
-    let follow = follow.ok_or(Lost::Undetermined)?;
-    let mut tangent = DMatrix::zeros(n, independent.len());
-    independent.iter().enumerate().for_each(|(column, &row)| tangent[(row, column)] = 1.0);
+    let mut tangent = Models::zero(space, n, independent.len());
+    independent.iter().enumerate().for_each(|(column, &row)| tangent.at_mut(row, column)[0] = 1.0);
+    let follow = inverse(space, &slopes.columns_at(space, &dependent))?;
+    let mut follow = follow.approximate_times(space, &slopes.columns_at(space, &independent));
+    follow.negate();
     for (place, &row) in dependent.iter().enumerate() {
-        tangent.row_mut(row).copy_from(&follow.row(place));
+        (0..independent.len()).for_each(|column| tangent.at_mut(row, column).copy_from_slice(follow.at(place, column)));
     }
-    Ok((tangent, independent))
+    let push = inverse(space, &mass)?.part(space, 0..n, n..n + m);
+    Ok((tangent, push, independent))
+}
+
+fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, Lost> {
+    let mut inverse = matrix.inverse_at_centre(space).ok_or(Lost::Undetermined)?;
+    if inverse.refine_inverse_of(space, matrix) { Ok(inverse) } else { Err(Lost::Unproven) }
 }
 
 fn set_time(space: &ModelSpace, memory: &mut ModelMemory, slot: usize, time: f64) {

@@ -39,7 +39,7 @@ impl Enclosure<'_> {
             for (block, model) in [&predicted[0][..], &predicted[1], w].into_iter().enumerate() {
                 let row = block * n + i;
                 self.state.at_mut(row, 0)[..radius].copy_from_slice(&model[..radius]);
-                spread[row] = up(model[radius] / self.scale[row]);
+                spread[row] = up(model[radius] / self.units.scale[row]);
             }
         }
         let unknowns = layout.w.chain(layout.lambda);
@@ -149,10 +149,10 @@ impl Enclosure<'_> {
 
         // y = −C η + (I − C J) y, |η| ≤ `forcing`: what the first part does is known, of the second only how large it is.
         let forced = self.force(&inverse);
-        let mass = self.mass();
+        let push = inverse.part(space, 0..n, n..count);
         let rest = apply_bounds(&rest, &found);
         let radii = [&self.radii[..], &forcing].concat();
-        self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &mass)?;
+        self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &push)?;
         debug_assert_eq!(count, found.len());
         self.spread = found;
         self.before.insert(0, solution);
@@ -183,7 +183,7 @@ impl Enclosure<'_> {
             solution.add_approximately(&correction);
             self.place(&solution, None);
             let sizes = correction.bounds(space);
-            let scaled = sizes[..n].iter().zip(&self.scale).map(|(size, scale)| gain * size / scale);
+            let scaled = sizes[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
             if scaled.fold(0.0, larger) < SETTLED {
                 break;
             }
@@ -288,7 +288,7 @@ impl Enclosure<'_> {
     fn columns(&self) -> Models {
         let mut columns = self.frame.columns(self.space);
         for row in 0..columns.rows {
-            columns.scale_row(row, self.scale[row]);
+            columns.scale_row(row, self.units.scale[row]);
         }
         columns
     }
@@ -310,7 +310,7 @@ impl Enclosure<'_> {
             }
         }
         for row in 0..3 * n {
-            turned.scale_row(row, 1.0 / self.scale[row]);
+            turned.scale_row(row, 1.0 / self.units.scale[row]);
         }
         (turned, moved)
     }
@@ -330,25 +330,13 @@ impl Enclosure<'_> {
             }
         }
         for row in 0..3 * n {
-            forced.scale_row(row, 1.0 / self.scale[row]);
+            forced.scale_row(row, 1.0 / self.units.scale[row]);
         }
         forced
     }
 
-    /// M in units of `scale`, polynomials only; the slopes' tape has run.
-    fn mass(&self) -> Models {
-        let n = self.coordinates();
-        let mut mass = Models::zero(self.space, n, n);
-        for &(row, column, slot) in &self.program.motion_by[2] {
-            let target = mass.at_mut(row, column);
-            target.copy_from_slice(self.memory.model(slot));
-            target.iter_mut().for_each(|c| *c *= self.scale[row] * self.scale[column]);
-        }
-        mass.without_radii()
-    }
-
     /// The next state's polynomials, frame and radii; |yᵢ| ≤ `found` apart from what `turned` has, n.
-    fn finish(&mut self, solution: &Models, turned: &Models, radii: &[f64], found: &[f64], mass: &Models) -> Result<(), Lost> {
+    fn finish(&mut self, solution: &Models, turned: &Models, radii: &[f64], found: &[f64], push: &Models) -> Result<(), Lost> {
         let (n, space) = (self.coordinates(), self.space);
         let radius = space.size() - 1;
         let gains = self.gains;
@@ -366,15 +354,15 @@ impl Enclosure<'_> {
                 let target = self.state.at_mut(row, 0);
                 target.copy_from_slice(model);
                 target[radius] = 0.0;
-                fresh[row] = up((model[radius] + effect[block] * found[i]) / self.scale[row]);
+                fresh[row] = up((model[radius] + effect[block] * found[i]) / self.units.scale[row]);
             }
         }
 
-        let (next, radii) = self.frame.next(space, turned, radii, &fresh, mass)?;
+        let (next, radii) = self.frame.clone().next(space, &self.units, turned, radii, &fresh, push)?;
         if std::env::var("DBG").is_ok() {
             let rr: Vec<String> = radii.iter().map(|r| format!("{r:.1e}")).collect();
             let ff: Vec<String> = fresh.iter().map(|r| format!("{r:.1e}")).collect();
-            eprintln!("radii {} fresh {} {}", rr.join(" "), ff.join(" "), next.debug());
+            eprintln!("radii {} fresh {}", rr.join(" "), ff.join(" "));
         }
         (self.frame, self.radii) = (next, radii);
         Ok(())
