@@ -27,6 +27,8 @@ pub(super) const TAYLOR_WORK: usize = 5;
 pub(super) struct Outcome {
     pub(super) bands: Vec<Vec<Range>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
+    /// What is to be told of bounds that do not go on to the end.
+    pub(super) note: Option<String>,
     pub(super) summary: MethodSummary,
     /// The sample whose local error was largest against the tolerance, and how large.
     pub(super) strained: Option<(Vec<f64>, f64)>,
@@ -42,7 +44,7 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn outputs(&self) -> usize {
+    pub(super) fn outputs(&self) -> usize {
         self.study.simulator.program.outputs.len()
     }
 
@@ -83,7 +85,7 @@ impl Run<'_> {
         })
     }
 
-    fn method_summary(
+    pub(super) fn method_summary(
         &self,
         method: &str,
         solves: usize,
@@ -115,7 +117,7 @@ impl Run<'_> {
                 }
             })?;
         let summary = self.method_summary("nominal", 1, done.counters, done.stop_place(), begun);
-        Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
+        Ok(Outcome { bands, stop: done.stop, note: None, summary, strained: done.strained })
     }
 
     pub(super) fn chebyshev(&self, request: &ChebyshevRequest) -> Result<Outcome, SimulationError> {
@@ -157,7 +159,7 @@ impl Run<'_> {
         };
         let summary =
             self.method_summary(Method::Chebyshev.name(), samples.len(), done.counters, done.stop_place(), begun);
-        Ok(Outcome { bands, stop: done.stop, summary, strained: done.strained })
+        Ok(Outcome { bands, stop: done.stop, note: None, summary, strained: done.strained })
     }
 
     pub(super) fn scan(&self, request: &ScanRequest) -> Result<Outcome, SimulationError> {
@@ -185,7 +187,7 @@ impl Run<'_> {
             }
         }
         let summary = self.method_summary(Method::Scan.name(), grid.len(), total.counters, total.stop_place(), begun);
-        Ok(Outcome { bands, stop: total.stop, summary, strained: total.strained })
+        Ok(Outcome { bands, stop: total.stop, note: None, summary, strained: total.strained })
     }
 
     pub(super) fn taylor(&self, request: &TaylorRequest) -> Result<Outcome, SimulationError> {
@@ -214,7 +216,7 @@ impl Run<'_> {
             next = rows.end;
         }
         let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), stop.as_ref(), begun);
-        Ok(Outcome { bands, stop: stop.map(|stop| (stop, center)), summary, strained: None })
+        Ok(Outcome { bands, stop: stop.map(|stop| (stop, center)), note: None, summary, strained: None })
     }
 
     fn samples(&self, grid: &TensorGrid) -> Vec<Vec<f64>> {
@@ -252,7 +254,7 @@ impl FleetRun {
 }
 
 /// Ranges that stand row by row, output by output, into each output's band.
-fn scatter(bands: &mut [Vec<Range>], rows: Rows<usize>, ranges: &[Range], outputs: usize) {
+pub(super) fn scatter(bands: &mut [Vec<Range>], rows: Rows<usize>, ranges: &[Range], outputs: usize) {
     for (row, ranges) in rows.zip(ranges.chunks_exact(outputs)) {
         for (band, range) in bands.iter_mut().zip(ranges) {
             band[row] = *range;

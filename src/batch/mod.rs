@@ -2,8 +2,9 @@
 //!
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
-//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates.
+//! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates.
 
+mod certify;
 mod compose;
 mod methods;
 mod study;
@@ -38,6 +39,10 @@ pub enum RunError {
         "`{method}` of {parameters} uncertain parameters needs {solves:.2e} simulations: say in the model how many it shall take"
     )]
     TooMany { method: &'static str, solves: f64, parameters: usize },
+    #[error("certified bounds are for at most two uncertain parameters, not {parameters}")]
+    TooManyToCertify { parameters: usize },
+    #[error("certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed")]
+    CertifiedSteps,
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
@@ -52,7 +57,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     pool.install(|| {
         let system = mechanics::build(description)?;
         let study = Study::new(description, system, &options)?;
-        Ok(study.run()?)
+        study.run()
     })
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
+use super::certify::MOST_PARAMETERS;
 use super::methods::{Outcome, Run, TAYLOR_WORK};
 use super::{Options, RunError, first_step};
 use crate::bounds::{Band, Bounds, Method, OutputBounds, ParameterBox, Range};
@@ -40,7 +41,7 @@ impl<'a> Study<'a> {
     }
 
     /// Runs every method.
-    pub(super) fn run(&self) -> Result<(Bounds, Summary), SimulationError> {
+    pub(super) fn run(&self) -> Result<(Bounds, Summary), RunError> {
         let simulation = &self.description.simulation;
         match simulation.stepping {
             Stepping::Fixed(step) => {
@@ -48,7 +49,8 @@ impl<'a> Study<'a> {
                 let outcomes = self.methods(&schedule, None)?;
                 Ok(self.conclude(&schedule, outcomes, None))
             }
-            Stepping::Tolerance(tolerance) => self.run_controlled(tolerance),
+            Stepping::Tolerance(_) if self.request.certified => Err(RunError::CertifiedSteps),
+            Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
         }
     }
 
@@ -110,6 +112,9 @@ impl<'a> Study<'a> {
         if let Some(request) = &self.request.scan {
             outcomes.push(run.scan(request)?);
         }
+        if self.request.certified {
+            outcomes.push(run.certified());
+        }
         Ok(outcomes)
     }
 
@@ -150,11 +155,12 @@ impl<'a> Study<'a> {
             });
         }
         let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
+        let failure = failure.or_else(|| outcomes.iter().find_map(|outcome| outcome.note.clone()));
         (Bounds { times, outputs }, self.summary(outcomes, failure))
     }
 
     fn requested_methods(&self) -> Vec<Method> {
-        let asked = [self.request.chebyshev.is_some(), self.request.taylor.is_some(), self.request.scan.is_some()];
+        let asked = [self.request.chebyshev.is_some(), self.request.taylor.is_some(), self.request.scan.is_some(), self.request.certified];
         Method::ALL.into_iter().zip(asked).filter(|(_, asked)| *asked).map(|(method, _)| method).collect()
     }
 
@@ -209,6 +215,10 @@ impl<'a> Study<'a> {
 /// # Errors
 /// Where a default would make too many samples (the model's own requests were checked when it was read).
 fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Result<BoundsRequest, RunError> {
+    let certified = model.certified || methods.is_some_and(|methods| methods.contains(&Method::Certified));
+    if certified && k > MOST_PARAMETERS {
+        return Err(RunError::TooManyToCertify { parameters: k });
+    }
     let Some(methods) = methods else { return Ok(model.clone()) };
     let asked = |method: Method| methods.contains(&method);
     let chebyshev =
@@ -219,6 +229,7 @@ fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Res
         chebyshev: asked(Method::Chebyshev).then(chebyshev),
         taylor: asked(Method::Taylor).then(taylor),
         scan: asked(Method::Scan).then(scan),
+        certified,
     };
     let counts = [
         (Method::Chebyshev, request.chebyshev.as_ref().map(|request| &request.nodes)),

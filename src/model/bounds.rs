@@ -43,7 +43,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
             let help = "ask for other `bounds`, such as `taylor: { order: 2 }`, or make fewer parameters uncertain";
             reader.diagnostics.push(Diagnostic::of_file(message).help(help.to_owned()));
         }
-        return Some(BoundsRequest { chebyshev: Some(chebyshev), taylor: None, scan: None });
+        return Some(BoundsRequest { chebyshev: Some(chebyshev), ..BoundsRequest::default() });
     };
     let fields = reader.fields::<file::Bounds>(node, at.clone())?;
     if uncertain.is_empty() && !reader.diagnostics.has_errors() {

@@ -390,6 +390,8 @@ pub struct BoundsRequest {
     pub taylor: Option<TaylorRequest>,
     #[allow(missing_docs)]
     pub scan: Option<ScanRequest>,
+    /// Bounds that are proven.
+    pub certified: bool,
 }
 
 /// Chebyshev bounds.

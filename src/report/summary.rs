@@ -44,7 +44,7 @@ pub struct ParameterSummary {
     pub upper: f64,
 }
 
-/// What a method took. `method` is `nominal`, `chebyshev`, `taylor` or `scan`.
+/// What a method took. `method` is `nominal`, `chebyshev`, `taylor`, `scan` or `certified`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct MethodSummary {

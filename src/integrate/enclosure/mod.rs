@@ -38,7 +38,6 @@ use crate::program::{Coefficients, EquationsProgram, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
 
-fn env(name: &str, default: f64) -> f64 { std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default) }
 
 /// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder hangs on it.
 const MOTION_TIME: f64 = 0.1;
@@ -150,7 +149,7 @@ impl<'s> Enclosure<'s> {
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
         let scale: Vec<f64> =
             [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
-        let units = Units { scale, step: h, motion: unit(env("TAU", MOTION_TIME) / h) };
+        let units = Units { scale, step: h, motion: unit(MOTION_TIME / h) };
         let gains = Gains::new(coefficients, h);
         let (tangent, push, independent) = start::tangent(simulator, program, space, &mut memory)?;
         let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);

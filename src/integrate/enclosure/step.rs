@@ -359,11 +359,6 @@ impl Enclosure<'_> {
         }
 
         let (next, radii) = self.frame.clone().next(space, &self.units, turned, radii, &fresh, push)?;
-        if std::env::var("DBG").is_ok() {
-            let rr: Vec<String> = radii.iter().map(|r| format!("{r:.1e}")).collect();
-            let ff: Vec<String> = fresh.iter().map(|r| format!("{r:.1e}")).collect();
-            eprintln!("radii {} fresh {}", rr.join(" "), ff.join(" "));
-        }
         (self.frame, self.radii) = (next, radii);
         Ok(())
     }
