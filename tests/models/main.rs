@@ -7,6 +7,7 @@
 mod assembly;
 mod bounds_laws;
 mod car_axis;
+mod certify;
 mod closed_forms;
 mod common;
 mod composition;
