@@ -46,14 +46,19 @@ impl Run<'_> {
         let mut solves = 0;
         while !open.is_empty() {
             solves += open.len();
-            let found: Vec<Enclosed> =
-                std::mem::take(&mut open).into_par_iter().map(|piece| self.enclose(&certifier, &space, piece)).collect();
+            let found: Vec<Enclosed> = std::mem::take(&mut open)
+                .into_par_iter()
+                .map(|piece| self.enclose(&certifier, &space, piece))
+                .collect();
             let room = MOST_PIECES.saturating_sub(closed.len() + found.len());
             // Those that came least far are cut first; the order of the rest does not matter.
             let mut by_reach: Vec<usize> = (0..found.len()).collect();
             by_reach.sort_by_key(|&index| (found[index].ranges.len(), index));
-            let cut: Vec<usize> =
-                by_reach.into_iter().filter(|&index| found[index].piece_can_help(domain.dimension())).take(room).collect();
+            let cut: Vec<usize> = by_reach
+                .into_iter()
+                .filter(|&index| found[index].piece_can_help(domain.dimension()))
+                .take(room)
+                .collect();
             for (index, enclosed) in found.into_iter().enumerate() {
                 if cut.contains(&index) {
                     open.extend(enclosed.piece.halves(&domain.lower, &domain.upper));
@@ -73,7 +78,8 @@ impl Run<'_> {
         let mut models = Vec::new();
         let monomials = space.jets().monomials();
         let mut range = TaylorRange::new(monomials.variables(), monomials.order(), RangeKind::Tight);
-        let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, schedule.first_step()) {
+        let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, schedule.first_step())
+        {
             Ok(enclosure) => enclosure,
             Err(lost) => return Enclosed { piece, ranges, lost: Some((0.0, lost)) },
         };
@@ -138,9 +144,8 @@ fn range_of(range: &mut TaylorRange, model: &[f64]) -> Range {
     let found = range.range(coefficients);
     // The powers' conversion to Chebyshev polynomials and the sum with the constant: fewer than 100 operations a coefficient.
     let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
-    let margin = up(100.0 * f64::EPSILON * size.min(up(size)) + radius[0]);
     let varies = coefficients[1..].iter().any(|&c| c != 0.0);
-    let margin = if varies { margin } else { up(radius[0]) };
+    let margin = up(if varies { 100.0 * f64::EPSILON * size } else { 0.0 } + radius[0]);
     let wide = Range { lower: (found.lower - margin).next_down(), upper: (found.upper + margin).next_up() };
     // An infinite radius says nothing.
     if wide.lower.is_finite() && wide.upper.is_finite() { wide } else { Range::UNKNOWN }

@@ -41,7 +41,9 @@ pub enum RunError {
     TooMany { method: &'static str, solves: f64, parameters: usize },
     #[error("certified bounds are for at most two uncertain parameters, not {parameters}")]
     TooManyToCertify { parameters: usize },
-    #[error("certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed")]
+    #[error(
+        "certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed"
+    )]
     CertifiedSteps,
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),

@@ -160,7 +160,12 @@ impl<'a> Study<'a> {
     }
 
     fn requested_methods(&self) -> Vec<Method> {
-        let asked = [self.request.chebyshev.is_some(), self.request.taylor.is_some(), self.request.scan.is_some(), self.request.certified];
+        let asked = [
+            self.request.chebyshev.is_some(),
+            self.request.taylor.is_some(),
+            self.request.scan.is_some(),
+            self.request.certified,
+        ];
         Method::ALL.into_iter().zip(asked).filter(|(_, asked)| *asked).map(|(method, _)| method).collect()
     }
 

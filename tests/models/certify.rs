@@ -14,8 +14,7 @@ use super::common::*;
 const NEWTON: f64 = 1e-9;
 
 fn certify(description: Description) -> (Bounds, Option<String>) {
-    let options =
-        Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), progress: &|_| () };
+    let options = Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), progress: &|_| () };
     let (bounds, summary) = batch::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
     (bounds, summary.failure)
 }

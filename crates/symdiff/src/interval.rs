@@ -199,10 +199,12 @@ mod tests {
 
     /// An interval and a number in it.
     fn member() -> impl Strategy<Value = (Interval, f64)> {
-        (-1e3..1e3_f64, prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..10.0_f64], 0.0..=1.0_f64).prop_map(|(a, width, at)| {
-            let interval = Interval::new(a, a + width);
-            (interval, (a + at * width).clamp(interval.lower(), interval.upper()))
-        })
+        (-1e3..1e3_f64, prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..10.0_f64], 0.0..=1.0_f64).prop_map(
+            |(a, width, at)| {
+                let interval = Interval::new(a, a + width);
+                (interval, (a + at * width).clamp(interval.lower(), interval.upper()))
+            },
+        )
     }
 
     /// a + b − rounded sum, exactly (Knuth).

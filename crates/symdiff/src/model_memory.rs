@@ -21,7 +21,8 @@ impl<'s> ModelMemory<'s> {
     pub fn new(space: &'s ModelSpace, slots: usize, constants: &[(u32, f64)]) -> Self {
         let size = space.size();
         let (first, second) = (vec![0.0; size], vec![0.0; size]);
-        let mut memory = Self { space, scratch: ModelScratch::new(space), values: vec![0.0; slots * size], first, second };
+        let mut memory =
+            Self { space, scratch: ModelScratch::new(space), values: vec![0.0; slots * size], first, second };
         for &(slot, value) in constants {
             space.constant(Interval::point(value), memory.model_mut(slot as usize));
         }

@@ -199,7 +199,8 @@ impl ModelSpace {
 
     /// `out += a b`, as one of at most `count` products that are summed into `out`, which was zero at first.
     pub fn accumulate(&self, a: (&[f64], &Norms), b: (&[f64], &Norms), count: usize, out: &mut [f64]) {
-        let summing = count as f64 * HALF_UNIT * a.1.total * b.1.total;
+        // A coefficient's running sum has `count` times as many terms as one product.
+        let summing = count as f64 * HALF_UNIT * a.1.weighted * b.1.weighted;
         self.jets.accumulate(self.split(a.0).0, self.split(b.0).0, self.split_mut(out).0);
         let radius = self.split_mut(out).1;
         *radius = up(*radius + self.product_radius(a.1, b.1) + summing);
@@ -378,7 +379,8 @@ mod tests {
         let radius = |order: usize| {
             let space = ModelSpace::new(1, order);
             let mut scratch = ModelScratch::new(&space);
-            let (mut a, mut out, mut second) = (vec![0.0; space.size()], vec![0.0; space.size()], vec![0.0; space.size()]);
+            let (mut a, mut out, mut second) =
+                (vec![0.0; space.size()], vec![0.0; space.size()], vec![0.0; space.size()]);
             space.variable(0, 0.9, 1.1, &mut a);
             space.sin_cos(&a, &mut out, &mut second, &mut scratch);
             second.copy_from_slice(&out);

@@ -72,9 +72,11 @@ impl Frame {
         for column in 0..f {
             for row in 0..n {
                 let factor = units.scale[independent[column]] / units.scale[row];
-                for (row, column, factor) in
-                    [(row, column, factor), (row, f + column, factor / units.motion), (n + row, f + column, factor / units.motion)]
-                {
+                for (row, column, factor) in [
+                    (row, column, factor),
+                    (row, f + column, factor / units.motion),
+                    (n + row, f + column, factor / units.motion),
+                ] {
                     let target = slow.at_mut(row, column);
                     target.copy_from_slice(tangent.at(row % n, column % f));
                     target.iter_mut().for_each(|c| *c *= factor);
@@ -132,7 +134,9 @@ impl Frame {
         self.basis = self.complete(space, units, &slow, push);
         self.refine_inverse(space)?;
         let radii = self.coordinates_of(space, moved, radii, fresh, |turned, found| {
-            let size = |column: usize| (0..2 * f).map(|row| found.at(row, column)[0].powi(2)).sum::<f64>().sqrt() * radii[column];
+            let size = |column: usize| {
+                (0..2 * f).map(|row| found.at(row, column)[0].powi(2)).sum::<f64>().sqrt() * radii[column]
+            };
             let mut order: Vec<usize> = (0..2 * f).collect();
             order.sort_by(|&a, &b| size(b).total_cmp(&size(a)).then(a.cmp(&b)));
             let sorted = DMatrix::from_fn(2 * f, 2 * f, |row, column| found.at(row, order[column])[0]);
@@ -146,7 +150,8 @@ impl Frame {
         let n = columns.rows / 3;
         let weights = [(0, 1.0), (n, units.motion)];
         let mut direct = Models::zero(space, columns.columns, columns.columns);
-        let taken = weights.into_iter().flat_map(|(block, weight)| self.independent.iter().map(move |i| (block + i, weight)));
+        let taken =
+            weights.into_iter().flat_map(|(block, weight)| self.independent.iter().map(move |i| (block + i, weight)));
         for (place, (row, weight)) in taken.enumerate() {
             for column in 0..columns.columns {
                 direct.at_mut(place, column).copy_from_slice(columns.at(row, column));
@@ -188,7 +193,10 @@ impl Frame {
 
     /// The inverse, from the last frame's where that is near.
     fn refine_inverse(&mut self, space: &ModelSpace) -> Result<(), Lost> {
-        let kept = self.inverse.take().and_then(|mut inverse| inverse.refine_inverse_of(space, &self.basis).then_some(inverse));
+        let kept = self
+            .inverse
+            .take()
+            .and_then(|mut inverse| inverse.refine_inverse_of(space, &self.basis).then_some(inverse));
         let inverse = match kept {
             Some(inverse) => inverse,
             None => {
@@ -258,7 +266,8 @@ fn pivots(slow: &Models, n: usize, f: usize) -> Vec<usize> {
     let mut matrix = DMatrix::from_fn(n, f, |row, column| slow.at(row, column)[0]);
     let mut chosen = Vec::new();
     for _ in 0..f {
-        let place = matrix.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(place, _)| place);
+        let place =
+            matrix.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(place, _)| place);
         let (row, column) = (place % n, place / n);
         chosen.push(row);
         let pivot_row = matrix.row(row) / matrix[(row, column)];

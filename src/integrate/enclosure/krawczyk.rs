@@ -51,7 +51,9 @@ mod tests {
 
     #[test]
     fn a_contraction_is_enclosed_and_an_expansion_is_not() {
-        let image = |factor: f64| move |_: &[f64]| Image { missed: vec![1.0, 0.5], contraction: vec![factor, 0.1, 0.0, factor] };
+        let image = |factor: f64| {
+            move |_: &[f64]| Image { missed: vec![1.0, 0.5], contraction: vec![factor, 0.1, 0.0, factor] }
+        };
         let found = enclose(vec![1e-9, 1e-9], image(0.5)).unwrap();
         // y₂ = 0.5/(1 − 0.5) = 1, y₁ = (1 + 0.1)/(1 − 0.5) = 2.2.
         assert!((2.2..3.0).contains(&found[0]) && (1.0..1.4).contains(&found[1]), "{found:?}");

@@ -59,7 +59,8 @@ impl Models {
         let mut part = Self::zero(space, rows.len(), columns.len());
         for (place, row) in rows.enumerate() {
             let length = columns.len() * self.size;
-            part.values[place * length..][..length].copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
+            part.values[place * length..][..length]
+                .copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
         }
         part
     }
@@ -157,7 +158,9 @@ impl Models {
 
     /// `self ← −self`.
     pub fn negate(&mut self) {
-        self.values.chunks_exact_mut(self.size).for_each(|model| model[..self.size - 1].iter_mut().for_each(|c| *c = -*c));
+        self.values
+            .chunks_exact_mut(self.size)
+            .for_each(|model| model[..self.size - 1].iter_mut().for_each(|c| *c = -*c));
     }
 
     /// `self += other`.

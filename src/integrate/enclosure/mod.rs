@@ -38,7 +38,6 @@ use crate::program::{Coefficients, EquationsProgram, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
 
-
 /// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder hangs on it.
 const MOTION_TIME: f64 = 0.1;
 

@@ -1,7 +1,7 @@
 //! One step of an enclosure: see the head of the module.
 
-use symdiff::Interval;
 use symdiff::taylor_model::up;
+use symdiff::{Interval, ModelMemory};
 
 use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds, larger};
@@ -21,7 +21,7 @@ struct Slopes {
     by_state: Models,
 }
 
-impl Enclosure<'_> {
+impl<'s> Enclosure<'s> {
     fn coordinates(&self) -> usize {
         self.program.layout.q.len()
     }
@@ -98,7 +98,7 @@ impl Enclosure<'_> {
         let columns = self.columns();
         let of_state = columns.part(space, 0..2 * n, 0..3 * n);
         let Slopes { by_state, .. } = self.slopes();
-        let inverse = self.inverse.clone().ok_or(Lost::Unproven)?;
+        let inverse = self.inverse.take().ok_or(Lost::Unproven)?;
         let pull = by_state.approximate_times(space, &of_state);
         let mut follows = inverse.approximate_times(space, &pull).without_radii();
         follows.negate();
@@ -108,6 +108,7 @@ impl Enclosure<'_> {
         // What A z and Y z do to each coordinate: q₊, v₊, q̂₊, v̂₊, w₊.
         let (turned, moved) = self.turn(&columns, &follows);
         let moved_sizes = moved.bounds(space);
+        let mut memory = self.take_memory();
         let spread_of = |y: &[f64]| -> Vec<f64> {
             // Of q₊, v₊, w₊, λ₊.
             let mut spread = apply_bounds(&moved_sizes, &self.radii);
@@ -126,26 +127,20 @@ impl Enclosure<'_> {
             self.spread.iter().map(|spread| 1.5 * spread).collect()
         };
         let (mut forcing, mut rest) = (Vec::new(), Vec::new());
-        let found = {
-            let radii = self.radii.clone();
-            let spreads = |y: &[f64]| spread_of(y);
-            // The closure needs the memory, which `self` owns.
-            let mut memory = self.memory.clone();
-            krawczyk::enclose(first, |y| {
-                self.place_in(&mut memory, &solution, Some(&spreads(y)));
-                let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
-                let contraction = inverse.times(space, &by_unknown).from_identity(space).bounds(space);
-                let mut left = by_unknown.times(space, &follows);
-                left.add(space, &by_state.times(space, &of_state));
-                let of_remainder = apply_bounds(&left.bounds(space), &radii);
-                let total: Vec<f64> = missed.iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
-                let missed = apply_bounds(&sizes, &total);
-                (forcing, rest) = (total, contraction.clone());
-                Image { missed, contraction }
-            })?
-        };
-        let spreads = spread_of(&found);
-        self.place(&solution, Some(&spreads));
+        let found = krawczyk::enclose(first, |y| {
+            self.place_in(&mut memory, &solution, Some(&spread_of(y)));
+            let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
+            let contraction = inverse.times(space, &by_unknown).from_identity(space).bounds(space);
+            let mut left = by_unknown.times(space, &follows);
+            left.add(space, &by_state.times(space, &of_state));
+            let of_remainder = apply_bounds(&left.bounds(space), &self.radii);
+            let total: Vec<f64> = missed.iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
+            let missed = apply_bounds(&sizes, &total);
+            (forcing, rest) = (total, contraction.clone());
+            Image { missed, contraction }
+        })?;
+        self.place_in(&mut memory, &solution, Some(&spread_of(&found)));
+        self.memory = memory;
 
         // y = −C η + (I − C J) y, |η| ≤ `forcing`: what the first part does is known, of the second only how large it is.
         let forced = self.force(&inverse);
@@ -153,8 +148,7 @@ impl Enclosure<'_> {
         let rest = apply_bounds(&rest, &found);
         let radii = [&self.radii[..], &forcing].concat();
         self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &push)?;
-        debug_assert_eq!(count, found.len());
-        self.spread = found;
+        (self.inverse, self.spread) = (Some(inverse), found);
         self.before.insert(0, solution);
         self.before.truncate(3);
         Ok(())
@@ -206,14 +200,19 @@ impl Enclosure<'_> {
         sum
     }
 
+    /// The memory, to be put back: what fills it reads all else of `self`.
+    fn take_memory(&mut self) -> ModelMemory<'s> {
+        std::mem::replace(&mut self.memory, ModelMemory::new(self.space, 0, &[]))
+    }
+
     /// Sets q₊, v₊, w₊, λ₊ in the memory from x and λ₊, with further radii (n, n, n + m) or as polynomials.
     fn place(&mut self, solution: &Models, radii: Option<&[f64]>) {
-        let mut memory = std::mem::replace(&mut self.memory, symdiff::ModelMemory::new(self.space, 0, &[]));
+        let mut memory = self.take_memory();
         self.place_in(&mut memory, solution, radii);
         self.memory = memory;
     }
 
-    fn place_in(&self, memory: &mut symdiff::ModelMemory, solution: &Models, radii: Option<&[f64]>) {
+    fn place_in(&self, memory: &mut ModelMemory, solution: &Models, radii: Option<&[f64]>) {
         let n = self.coordinates();
         let layout = &self.program.layout;
         let radius = self.space.size() - 1;
@@ -252,14 +251,14 @@ impl Enclosure<'_> {
     }
 
     fn slopes(&mut self) -> Slopes {
-        let mut memory = std::mem::replace(&mut self.memory, symdiff::ModelMemory::new(self.space, 0, &[]));
+        let mut memory = self.take_memory();
         let slopes = self.slopes_in(&mut memory);
         self.memory = memory;
         slopes
     }
 
     /// ∂F at what the memory holds.
-    fn slopes_in(&self, memory: &mut symdiff::ModelMemory) -> Slopes {
+    fn slopes_in(&self, memory: &mut ModelMemory) -> Slopes {
         let (n, space, gains) = (self.coordinates(), self.space, &self.gains);
         let program = self.program;
         memory.run(program.slopes());
@@ -277,7 +276,8 @@ impl Enclosure<'_> {
         program.constraint_by_position.iter().for_each(|&(row, column, slot)| add(n + row, column, None, slot));
         let inverse_gain = Interval::point(1.0) / gains.b;
         by_q.iter().for_each(|&(row, column, slot)| by_state.at_mut(row, column).copy_from_slice(memory.model(slot)));
-        by_v.iter().for_each(|&(row, column, slot)| by_state.at_mut(row, n + column).copy_from_slice(memory.model(slot)));
+        by_v.iter()
+            .for_each(|&(row, column, slot)| by_state.at_mut(row, n + column).copy_from_slice(memory.model(slot)));
         for &(row, column, slot) in &program.constraint_by_position {
             space.scale(inverse_gain, memory.model(slot), by_state.at_mut(n + row, column));
         }
@@ -336,7 +336,14 @@ impl Enclosure<'_> {
     }
 
     /// The next state's polynomials, frame and radii; |yᵢ| ≤ `found` apart from what `turned` has, n.
-    fn finish(&mut self, solution: &Models, turned: &Models, radii: &[f64], found: &[f64], push: &Models) -> Result<(), Lost> {
+    fn finish(
+        &mut self,
+        solution: &Models,
+        turned: &Models,
+        radii: &[f64],
+        found: &[f64],
+        push: &Models,
+    ) -> Result<(), Lost> {
         let (n, space) = (self.coordinates(), self.space);
         let radius = space.size() - 1;
         let gains = self.gains;
