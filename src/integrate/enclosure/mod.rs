@@ -11,8 +11,7 @@
 //! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the differential
 //! equation's solution is not.
 //!
-//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, with an orthonormal frame A(ξ) of polynomials
-//! ([`frame`]). A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ),
+//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]). A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ),
 //! and proves by Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
 //!
 //! ```text
