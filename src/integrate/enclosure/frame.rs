@@ -19,7 +19,7 @@
 //! matrix's inverse. V brings the map of a gap ν and its derivatives, the same 3 × 3 numbers for every constraint, nearly
 //! to diagonal form, so that absolute values contract too. T is what accelerations have beside.
 
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
@@ -70,9 +70,9 @@ impl Frame {
     ) -> Self {
         let (n, f) = (tangent.rows, tangent.columns);
         let mut slow = Models::zero(space, 3 * n, 2 * f);
-        for column in 0..f {
+        for (column, &leader) in independent.iter().enumerate() {
             for row in 0..n {
-                let factor = units.scale[independent[column]] / units.scale[row];
+                let factor = units.scale[leader] / units.scale[row];
                 for (row, column, factor) in [
                     (row, column, factor),
                     (row, f + column, factor / units.motion),
@@ -85,7 +85,7 @@ impl Frame {
             }
         }
         let turned = DMatrix::identity(2 * f, 2 * f);
-        let fading = fading(gains);
+        let (_, fading) = gap_map(gains);
         let basis = slow.clone();
         let mut frame = Self { independent, basis, inverse: None, turned, fading };
         frame.basis = frame.complete(space, units, &slow, push);
@@ -224,7 +224,7 @@ impl Frame {
         let inverse = self.inverse.as_ref().ok_or(Lost::Unproven)?;
         let found = inverse.times(space, moved);
         turn(&mut self.turned, &found);
-        let rest = inverse.times(space, &self.basis).from_identity(space);
+        let rest = inverse.times(space, &self.basis).off_identity(space);
         let mut entering = apply_bounds(&inverse.bounds(space), fresh);
         let mut coordinates = apply_bounds(&found.bounds(space), radii);
         let rough: Vec<f64> = coordinates.iter().zip(&entering).map(|(a, b)| up(a + b)).collect();
@@ -236,7 +236,7 @@ impl Frame {
         let mut of_slow = apply_bounds(&turned.bounds(space), radii);
         let entering = apply_bounds(&back.bounds(space), &entering[..slow]);
         of_slow.iter_mut().zip(&entering).for_each(|(z, more)| *z = up(*z + more));
-        let rest = back.times(space, &Models::constant(space, &self.turned)).from_identity(space);
+        let rest = back.times(space, &Models::constant(space, &self.turned)).off_identity(space);
         let rough = of_slow.clone();
         add_skew(space, &rest, &rough, &mut of_slow)?;
         coordinates[..slow].copy_from_slice(&of_slow);
@@ -248,8 +248,9 @@ impl Frame {
 /// Adds |Δ x| to `to`, for x = (what is bounded by `rough`) + Δ x.
 fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) -> Result<(), Lost> {
     let norm = skew.row_norm(space);
-    // Written so that not a number is lost too.
-    if !(norm < 0.5) {
+    // Not a number is not small.
+    let small = norm < 0.5;
+    if !small {
         return Err(Lost::Unproven);
     }
     let largest = up(rough.iter().copied().fold(0.0, larger) / (1.0 - norm));
@@ -278,8 +279,8 @@ fn pivots(slow: &Models, n: usize, f: usize) -> Vec<usize> {
     chosen
 }
 
-/// V: the map of (ν, h ν̇, h² ν̈) by a step that closes the gap, x = −ν/b, is V (nearly diagonal) V⁻¹.
-fn fading(gains: &Gains) -> Matrix3<f64> {
+/// The map of (ν, h ν̇, h² ν̈) by a step that closes the gap, x = −ν/b, and V: the map is V (nearly diagonal) V⁻¹.
+fn gap_map(gains: &Gains) -> (Matrix3<f64>, Matrix3<f64>) {
     let Gains { h, b, c, q_a, q_w, v_a, v_w, a_x, a_w } = *gains;
     let [h, b, c, q_a, q_w, v_a, v_w, a_x, a_w] = [h, b, c, q_a, q_w, v_a, v_w, a_x, a_w].map(Interval::middle);
     let column = |q: f64, v: f64, w: f64| {
@@ -292,5 +293,26 @@ fn fading(gains: &Gains) -> Matrix3<f64> {
     let (basis, triangle) = map.schur().unpack();
     let largest = [(0, 1), (0, 2), (1, 2)].map(|place| triangle[place].abs()).into_iter().fold(0.0, f64::max);
     let shrink = (OFF_DIAGONAL / largest).min(1.0);
-    basis * Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, shrink, shrink * shrink))
+    (map, basis * Matrix3::from_diagonal(&Vector3::new(1.0, shrink, shrink * shrink)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Coefficients;
+
+    #[test]
+    fn gaps_fade_in_absolute_values_too() {
+        // The scheme's damping at infinite frequency, (1 + α)/(1 − α), and what is left beside the diagonal.
+        for alpha in [-0.05, -0.1, -0.2, -1.0 / 3.0] {
+            let bound = (1.0 + alpha) / (1.0 - alpha) + 2.0 * OFF_DIAGONAL;
+            for h in [1e-2, 1e-3, 1e-5] {
+                let (map, fading) = gap_map(&Gains::new(Coefficients::new(alpha), h));
+                let fades = fading.try_inverse().unwrap() * map * fading;
+                let norm =
+                    (0..3).map(|row| (0..3).map(|column| fades[(row, column)].abs()).sum::<f64>()).fold(0.0, f64::max);
+                assert!(norm < bound, "α = {alpha}, h = {h}: {norm}");
+            }
+        }
+    }
 }

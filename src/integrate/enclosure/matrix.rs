@@ -146,7 +146,7 @@ impl Models {
     }
 
     /// I − self, for a square matrix.
-    pub fn from_identity(mut self, space: &ModelSpace) -> Self {
+    pub fn off_identity(mut self, space: &ModelSpace) -> Self {
         self.negate();
         let one = Self::identity(space, 1);
         for i in 0..self.rows {
@@ -201,7 +201,7 @@ impl Models {
     pub fn refine_inverse_of(&mut self, space: &ModelSpace, matrix: &Self) -> bool {
         let mut last = f64::INFINITY;
         for _ in 0..MAX_REFINEMENTS {
-            let rest = self.approximate_times(space, matrix).from_identity(space);
+            let rest = self.approximate_times(space, matrix).off_identity(space);
             let norm = rest.row_norm(space);
             if norm <= REFINED || norm >= last {
                 break;

@@ -8,14 +8,15 @@
 //! ```
 //!
 //! and linear updates. Enclosed is the exact solution of these equations in real numbers, with the step size and the
-//! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the differential
-//! equation's solution is not.
+//! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the
+//! differential equation's solution is not.
 //!
-//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]). A step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ),
-//! and proves by Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
+//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]). A
+//! step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ), and proves by
+//! Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
 //!
 //! ```text
-//! y = −C (ρ + (J Y + G) z) + (I − C J) y,      J ∋ ∂F/∂x,  G ∋ ∂F/∂(q̂, v̂) A  over the enclosure,  C ≈ J⁻¹,  Y ≈ −C G
+//! y = −C (ρ + (J Y + G) z) + (I − C J) y,      J ∋ ∂F/∂x,  G ∋ ∂F/∂(q̂, v̂) A over the enclosure,  C ≈ J⁻¹,  Y ≈ −C G
 //! ```
 //!
 //! Brouwer's theorem gives a solution where the right side maps a box |y| ≤ g into itself, ‖I − C J‖ < 1 that there is

@@ -180,7 +180,7 @@ impl Equations<'_> {
         let missed = apply_bounds(&sizes, &self.residual(space, memory).bounds(space));
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, memory, Some(y));
-            let contraction = inverse.times(space, &self.matrix(space, memory)).from_identity(space).bounds(space);
+            let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
             Image { missed: missed.clone(), contraction }
         })?;
         self.set_radii(space, memory, Some(&spread));

@@ -130,7 +130,7 @@ impl<'s> Enclosure<'s> {
         let found = krawczyk::enclose(first, |y| {
             self.place_in(&mut memory, &solution, Some(&spread_of(y)));
             let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
-            let contraction = inverse.times(space, &by_unknown).from_identity(space).bounds(space);
+            let contraction = inverse.times(space, &by_unknown).off_identity(space).bounds(space);
             let mut left = by_unknown.times(space, &follows);
             left.add(space, &by_state.times(space, &of_state));
             let of_remainder = apply_bounds(&left.bounds(space), &self.radii);
@@ -352,7 +352,7 @@ impl<'s> Enclosure<'s> {
         let of_position = gains.b + gains.h * gains.c + gains.q_a * gains.a_x - gains.q_w;
         let effect = [of_position.magnitude(), of_velocity.magnitude(), 1.0];
         let mut fresh = vec![0.0; 3 * n];
-        for i in 0..n {
+        for (i, further) in found.iter().enumerate() {
             let state = |block: usize| self.state.at(block * n + i, 0);
             let x = solution.at(i, 0);
             let [_, _, position, velocity] = self.advance_coordinate(state(0), state(1), state(2), x);
@@ -361,7 +361,7 @@ impl<'s> Enclosure<'s> {
                 let target = self.state.at_mut(row, 0);
                 target.copy_from_slice(model);
                 target[radius] = 0.0;
-                fresh[row] = up((model[radius] + effect[block] * found[i]) / self.units.scale[row]);
+                fresh[row] = up((model[radius] + effect[block] * further) / self.units.scale[row]);
             }
         }
 
