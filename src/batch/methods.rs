@@ -41,6 +41,8 @@ pub(super) struct Outcome {
     /// Who has which part in the spread of every output in every row, where it is known.
     pub(super) parts: Vec<Vec<Option<Parts>>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
+    /// What is to be told of bounds that do not go on to the end.
+    pub(super) note: Option<String>,
     pub(super) summary: MethodSummary,
     /// The sample whose local error was largest against the tolerance, and how large.
     pub(super) strained: Option<(Vec<f64>, f64)>,
@@ -352,7 +354,7 @@ struct Found {
 }
 
 /// What a method finds of every output in every row.
-struct Lines {
+pub(super) struct Lines {
     bands: Vec<Vec<Range>>,
     surrogate: Vec<Vec<f64>>,
     parts: Vec<Vec<Option<Parts>>>,
@@ -360,7 +362,7 @@ struct Lines {
 
 impl Lines {
     /// Of which nothing is known yet.
-    fn new(run: &Run) -> Self {
+    pub(super) fn new(run: &Run) -> Self {
         let (outputs, rows) = (run.outputs(), run.schedule.rows);
         Self {
             bands: vec![vec![Range::UNKNOWN; rows]; outputs],
@@ -374,7 +376,7 @@ impl Lines {
         self.parts[output][row] = found.parts;
     }
 
-    fn set(&mut self, row: usize, output: usize, range: Range, surrogate: f64) {
+    pub(super) fn set(&mut self, row: usize, output: usize, range: Range, surrogate: f64) {
         self.bands[output][row] = range;
         self.surrogate[output][row] = surrogate;
     }
@@ -389,12 +391,13 @@ impl Lines {
         }
     }
 
-    fn outcome(self, done: FleetRun, summary: MethodSummary) -> Outcome {
+    pub(super) fn outcome(self, done: FleetRun, summary: MethodSummary) -> Outcome {
         Outcome {
             bands: self.bands,
             surrogate: self.surrogate,
             parts: self.parts,
             stop: done.stop,
+            note: None,
             summary,
             strained: done.strained,
         }

@@ -2,11 +2,12 @@
 //!
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
-//! bounds before the next is run; `compose` evaluates outputs from expanded coordinates. `cost` runs one model with many
-//! settings, to tell what accuracy costs.
+//! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
+//! `adapt` expands them as far as a tolerance asks for. `cost` runs one model with many settings, to tell what accuracy costs.
 
 mod adapt;
 mod apportion;
+mod certify;
 mod compose;
 mod cost;
 mod finding;
@@ -57,6 +58,12 @@ pub enum RunError {
         "`{method}` of {parameters} uncertain parameters needs {solves:.2e} simulations: say in the model how many it shall take"
     )]
     TooMany { method: &'static str, solves: f64, parameters: usize },
+    #[error("certified bounds are for at most two uncertain parameters, not {parameters}")]
+    TooManyToCertify { parameters: usize },
+    #[error(
+        "certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed"
+    )]
+    CertifiedSteps,
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
@@ -71,7 +78,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
     pool.install(|| {
         let system = mechanics::build(description)?;
         let study = Study::new(description, system, &options)?;
-        Ok(study.run()?)
+        study.run()
     })
 }
 

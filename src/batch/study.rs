@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::apportion::Parts;
+use super::certify::MOST_PARAMETERS;
 use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
@@ -80,7 +81,7 @@ impl<'a> Study<'a> {
     }
 
     /// Runs every method.
-    pub(super) fn run(&self) -> Result<(Bounds, Summary), SimulationError> {
+    pub(super) fn run(&self) -> Result<(Bounds, Summary), RunError> {
         let simulation = &self.description.simulation;
         match simulation.stepping {
             Stepping::Fixed(step) => {
@@ -88,7 +89,8 @@ impl<'a> Study<'a> {
                 let results = self.methods(&schedule, None)?;
                 Ok(self.conclude(results, None))
             }
-            Stepping::Tolerance(tolerance) => self.run_controlled(tolerance),
+            Stepping::Tolerance(_) if self.request.certified => Err(RunError::CertifiedSteps),
+            Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
         }
     }
 
@@ -141,6 +143,9 @@ impl<'a> Study<'a> {
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some(probes) = &probes {
             methods = self.requested(&run, probes)?;
+            if self.request.certified {
+                methods.push((Method::Certified, run.certified()));
+            }
             if self.certify_time {
                 let schedule = schedule.refined(2);
                 halved = self.requested(&Run { schedule: &schedule, tolerance: None, ..run }, probes)?;
@@ -230,7 +235,8 @@ impl<'a> Study<'a> {
             times: (0..rows).map(|row| results.schedule.time(row)).collect(),
             outputs: outputs.collect(),
         };
-        let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note);
+        let notes = || results.outcomes().find_map(|outcome| outcome.note.clone());
+        let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note).or_else(notes);
         let summary = self.summary(results, &bounds, failure);
         (bounds, summary)
     }
@@ -375,6 +381,10 @@ fn errors(bounds: &Bounds) -> Vec<ErrorSummary> {
 /// # Errors
 /// Where a default would make too many samples (the model's own requests were checked when it was read).
 fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Result<BoundsRequest, RunError> {
+    let certified = model.certified || methods.is_some_and(|methods| methods.contains(&Method::Certified));
+    if certified && k > MOST_PARAMETERS {
+        return Err(RunError::TooManyToCertify { parameters: k });
+    }
     let Some(methods) = methods else { return Ok(model.clone()) };
     let asked = |method: Method| methods.contains(&method);
     let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::unspecified(k, model.tolerance));
@@ -384,6 +394,7 @@ fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Res
         chebyshev: asked(Method::Chebyshev).then(chebyshev),
         taylor: asked(Method::Taylor).then(taylor),
         scan: asked(Method::Scan).then(scan),
+        certified,
         ..*model
     };
     let nodes = |request: &ChebyshevRequest| match &request.degree {

@@ -56,11 +56,12 @@ pub enum Method {
     Chebyshev,
     Taylor,
     Scan,
+    Certified,
 }
 
 impl Method {
     /// All of them, in the order in which they are reported.
-    pub const ALL: [Self; 3] = [Self::Chebyshev, Self::Taylor, Self::Scan];
+    pub const ALL: [Self; 4] = [Self::Chebyshev, Self::Taylor, Self::Scan, Self::Certified];
 
     /// Name in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -68,6 +69,7 @@ impl Method {
             Self::Chebyshev => "chebyshev",
             Self::Taylor => "taylor",
             Self::Scan => "scan",
+            Self::Certified => "certified",
         }
     }
 }

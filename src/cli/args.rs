@@ -59,10 +59,14 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// These methods instead of the model's: chebyshev, taylor, scan [default: all that the model asks for].
+    /// These methods instead of the model's: chebyshev, taylor, scan, certified [default: all that the model asks for].
     #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
     #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,
+
+    /// Add certified bounds: proven for every parameter of the box, of the motion as the scheme's steps define it.
+    #[arg(long)]
+    pub certify: bool,
 
     /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]

@@ -21,6 +21,7 @@ struct Request {
     overrides: Vec<Override>,
     /// Absent: those that the model asks for.
     methods: Option<Vec<Method>>,
+    certify: bool,
     output: Option<PathBuf>,
     threads: Option<usize>,
     quiet: bool,
@@ -109,6 +110,7 @@ impl Request {
             models: args.models,
             overrides: args.set,
             methods: if methods.is_empty() { None } else { Some(methods) },
+            certify: args.certify,
             output: args.output,
             threads: args.threads.map(usize::from),
             quiet: args.quiet,
@@ -132,7 +134,8 @@ fn jobs(models: Vec<Description>, request: &Request) -> Result<Vec<Job>, Failure
     let several = models.len() > 1;
     let mut taken: HashMap<String, &Path> = HashMap::new();
     let mut jobs = Vec::new();
-    for (model, path) in models.into_iter().zip(&request.models) {
+    for (mut model, path) in models.into_iter().zip(&request.models) {
+        model.bounds.certified |= request.certify;
         let name = file_stem(&model.name);
         // Folders that differ only in upper and lower case are one on some systems.
         if let Some(other) = taken.insert(name.to_lowercase(), path) {

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod closure;
+mod enclosure;
 mod fleet;
 mod hht;
 mod jets;
@@ -12,6 +13,7 @@ mod simulator;
 mod steps;
 
 pub use closure::{Closure, Points, choose_independent};
+pub use enclosure::{Certifier, Enclosure, Lost};
 pub use fleet::{Fleet, Observed, Stop};
 pub use hht::{Stepper, Stuck};
 pub use jets::JetRun;

@@ -399,6 +399,8 @@ pub struct BoundsRequest {
     pub taylor: Option<TaylorRequest>,
     #[allow(missing_docs)]
     pub scan: Option<ScanRequest>,
+    /// Bounds that are proven.
+    pub certified: bool,
 }
 
 /// Where the search for bounds within a tolerance ends at the latest.
@@ -422,7 +424,7 @@ impl BoundsRequest {
 
     /// Whether no method is asked for.
     pub fn is_empty(&self) -> bool {
-        self.chebyshev.is_none() && self.taylor.is_none() && self.scan.is_none()
+        self.chebyshev.is_none() && self.taylor.is_none() && self.scan.is_none() && !self.certified
     }
 }
 

@@ -1,6 +1,7 @@
 //! System → [`Program`]: tapes for the start, for one step of a scheme, and for what is observed.
 
 mod compile;
+mod equation_tapes;
 mod equations;
 mod layout;
 mod newton_matrix;
@@ -9,6 +10,7 @@ mod sparse_lu;
 mod start;
 
 pub use compile::{Probe, Program, WatchedPivot, compile};
+pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use layout::Layout;
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
 pub use sparse_lu::{PROBES, Singular};

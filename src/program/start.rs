@@ -170,7 +170,7 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
 }
 
 /// Parameters at stage 0, everything else at stage 1.
-fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
+pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     let mut inputs = Vec::new();
     let mut add = |symbols: &[Expr], start: usize, stage: usize| {
         inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input { symbol, stage, slot: slot as u32 }));

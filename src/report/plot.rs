@@ -59,6 +59,7 @@ fn style(method: Method) -> Style {
         Method::Chebyshev => ("Chebyshev", RGBColor(0, 114, 178), 2.0, 0.16, None),
         Method::Taylor => ("Taylor", RGBColor(240, 160, 20), 2.0, 0.18, Some([10.0, 7.0])),
         Method::Scan => ("Scan", RGBColor(130, 25, 80), 2.0, 0.10, Some([2.0, 6.5])),
+        Method::Certified => ("Certified", RGBColor(0, 120, 60), 2.0, 0.08, Some([14.0, 3.0])),
     };
     Style { label, color, edge, fill, dashes }
 }

@@ -75,7 +75,7 @@ pub struct ContributionSummary {
     pub total: f64,
 }
 
-/// What a method took. `method` is `nominal`, `probes`, `chebyshev`, `taylor` or `scan`.
+/// What a method took. `method` is `nominal`, `probes`, `chebyshev`, `taylor`, `scan` or `certified`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct MethodSummary {

@@ -85,6 +85,7 @@ fn intervals_of_no_width_give_the_nominal_motion() {
                     // A sweep more than Newton's iteration: its tolerance of 1e-11, in every step anew.
                     Method::Taylor => 1e-10,
                     Method::Scan => 0.0,
+                    Method::Certified => unreachable!("no model asks for it"),
                 };
                 assert!(below <= allowed && above <= allowed, "{name}: {:?} {below:e} {above:e}", band.method);
             }

@@ -8,6 +8,7 @@ mod adams_joints;
 mod assembly;
 mod bounds_laws;
 mod car_axis;
+mod certify;
 mod closed_forms;
 mod common;
 mod composition;

@@ -130,7 +130,8 @@ bounds: { chebyshev: { order: 6 }, taylor: { order: 4 }, scan: { points: 9 } }
     for (output, wanted) in bounds.outputs[..2].iter().zip([2.0, 0.0]) {
         for band in &output.bands {
             let off = (band.lower[0] - wanted).abs().max((band.upper[0] - wanted).abs());
-            assert!(off < 1e-12, "{} {:?}: {off:e}", output.name, band.method);
+            // A surrogate may be off by its error.
+            assert!(off < band.error.total[0].max(1e-12), "{} {:?}: {off:e}", output.name, band.method);
         }
     }
     let height = &bounds.outputs[2].bands[0];

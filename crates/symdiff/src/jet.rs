@@ -134,6 +134,20 @@ impl JetSpace {
         self.mul_with(a, b, |r, product| out[r] = product);
     }
 
+    /// `out += a b`.
+    pub fn accumulate(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        if self.monomials.variables() == 1 {
+            // Powers of one variable: a product is a convolution.
+            for (i, &factor) in a.iter().enumerate() {
+                out[i..].iter_mut().zip(b).for_each(|(h, b)| *h += factor * b);
+            }
+            return;
+        }
+        for (r, h) in out.iter_mut().enumerate() {
+            *h += sum(self.pairs(r), a, b);
+        }
+    }
+
     /// `out = a b + c`.
     pub fn mul_add(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
         self.mul_with(a, b, |r, product| out[r] = product + c[r]);

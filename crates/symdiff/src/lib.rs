@@ -6,21 +6,26 @@
 mod derivative;
 mod expr;
 pub mod formula;
+pub mod interval;
 pub mod jet;
 mod jet_memory;
 mod lanes;
+mod model_memory;
 mod scalar;
 mod schedule;
 pub mod sincos;
 mod stages;
 mod tape;
+pub mod taylor_model;
 mod vectorised;
 
 pub use derivative::SparseMatrix;
 pub use expr::{Binary, Expr, Graph, Node, Unary};
 pub use formula::{Formula, SyntaxError};
+pub use interval::Interval;
 pub use jet_memory::JetMemory;
 pub use lanes::{Tile, WIDTHS};
+pub use model_memory::ModelMemory;
 pub use schedule::{Lowered, Outputs, lower};
 pub use stages::{Input, Stages};
 pub use tape::{Op, Operands, Tape};

@@ -1,0 +1,63 @@
+//! Krawczyk's operator: from an approximate solution to a proven enclosure.
+
+use symdiff::taylor_model::up;
+
+use super::Lost;
+use super::matrix::{apply_bounds, larger};
+
+/// Attempts at a box that is mapped into itself.
+const ATTEMPTS: usize = 12;
+
+/// How much larger than its image the next box is tried.
+const INFLATION: f64 = 1.25;
+
+/// What the operator is for a box of corrections |y| ≤ g: a bound of |−C (what is missed)|, and one of |I − C J| with the
+/// derivatives J over the solutions in the box, row by row.
+pub(super) struct Image {
+    pub missed: Vec<f64>,
+    pub contraction: Vec<f64>,
+}
+
+/// A box that the operator maps into itself: for every ξ one solution is in it. `first` is where the search begins.
+///
+/// # Errors
+/// [`Lost::Unproven`] where none is found.
+pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Result<Vec<f64>, Lost> {
+    let mut box_of = first;
+    for _ in 0..ATTEMPTS {
+        let Image { missed, contraction } = image(&box_of);
+        let norm = contraction.chunks_exact(box_of.len()).map(|row| up(row.iter().sum())).fold(0.0, larger);
+        let apply = |y: &[f64]| -> Vec<f64> {
+            apply_bounds(&contraction, y).iter().zip(&missed).map(|(moved, missed)| up(moved + missed)).collect()
+        };
+        let mapped = apply(&box_of);
+        // Written so that not a number is no proof.
+        if norm < 1.0 && mapped.iter().zip(&box_of).all(|(mapped, y)| mapped <= y) {
+            // The image holds the solution too, and so does the image's.
+            return Ok(apply(&mapped));
+        }
+        if mapped.iter().any(|y| !y.is_finite()) {
+            return Err(Lost::Unproven);
+        }
+        let wider = mapped.iter().zip(&box_of).map(|(&mapped, &y)| up(INFLATION * larger(mapped, y.min(mapped))));
+        box_of = wider.collect();
+    }
+    Err(Lost::Unproven)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contraction_is_enclosed_and_an_expansion_is_not() {
+        let image = |factor: f64| {
+            move |_: &[f64]| Image { missed: vec![1.0, 0.5], contraction: vec![factor, 0.1, 0.0, factor] }
+        };
+        let found = enclose(vec![1e-9, 1e-9], image(0.5)).unwrap();
+        // y₂ = 0.5/(1 − 0.5) = 1, y₁ = (1 + 0.1)/(1 − 0.5) = 2.2.
+        assert!((2.2..3.0).contains(&found[0]) && (1.0..1.4).contains(&found[1]), "{found:?}");
+        assert_eq!(enclose(vec![1e-9, 1e-9], image(1.01)), Err(Lost::Unproven));
+        assert_eq!(enclose(vec![1e-9, 1e-9], image(f64::NAN)), Err(Lost::Unproven));
+    }
+}

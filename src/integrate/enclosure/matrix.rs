@@ -1,0 +1,226 @@
+//! Matrices of Taylor models.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+use symdiff::taylor_model::{ModelSpace, Norms};
+
+/// Largest ‖I − C J‖ that is left when an inverse is refined: its square is below rounding.
+const REFINED: f64 = 1e-9;
+
+/// Refinements before an inverse is given up; each squares ‖I − C J‖.
+const MAX_REFINEMENTS: usize = 8;
+
+/// A matrix whose entries are functions of ξ, enclosed.
+#[derive(Clone, Debug)]
+pub(super) struct Models {
+    pub rows: usize,
+    pub columns: usize,
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl Models {
+    pub fn zero(space: &ModelSpace, rows: usize, columns: usize) -> Self {
+        let size = space.size();
+        Self { rows, columns, size, values: vec![0.0; rows * columns * size] }
+    }
+
+    pub fn identity(space: &ModelSpace, dimension: usize) -> Self {
+        let mut identity = Self::zero(space, dimension, dimension);
+        (0..dimension).for_each(|i| identity.at_mut(i, i)[0] = 1.0);
+        identity
+    }
+
+    /// Numbers that do not depend on ξ.
+    pub fn constant(space: &ModelSpace, numbers: &DMatrix<f64>) -> Self {
+        let mut models = Self::zero(space, numbers.nrows(), numbers.ncols());
+        for row in 0..models.rows {
+            (0..models.columns).for_each(|column| models.at_mut(row, column)[0] = numbers[(row, column)]);
+        }
+        models
+    }
+
+    pub fn at(&self, row: usize, column: usize) -> &[f64] {
+        &self.values[(row * self.columns + column) * self.size..][..self.size]
+    }
+
+    pub fn at_mut(&mut self, row: usize, column: usize) -> &mut [f64] {
+        &mut self.values[(row * self.columns + column) * self.size..][..self.size]
+    }
+
+    /// All entries of a row.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.values[row * self.columns * self.size..][..self.columns * self.size]
+    }
+
+    /// Some rows and columns.
+    pub fn part(&self, space: &ModelSpace, rows: Range<usize>, columns: Range<usize>) -> Self {
+        let mut part = Self::zero(space, rows.len(), columns.len());
+        for (place, row) in rows.enumerate() {
+            let length = columns.len() * self.size;
+            part.values[place * length..][..length]
+                .copy_from_slice(&self.row(row)[columns.start * self.size..][..length]);
+        }
+        part
+    }
+
+    /// Some columns.
+    pub fn columns_at(&self, space: &ModelSpace, columns: &[usize]) -> Self {
+        let mut chosen = Self::zero(space, self.rows, columns.len());
+        for row in 0..self.rows {
+            for (place, &column) in columns.iter().enumerate() {
+                chosen.at_mut(row, place).copy_from_slice(self.at(row, column));
+            }
+        }
+        chosen
+    }
+
+    /// [self, other].
+    pub fn beside(&self, space: &ModelSpace, other: &Self) -> Self {
+        let mut both = Self::zero(space, self.rows, self.columns + other.columns);
+        for row in 0..self.rows {
+            let (left, right) = (self.row(row), other.row(row));
+            let length = left.len() + right.len();
+            both.values[row * length..][..left.len()].copy_from_slice(left);
+            both.values[row * length + left.len()..][..right.len()].copy_from_slice(right);
+        }
+        both
+    }
+
+    /// Multiplies a row by a power of two.
+    pub fn scale_row(&mut self, row: usize, factor: f64) {
+        let length = self.columns * self.size;
+        self.values[row * length..][..length].iter_mut().for_each(|c| *c *= factor);
+    }
+
+    /// Only the polynomials.
+    pub fn without_radii(mut self) -> Self {
+        self.values.chunks_exact_mut(self.size).for_each(|model| model[self.size - 1] = 0.0);
+        self
+    }
+
+    fn norms(&self, space: &ModelSpace) -> Vec<Option<Norms>> {
+        let norms = |model: &[f64]| model.iter().any(|&c| c != 0.0).then(|| space.norms(model));
+        self.values.chunks_exact(self.size).map(norms).collect()
+    }
+
+    /// Bound of each entry's absolute value, row by row.
+    pub fn bounds(&self, space: &ModelSpace) -> Vec<f64> {
+        self.values.chunks_exact(self.size).map(|model| space.bound(model)).collect()
+    }
+
+    /// `self · other`.
+    pub fn times(&self, space: &ModelSpace, other: &Self) -> Self {
+        let mut product = Self::zero(space, self.rows, other.columns);
+        let (left, right) = (self.norms(space), other.norms(space));
+        for row in 0..self.rows {
+            for inner in 0..self.columns {
+                let Some(a) = &left[row * self.columns + inner] else { continue };
+                for column in 0..other.columns {
+                    if let Some(b) = &right[inner * other.columns + column] {
+                        let (a, b) = ((self.at(row, inner), a), (other.at(inner, column), b));
+                        space.accumulate(a, b, self.columns, product.at_mut(row, column));
+                    }
+                }
+            }
+        }
+        product
+    }
+
+    /// The polynomials of `self · other`, without what is lost.
+    pub fn approximate_times(&self, space: &ModelSpace, other: &Self) -> Self {
+        let mut product = Self::zero(space, self.rows, other.columns);
+        let length = self.size - 1;
+        let is_zero = |model: &[f64]| model[..length].iter().all(|&c| c == 0.0);
+        let sparse: Vec<bool> = other.values.chunks_exact(self.size).map(is_zero).collect();
+        for row in 0..self.rows {
+            for inner in (0..self.columns).filter(|&inner| !is_zero(self.at(row, inner))) {
+                for column in (0..other.columns).filter(|column| !sparse[inner * other.columns + column]) {
+                    let out = &mut product.at_mut(row, column)[..length];
+                    space.jets().accumulate(&self.at(row, inner)[..length], &other.at(inner, column)[..length], out);
+                }
+            }
+        }
+        product
+    }
+
+    /// I − self, for a square matrix.
+    pub fn off_identity(mut self, space: &ModelSpace) -> Self {
+        self.negate();
+        let one = Self::identity(space, 1);
+        for i in 0..self.rows {
+            let entry = self.at(i, i).to_vec();
+            space.add(one.at(0, 0), &entry, self.at_mut(i, i));
+        }
+        self
+    }
+
+    /// `self ← −self`.
+    pub fn negate(&mut self) {
+        self.values
+            .chunks_exact_mut(self.size)
+            .for_each(|model| model[..self.size - 1].iter_mut().for_each(|c| *c = -*c));
+    }
+
+    /// `self += other`.
+    pub fn add(&mut self, space: &ModelSpace, other: &Self) {
+        let mut sum = vec![0.0; self.size];
+        for (a, b) in self.values.chunks_exact_mut(self.size).zip(other.values.chunks_exact(self.size)) {
+            space.add(a, b, &mut sum);
+            a.copy_from_slice(&sum);
+        }
+    }
+
+    /// `self += factor · other`, polynomials only.
+    pub fn add_scaled(&mut self, other: &Self, factor: f64) {
+        for (a, b) in self.values.chunks_exact_mut(self.size).zip(other.values.chunks_exact(self.size)) {
+            a[..self.size - 1].iter_mut().zip(b).for_each(|(a, b)| *a += factor * b);
+        }
+    }
+
+    /// `self += other`, polynomials only.
+    pub fn add_approximately(&mut self, other: &Self) {
+        self.add_scaled(other, 1.0);
+    }
+
+    /// Largest sum of a row's bounds.
+    pub fn row_norm(&self, space: &ModelSpace) -> f64 {
+        let rows = self.bounds(space);
+        rows.chunks_exact(self.columns.max(1)).map(|row| row.iter().sum::<f64>()).fold(0.0, larger)
+    }
+
+    /// The inverse at the box's centre, as constants; `None` where it has none.
+    pub fn inverse_at_centre(&self, space: &ModelSpace) -> Option<Self> {
+        let centre = DMatrix::from_fn(self.rows, self.columns, |row, column| self.at(row, column)[0]);
+        let inverse = centre.try_inverse()?;
+        Some(Self::constant(space, &inverse))
+    }
+
+    /// Makes `self` a better inverse of a matrix: C ← C + (I − C J) C (Schulz). Whether it is one.
+    pub fn refine_inverse_of(&mut self, space: &ModelSpace, matrix: &Self) -> bool {
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_REFINEMENTS {
+            let rest = self.approximate_times(space, matrix).off_identity(space);
+            let norm = rest.row_norm(space);
+            if norm <= REFINED || norm >= last {
+                break;
+            }
+            last = norm;
+            let change = rest.approximate_times(space, self);
+            self.add_approximately(&change);
+        }
+        last < 1.0 || last.is_infinite()
+    }
+}
+
+/// The larger; not a number if either is not.
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
+/// Σ_j aᵢⱼ xⱼ of non-negative numbers, row by row, rounded up.
+pub(super) fn apply_bounds(matrix: &[f64], x: &[f64]) -> Vec<f64> {
+    let row = |row: &[f64]| symdiff::taylor_model::up(row.iter().zip(x).map(|(a, x)| a * x).sum());
+    matrix.chunks_exact(x.len()).map(row).collect()
+}

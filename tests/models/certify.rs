@@ -1,0 +1,122 @@
+//! Certified bounds: they hold every sample of the ordinary integration, are hardly wider than what samples reach, and
+//! say where they end.
+//!
+//! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
+//! outside by `NEWTON` times the size of what is observed, and no more.
+
+use mbint::batch::{self, Options};
+use mbint::bounds::{Bounds, Method};
+use mbint::model::Description;
+
+use super::common::*;
+
+/// Error of an ordinary sample: Newton's tolerance, gathered over the steps.
+const NEWTON: f64 = 1e-9;
+
+fn certify(description: Description) -> (Bounds, Option<String>) {
+    let options =
+        Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), ..Options::default() };
+    let (bounds, summary) = batch::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
+    (bounds, summary.failure)
+}
+
+/// Asserts that every row holds the scan; the largest overestimation of the width, relative to the scan's, over rows
+/// from `from` seconds on, is returned for each output.
+#[track_caller]
+fn overestimation(bounds: &Bounds, from: f64) -> Vec<f64> {
+    let mut found = Vec::new();
+    for output in &bounds.outputs {
+        let (scan, certified) = (band(output, Method::Scan), band(output, Method::Certified));
+        let size = largest(output.nominal.iter().copied());
+        let mut worst = 0.0_f64;
+        for row in 0..bounds.times.len() {
+            let (lower, upper) = (certified.lower[row], certified.upper[row]);
+            let slack = NEWTON * size;
+            let held = lower <= scan.lower[row] + slack && upper >= scan.upper[row] - slack;
+            assert!(held, "{} at {} s: [{lower}, {upper}]", output.name, bounds.times[row]);
+            if bounds.times[row] >= from {
+                let (width, true_width) = (upper - lower, scan.upper[row] - scan.lower[row]);
+                worst = worst.max((width - true_width) / true_width);
+            }
+        }
+        found.push(worst);
+    }
+    found
+}
+
+#[test]
+fn every_sample_of_the_pendulum_is_held() {
+    let (bounds, failure) = certify(model("pendulum").duration(3.0).scan(101).observing(&["bob.x", "bob.y"]));
+    assert_eq!(failure, None);
+    // Measured 4.6e-5 and 6.9e-6.
+    for (found, name) in overestimation(&bounds, 0.2).into_iter().zip(["x", "y"]) {
+        assert!(found < 2e-4, "{name}: {found:e}");
+    }
+}
+
+#[test]
+fn every_sample_of_the_slider_crank_is_held() {
+    let (bounds, failure) = certify(model("slider_crank_one").duration(0.4).scan(101));
+    assert_eq!(failure, None);
+    // Measured 4.8e-6 and 2.5e-6.
+    for (found, output) in overestimation(&bounds, 0.05).into_iter().zip(&bounds.outputs) {
+        assert!(found < 2e-5, "{}: {found:e}", output.name);
+    }
+}
+
+#[test]
+fn two_parameters() {
+    let (bounds, failure) = certify(model("slider_crank").duration(0.1).scan(31));
+    assert_eq!(failure, None);
+    for found in overestimation(&bounds, 0.05) {
+        // Measured 3.8e-5.
+        assert!(found < 2e-4, "{found:e}");
+    }
+}
+
+#[test]
+fn no_width_gives_the_nominal_motion() {
+    let description = model("slider_crank_one").uncertain("l1", 0.0).duration(0.5).scan(2);
+    let (bounds, failure) = certify(description);
+    assert_eq!(failure, None);
+    for output in &bounds.outputs {
+        let certified = band(output, Method::Certified);
+        let (below, above) = (distance(&certified.lower, &output.nominal), distance(&certified.upper, &output.nominal));
+        // Rounding errors of 500 steps, each as large and as adverse as it may be, integrated twice: measured 2e-9.
+        assert!(below < 1e-8 && above < 1e-8, "{}: {below:e} {above:e}", output.name);
+        for (lower, upper) in certified.lower.iter().zip(&certified.upper) {
+            assert!(lower <= upper);
+        }
+    }
+}
+
+#[test]
+fn what_is_lost_is_unknown_and_said() {
+    // A box in which cranks turn over and others do not: no polynomial follows.
+    let (bounds, failure) =
+        certify(model("pendulum").uncertain("length", 0.3).step(2e-3).duration(4.0).rows_every(0.5).scan(11));
+    let failure = failure.expect("4 s are too long for ±30 %");
+    assert!(failure.contains("certified bounds are unknown from there on") && failure.contains(" s "), "{failure}");
+    let x = output(&bounds, "x");
+    let certified = band(x, Method::Certified);
+    assert_eq!(certified.lower.len(), bounds.times.len());
+    assert!(certified.lower[0] <= -1.3 && certified.upper[0] >= -0.7);
+    assert!(certified.lower.last().unwrap().is_nan() && certified.upper.last().unwrap().is_nan());
+    // The scan goes on.
+    assert!(band(x, Method::Scan).lower.iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn what_cannot_be_certified_is_refused() {
+    let refused = |description: &Description| {
+        let options = Options { methods: Some(vec![Method::Certified]), threads: Some(1), ..Options::default() };
+        batch::run(description, options).unwrap_err().to_string()
+    };
+    let many = read(
+        "model: many\nparameters: { a: { value: 1, tolerance: 1% }, b: { value: 1, tolerance: 1% }, c: { value: 1, tolerance: 1% } }\n\
+         bodies: { bob: { mass: a*b*c, coordinates: [x] } }\noutputs: { x: bob.x }\nsimulation: { duration: 1, step: 0.1 }\n",
+    );
+    assert_eq!(refused(&many), "certified bounds are for at most two uncertain parameters, not 3");
+    let controlled = model("pendulum").tolerance(1e-6);
+    assert!(refused(&controlled).starts_with("certified bounds need a fixed `step`"));
+}
