@@ -23,7 +23,8 @@ fn every_model_runs() {
         assert_eq!(bounds.outputs.len(), description.outputs.len());
         for output in &bounds.outputs {
             let what = format!("{}: {}", description.name, output.name);
-            assert_eq!(output.bands.len(), Method::ALL.len(), "{what} is not bounded by every method");
+            let methods: Vec<Method> = output.bands.iter().map(|band| band.method).collect();
+            assert_eq!(methods, [Method::Chebyshev, Method::Taylor, Method::Scan], "{what}");
             for band in &output.bands {
                 for row in 0..rows {
                     // Not a number is in no order.
