@@ -160,6 +160,25 @@ fn a_run_writes_its_files_and_tells_where() {
 }
 
 #[test]
+fn bounds_that_miss_their_tolerance_have_a_status_of_their_own() {
+    let place = Place::new();
+    place.model("crank");
+    let path = place.path().join("crank.yaml");
+    let text = fs::read_to_string(&path).unwrap();
+    let bounds = text.find("bounds:").unwrap();
+    fs::write(&path, format!("{}bounds: {{ tolerance: 1e-7, budget: {{ solves: 12 }} }}\n", &text[..bounds])).unwrap();
+    let (_, errors) = place.run("run crank.yaml", 3);
+    assert!(errors.contains("warning: crank: bounds are not resolved: "), "{errors}");
+    let table = fs::read_to_string(place.path().join("results/crank/bounds.csv")).unwrap();
+    let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
+    assert!(heading.ends_with(",unresolved") && last.contains(".chebyshev"), "{last}");
+    assert!(place.files("results/crank").iter().any(|name| name == "contributions.csv"));
+    // What cannot be asked for together is told.
+    let (_, errors) = place.run("run crank.yaml --method chebyshev --set nothing=1", 2);
+    assert!(errors.contains("nothing"), "{errors}");
+}
+
+#[test]
 fn several_models_have_a_folder_each() {
     let place = Place::new();
     place.model("crank");
