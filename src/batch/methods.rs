@@ -170,7 +170,8 @@ impl Run<'_> {
             let (span, time) = (probes.direct.span(output), probes.time_error(output, self.schedule.rows));
             let allowed = tolerance * span;
             // Where the steps miss the tolerance nothing is to be gained.
-            let resolved = time.iter().position(|&time| !(time <= allowed)).unwrap_or(self.schedule.rows);
+            let missed = |time: &f64| time.is_nan() || *time > allowed;
+            let resolved = time.iter().position(missed).unwrap_or(self.schedule.rows);
             goal.rows = goal.rows.min(if span > 0.0 { resolved } else { goal.rows });
             let time = largest(time[..resolved].iter().copied());
             goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });

@@ -79,7 +79,7 @@ mod tests {
         for per_row in [1, 10, 40] {
             let count = found(per_row, 100.0);
             let error = 100.0 / (count as f64).powi(2);
-            assert!(error <= SHARE && error >= 0.5 * AIM, "{per_row}: {count}");
+            assert!((0.5 * AIM..=SHARE).contains(&error), "{per_row}: {count}");
         }
         assert_eq!(found(10, 1e-9), 1);
         assert_eq!(found(1, 1e9), MOST_PARTS);

@@ -376,7 +376,9 @@ impl Climb {
         self.at = self.best;
         let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
         let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
-        self.arrived = hopeless || !(gained > least) || !(self.promised > least);
+        // What is not a number ends it too.
+        let goes_on = gained > least && self.promised > least;
+        self.arrived = hopeless || !goes_on;
     }
 }
 
@@ -408,8 +410,10 @@ fn target(x: f64, here: f64, below: (f64, f64), above: (f64, f64)) -> (f64, f64)
 mod tests {
     use super::*;
 
+    type Function<'f> = &'f dyn Fn(&[f64]) -> f64;
+
     /// Extremes and the number of points.
-    fn search(k: usize, warm: &[Extremes], functions: &[&dyn Fn(&[f64]) -> f64]) -> (Vec<Extremes>, usize) {
+    fn search(k: usize, warm: &[Extremes], functions: &[Function]) -> (Vec<Extremes>, usize) {
         let mut count = 0;
         let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
             count += points.len();
@@ -508,7 +512,7 @@ mod tests {
         let (mut known, mut total, mut worst) = (Vec::new(), 0, 0.0_f64);
         for row in 0..=40 {
             let own: Vec<_> = functions(0.01 * f64::from(row)).collect();
-            let own: Vec<&dyn Fn(&[f64]) -> f64> = own.iter().map(|f| f as &dyn Fn(&[f64]) -> f64).collect();
+            let own: Vec<Function> = own.iter().map(|f| f as Function).collect();
             let (found, count) = search(8, &known, &own);
             total += if row == 0 { 0 } else { count };
             if row % 10 == 0 {
@@ -533,7 +537,7 @@ mod tests {
     }
 
     /// Coordinate search from many random points, with as many evaluations as it takes.
-    fn thorough(k: usize, functions: &[&dyn Fn(&[f64]) -> f64]) -> Vec<Range> {
+    fn thorough(k: usize, functions: &[Function]) -> Vec<Range> {
         let mut state = 12345_u64;
         let mut random = move || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

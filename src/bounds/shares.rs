@@ -38,7 +38,8 @@ impl VarianceShares {
         let k = self.basis.dimension();
         // Relative to the largest, so that no square over- or underflows.
         let scale = coefficients[1..].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-        if !(scale > 0.0) || coefficients.iter().any(|c| !c.is_finite()) {
+        let varies = scale > 0.0;
+        if !varies || coefficients.iter().any(|c| !c.is_finite()) {
             return None;
         }
         let mut terms: Vec<f64> = coefficients.iter().map(|c| c / scale).collect();

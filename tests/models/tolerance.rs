@@ -129,7 +129,7 @@ fn truth(row: usize, sign: f64) -> f64 {
         let mut xi = std::array::from_fn(|i| match start {
             0 => 0.0,
             _ => {
-                if (start * (2 * i + 1) * 37 >> 3) % 2 == 0 {
+                if ((start * (2 * i + 1) * 37) >> 3) % 2 == 0 {
                     -1.0
                 } else {
                     1.0
