@@ -4,7 +4,7 @@
 //!
 //! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
-//!   [`SparseBasis`], for many parameters → [`SparseRange`], [`VarianceShares`];
+//!   [`SparseBasis`], for many parameters → [`VarianceShares`];
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
