@@ -12,7 +12,7 @@ use std::time::Instant;
 use rustc_hash::FxHashMap;
 
 use super::apportion::Apportion;
-use super::compose::{Composer, Known, Row, Seeker};
+use super::compose::{Composer, Halved, Known, Row, Seeker};
 use super::finding::{Finder, Finding};
 use super::methods::{FleetRun, Run};
 use super::probe::Table;
@@ -84,15 +84,26 @@ pub(super) struct Adaptation<'a, 'r> {
     /// Surrogates are held against samples in every so many rows.
     every: usize,
     seeker: Seeker,
+    halved: Halved<'r>,
 }
 
 impl<'a, 'r> Adaptation<'a, 'r> {
     /// Before the first simulation.
-    pub fn new(run: &'r Run<'a>, goal: Goal) -> Self {
+    pub fn new(run: &'r Run<'a>, goal: Goal, halved: Halved<'r>) -> Self {
         let composer = Composer::new(&run.study.simulator);
         let every = goal.rows.div_ceil(CHECKED).max(1);
         let seeker = Seeker::new(run.study.domain.dimension());
-        Self { run, goal, begun: Instant::now(), composer, done: FleetRun::default(), exhausted: false, every, seeker }
+        Self {
+            run,
+            goal,
+            begun: Instant::now(),
+            composer,
+            done: FleetRun::default(),
+            exhausted: false,
+            every,
+            seeker,
+            halved,
+        }
     }
 
     /// Refines until the goal is met or the budget is spent. `points` and `direct` are held-out samples of the whole box.
@@ -225,15 +236,21 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     /// Finds a part's error in some rows.
     fn check(&mut self, part: &mut Part) -> Result<(), SimulationError> {
         let rows: Vec<usize> = (0..self.goal.rows.min(part.rows(self.lines()))).rev().step_by(self.every).collect();
-        let found = self.findings(part, &rows, false)?;
+        let found = self.findings(part, &rows, (false, false))?;
         let allowed = self.goal.allowed.iter().cycle();
         let share = |(found, allowed): (&Finding, &f64)| SAFETY_OF_SURROGATE * found.error / allowed;
         part.error = largest(found.iter().zip(allowed).map(share));
         Ok(())
     }
 
-    /// What is found of a part in some rows, output by output.
-    fn findings(&mut self, part: &Part, rows: &[usize], apportion: bool) -> Result<Vec<Finding>, SimulationError> {
+    /// What is found of a part in some rows, output by output; at last with the steps' errors, and if the box was not split
+    /// with the parameters' parts.
+    fn findings(
+        &mut self,
+        part: &Part,
+        rows: &[usize],
+        (last, unsplit): (bool, bool),
+    ) -> Result<Vec<Finding>, SimulationError> {
         let surrogate = Surrogate::sparse(&part.grid);
         let motions = part.motions(self.lines(), rows.iter().copied());
         let stride = self.lines() * surrogate.samples().len();
@@ -241,7 +258,8 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         let finder = Finder {
             seeker: &self.seeker,
             held_out: (&part.points, &part.direct),
-            apportion: apportion.then(|| Apportion::new(&part.domain, &surrogate)),
+            halved: last.then_some(self.halved),
+            apportion: (last && unsplit).then(|| Apportion::new(&part.domain, &surrogate)),
         };
         let look = |place: usize, row: &Row, known: &mut Known| finder.find(row, rows[place], known);
         Ok(self.composer.rows(&surrogate, &part.domain, &times, (&motions, stride), look)?.concat())
@@ -249,7 +267,7 @@ impl<'a, 'r> Adaptation<'a, 'r> {
 
     /// Ranges over all parts, with their errors.
     fn conclude(mut self, parts: &[Part]) -> Result<Adapted, SimulationError> {
-        let nothing = Finding { range: EMPTY, error: 0.0, parts: None };
+        let nothing = Finding { range: EMPTY, error: 0.0, step_error: 0.0, parts: None };
         let mut found = vec![nothing; self.run.schedule.rows * self.run.outputs()];
         let mut order = vec![0; self.run.study.domain.dimension()];
         for part in parts {
@@ -257,11 +275,13 @@ impl<'a, 'r> Adaptation<'a, 'r> {
                 order[axis] = order[axis].max(degree.into());
             }
             let rows: Vec<usize> = (0..part.rows(self.lines())).collect();
-            let of_part = self.findings(part, &rows, parts.len() == 1)?;
-            let unknown = Finding { range: Range::UNKNOWN, error: f64::NAN, parts: None };
+            let of_part = self.findings(part, &rows, (true, parts.len() == 1))?;
+            let unknown = Finding { range: Range::UNKNOWN, error: f64::NAN, step_error: f64::NAN, parts: None };
             let of_part = of_part.into_iter().chain(std::iter::repeat(unknown));
             for (all, part) in found.iter_mut().zip(of_part) {
-                (all.range, all.error) = union((all.range, all.error), (part.range, part.error));
+                let range = all.range;
+                (all.range, all.error) = union((range, all.error), (part.range, part.error));
+                all.step_error = union((range, all.step_error), (part.range, part.step_error)).1;
                 all.parts = part.parts;
             }
         }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::probe::Table;
 use crate::bounds::{
     Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, corners, extremes,
-    extremes_near, largest, surrogate_error,
+    extremes_near, largest, step_error, surrogate_error,
 };
 use crate::integrate::{Closure, Points, SimulationError, Simulator, choose_independent};
 
@@ -103,6 +103,9 @@ const CORNERS: usize = 256;
 /// on the number of threads.
 const BLOCK: usize = 16;
 
+/// Samples with the schedule's steps, and the first of them with halved ones.
+pub(super) type Halved<'a> = (&'a Table, &'a Table);
+
 /// The extremes in the row before; nothing at first.
 pub(super) type Known = Vec<Extremes>;
 
@@ -177,7 +180,7 @@ impl<'r> Row<'r> {
         if row >= direct.rows() {
             return vec![f64::NAN; found.len()];
         }
-        let moved = self.sensitivity(seeker, found, points, direct.motion(row));
+        let moved = self.moved(seeker, found, &self.coordinate_errors(points, direct.motion(row)));
         let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
             let outside = direct.at(row, output).into_iter().map(|value| found.range.distance(value));
             found.gap + largest(outside.chain([moved]))
@@ -185,13 +188,23 @@ impl<'r> Row<'r> {
         found.iter().zip(moved).enumerate().map(error).collect()
     }
 
-    /// How far the errors of the expanded coordinates move the ends of the outputs' ranges. `points` are held-out samples, and
-    /// `motion` is theirs.
+    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, as samples with the steps as they are
+    /// and halved tell them, move the ends.
+    pub fn step_errors(&self, seeker: &Seeker, (direct, halved): Halved, row: usize, found: &[Extent]) -> Vec<f64> {
+        if row >= direct.rows() || row >= halved.rows() {
+            return vec![f64::NAN; found.len()];
+        }
+        let n = self.extent.len() / 2;
+        let error = |line: usize| (line, step_error(direct.line(row, line), halved.line(row, line)));
+        let errors: Vec<(usize, f64)> =
+            self.closure.independent().iter().flat_map(|&i| [error(i), error(n + i)]).collect();
+        self.moved(seeker, found, &errors)
+    }
+
+    /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
     ///
-    /// All independent coordinates, and their velocities, are moved together by their largest errors there, one way and the
-    /// other, and, where there are several, against each other.
-    fn sensitivity(&self, seeker: &Seeker, found: &[Extent], points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
-        let errors = self.coordinate_errors(points, motion);
+    /// All are moved together, one way and the other, and, where there are several, against each other.
+    fn moved(&self, seeker: &Seeker, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
         let several = self.closure.independent().len() > 1;
         let signs: &[[f64; 2]] =
             if several { &[[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] } else { &[[1.0; 2], [-1.0; 2]] };

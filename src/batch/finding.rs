@@ -1,7 +1,7 @@
 //! What is found of an output in a row: its range, the range's error, and who has which part in it.
 
 use super::apportion::{Apportion, Parts};
-use super::compose::{Known, Row, Seeker};
+use super::compose::{Halved, Known, Row, Seeker};
 use super::probe::Table;
 use crate::bounds::Range;
 
@@ -9,8 +9,9 @@ use crate::bounds::Range;
 #[derive(Clone, Debug)]
 pub(super) struct Finding {
     pub range: Range,
-    /// Of the surrogate.
+    /// Of the surrogate, and of the time steps.
     pub error: f64,
+    pub step_error: f64,
     /// Where they are asked for.
     pub parts: Option<Parts>,
 }
@@ -20,6 +21,8 @@ pub(super) struct Finder<'a> {
     pub seeker: &'a Seeker,
     /// ξ of samples that the surrogate is held against, and their motions.
     pub held_out: (&'a [Vec<f64>], &'a Table),
+    /// Samples of the whole box that tell the time steps' errors, where those are asked for.
+    pub halved: Option<Halved<'a>>,
     pub apportion: Option<Apportion>,
 }
 
@@ -28,11 +31,15 @@ impl Finder<'_> {
     pub fn find(&self, row: &Row, place: usize, known: &mut Known) -> Vec<Finding> {
         let found = row.seek(self.seeker, known);
         let errors = row.errors(self.seeker, self.held_out, place, &found);
+        let step_errors = match self.halved {
+            Some(halved) => row.step_errors(self.seeker, halved, place, &found),
+            None => vec![f64::NAN; found.len()],
+        };
         let parts: Vec<Option<Parts>> = match &self.apportion {
             Some(apportion) => apportion.parts(row, &found).into_iter().map(Some).collect(),
             None => vec![None; found.len()],
         };
-        let finding = |((found, error), parts)| Finding { range: found, error, parts };
-        found.iter().map(|found| found.range).zip(errors).zip(parts).map(finding).collect()
+        let finding = |(((found, error), step_error), parts)| Finding { range: found, error, step_error, parts };
+        found.iter().map(|found| found.range).zip(errors).zip(step_errors).zip(parts).map(finding).collect()
     }
 }

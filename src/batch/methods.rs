@@ -38,6 +38,8 @@ pub(super) const TAYLOR_WORK: usize = 5;
 pub(super) struct Outcome {
     pub(super) bands: Vec<Vec<Range>>,
     pub(super) surrogate: Vec<Vec<f64>>,
+    /// The time steps' error, where the method knows it better than the probes' outputs do; else not a number.
+    pub(super) steps: Vec<Vec<f64>>,
     /// Who has which part in the spread of every output in every row, where it is known.
     pub(super) parts: Vec<Vec<Option<Parts>>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
@@ -176,7 +178,8 @@ impl Run<'_> {
             let time = largest(time[..resolved].iter().copied());
             goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
         }
-        let search = Adaptation::new(self, goal).search(probes.points.clone(), probes.direct.clone())?;
+        let search = Adaptation::new(self, goal, (&probes.direct, &probes.halved))
+            .search(probes.points.clone(), probes.direct.clone())?;
         let mut lines = Lines::new(self);
         for (place, found) in search.found.into_iter().enumerate() {
             lines.set_found(place / self.outputs(), place % self.outputs(), found);
@@ -202,6 +205,7 @@ impl Run<'_> {
         let finder = Finder {
             seeker: &seeker,
             held_out: (&probes.points, &probes.direct),
+            halved: Some((&probes.direct, &probes.halved)),
             apportion: Some(Apportion::new(&self.study.domain, surrogate)),
         };
         let stride = Observed::Motion.count(&self.study.simulator) * samples.len();
@@ -358,6 +362,7 @@ struct Found {
 pub(super) struct Lines {
     bands: Vec<Vec<Range>>,
     surrogate: Vec<Vec<f64>>,
+    steps: Vec<Vec<f64>>,
     parts: Vec<Vec<Option<Parts>>>,
 }
 
@@ -368,12 +373,14 @@ impl Lines {
         Self {
             bands: vec![vec![Range::UNKNOWN; rows]; outputs],
             surrogate: vec![vec![f64::NAN; rows]; outputs],
+            steps: vec![vec![f64::NAN; rows]; outputs],
             parts: vec![vec![None; rows]; outputs],
         }
     }
 
     fn set_found(&mut self, row: usize, output: usize, found: Finding) {
         self.set(row, output, found.range, found.error);
+        self.steps[output][row] = found.step_error;
         self.parts[output][row] = found.parts;
     }
 
@@ -396,6 +403,7 @@ impl Lines {
         Outcome {
             bands: self.bands,
             surrogate: self.surrogate,
+            steps: self.steps,
             parts: self.parts,
             stop: done.stop,
             note: None,

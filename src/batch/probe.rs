@@ -41,6 +41,11 @@ impl Table {
         &self.values[first..][..self.motions * self.samples]
     }
 
+    /// One line of the motions in one row that was reached.
+    pub fn line(&self, row: usize, line: usize) -> &[f64] {
+        &self.motion(row)[line * self.samples..][..self.samples]
+    }
+
     /// Rows that were reached.
     pub fn rows(&self) -> usize {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
@@ -72,7 +77,7 @@ pub(super) struct Probes {
 }
 
 impl Probes {
-    /// Simulates them; `observed` is of those with the schedule's steps.
+    /// Simulates them; `observed` is what is kept of them.
     ///
     /// # Errors
     /// Where one cannot be assembled.
@@ -86,7 +91,7 @@ impl Probes {
         let (direct, done) = Table::of(run, &samples, observed)?;
         let schedule: Schedule = run.schedule.refined(2);
         let finer = Run { schedule: &schedule, tolerance: None, ..*run };
-        let (fine, finely) = Table::of(&finer, &samples[..halved], Observed::Outputs)?;
+        let (fine, finely) = Table::of(&finer, &samples[..halved], observed)?;
         let counters = Counters {
             iterations: done.counters.iterations + finely.counters.iterations,
             rank_revealing: done.counters.rank_revealing + finely.counters.rank_revealing,

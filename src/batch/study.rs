@@ -271,7 +271,10 @@ impl<'a> Study<'a> {
             let time: Vec<f64> = (0..rows)
                 .map(|row| match halved {
                     Some(halved) => time_error_certified(ranges[row], halved[row]),
-                    None => time_error(ranges[row], &probes.direct.at(row, output), &probes.halved.at(row, output)),
+                    // Either is enough: what the probes near the ends show, and what the coordinates' errors do to the ends,
+                    // which is nothing where a range is saturated. (`min` passes over not a number.)
+                    None => time_error(ranges[row], &probes.direct.at(row, output), &probes.halved.at(row, output))
+                        .min(outcome.steps[output][row]),
                 })
                 .collect();
             let surrogate = &outcome.surrogate[output][..rows];

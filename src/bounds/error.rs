@@ -51,6 +51,11 @@ pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
     largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
 }
 
+/// Largest error of values at step h, given those of the first of the samples with halved steps.
+pub fn step_error(direct: &[f64], halved: &[f64]) -> f64 {
+    largest(direct.iter().zip(halved).map(|(direct, halved)| RICHARDSON * (halved - direct)))
+}
+
 /// Error of a band's ends from its probes' values, with the steps as they are and halved: the worse end's. Probes without
 /// halved steps, after the others, do not count.
 pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {

@@ -31,7 +31,9 @@ mod tensor;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
-pub use error::{BandError, SAFETY_OF_SURROGATE, largest, surrogate_error, time_error, time_error_certified};
+pub use error::{
+    BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
+};
 pub use extremes::{Extent, extremes, extremes_near};
 pub use range::{Enclosed, PolynomialRange, Range};
 pub use result::{Band, Bounds, Contribution, Method, OutputBounds};
