@@ -74,7 +74,8 @@ impl<'a> Study<'a> {
             lower: collect(|parameter| parameter.lower),
             upper: collect(|parameter| parameter.upper),
         };
-        let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension())?;
+        let composes = compose::fits(domain.dimension(), system.q.len());
+        let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension(), composes)?;
         let simulator = Simulator::new(system, scheme(description), first_step(description))?;
         let Options { certify_time, progress, .. } = *options;
         Ok(Self { description, simulator, domain, request, certify_time, progress })
@@ -383,23 +384,34 @@ fn errors(bounds: &Bounds) -> Vec<ErrorSummary> {
 ///
 /// # Errors
 /// Where a default would make too many samples (the model's own requests were checked when it was read).
-fn requested(model: &BoundsRequest, methods: Option<&[Method]>, k: usize) -> Result<BoundsRequest, RunError> {
+fn requested(
+    model: &BoundsRequest,
+    methods: Option<&[Method]>,
+    k: usize,
+    composes: bool,
+) -> Result<BoundsRequest, RunError> {
     let certified = model.certified || methods.is_some_and(|methods| methods.contains(&Method::Certified));
     if certified && k > MOST_PARAMETERS {
         return Err(RunError::TooManyToCertify { parameters: k });
     }
-    let Some(methods) = methods else { return Ok(model.clone()) };
-    let asked = |method: Method| methods.contains(&method);
-    let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::unspecified(k, model.tolerance));
-    let taylor = || model.taylor.clone().unwrap_or_default();
-    let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(ScanRequest::POINTS, k));
-    let request = BoundsRequest {
-        chebyshev: asked(Method::Chebyshev).then(chebyshev),
-        taylor: asked(Method::Taylor).then(taylor),
-        scan: asked(Method::Scan).then(scan),
-        certified,
-        ..*model
-    };
+    let mut request = model.clone();
+    request.certified = certified;
+    if let Some(methods) = methods {
+        let asked = |method: Method| methods.contains(&method);
+        let chebyshev = || model.chebyshev.clone().unwrap_or_else(|| ChebyshevRequest::unspecified(k, model.tolerance));
+        let taylor = || model.taylor.clone().unwrap_or_default();
+        let scan = || model.scan.clone().unwrap_or_else(|| ScanRequest::of_points(ScanRequest::POINTS, k));
+        request.chebyshev = asked(Method::Chebyshev).then(chebyshev);
+        request.taylor = asked(Method::Taylor).then(taylor);
+        request.scan = asked(Method::Scan).then(scan);
+    }
+    // Degrees grow with coordinates; where those are too many, or nothing is uncertain, outputs are expanded to a usual one.
+    if let Some(chebyshev) =
+        request.chebyshev.as_mut().filter(|request| request.degree == Degree::Adaptive && !composes)
+    {
+        let order = if k <= ChebyshevRequest::FEW { ChebyshevRequest::ORDER } else { 2 };
+        *chebyshev = ChebyshevRequest { expand: Expand::Output, ..ChebyshevRequest::of_order(order, k) };
+    }
     let nodes = |request: &ChebyshevRequest| match &request.degree {
         Degree::Fixed { nodes, .. } => nodes.clone(),
         Degree::Adaptive => Vec::new(),

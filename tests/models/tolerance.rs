@@ -234,6 +234,22 @@ bounds: { chebyshev: { order: 3 } }
     assert_eq!((of_v.main[0], of_v.width_without[0]), (0.0, 0.0));
 }
 
+/// Where nothing is uncertain there is nothing to expand, but steps to choose.
+#[test]
+fn nothing_uncertain_has_a_tolerance_too() {
+    let mut description = model("slider_crank_one");
+    for parameter in &mut description.parameters {
+        if let ParameterValue::Interval { nominal, .. } = parameter.value {
+            let formula = symdiff::Formula::parse(&nominal.to_string()).unwrap();
+            parameter.value = ParameterValue::Formula(formula);
+        }
+    }
+    let bounds = run(&within(description, 1e-3, 100));
+    let band = band(&bounds.outputs[0], Method::Chebyshev);
+    assert_eq!((&band.lower, &band.upper), (&bounds.outputs[0].nominal, &bounds.outputs[0].nominal));
+    assert_eq!(unresolved(&bounds), 0);
+}
+
 /// Every model can be bounded to a tolerance: nothing is unknown.
 #[test]
 fn every_model_is_bounded_to_a_per_cent() {
