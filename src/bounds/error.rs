@@ -27,8 +27,11 @@ pub const SAFETY_OF_SURROGATE: f64 = 2.0;
 const NEIGHBOUR: f64 = 0.5;
 const LASTING: f64 = 0.02;
 
-/// An error beyond this share of the width means that the surrogate does not follow the response.
-const LOST: f64 = 0.25;
+/// A surrogate's error, its safety included, beyond this share of the width means that it does not follow the response.
+const LOST: f64 = 0.5;
+
+/// The same of the whole error, as a share of the output's span.
+const FAR_OFF: f64 = 0.25;
 
 /// An error below this share of the output's span is none to speak of, however narrow the band is there.
 const SMALL: f64 = 1e-3;
@@ -92,7 +95,7 @@ impl BandError {
                 Some(tolerance) => !small(tolerance),
                 None => {
                     let follows = surrogate[row] <= LOST * range.width() || small(SMALL);
-                    lost |= !(follows && small(LOST));
+                    lost |= !(follows && small(FAR_OFF));
                     lost
                 }
             });
@@ -152,7 +155,7 @@ mod tests {
         let ranges = vec![Range { lower: 0.0, upper: 1.0 }; 6];
         let follows = BandError::new(&ranges, &[0.01; 6], &[0.0; 6], 1.0, None);
         assert_eq!(follows.unresolved_from(), None);
-        let lost = BandError::new(&ranges, &[0.0, 0.0, 0.0, 0.3, 0.0, 0.0], &[0.0; 6], 1.0, None);
+        let lost = BandError::new(&ranges, &[0.0, 0.0, 0.0, 0.6, 0.0, 0.0], &[0.0; 6], 1.0, None);
         assert_eq!(lost.unresolved, [false, false, true, true, true, true]);
         let unknown = BandError::new(&ranges, &[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0], &[0.0; 6], 1.0, None);
         assert_eq!(unknown.unresolved_from(), Some(3));
