@@ -7,16 +7,17 @@
 //! would change if the response depended on a single weighted sum of the parameters, as it does to first order. Whether the
 //! surrogate is good enough is told by held-out samples.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
 use super::apportion::Apportion;
-use super::compose::{Composer, Halved, Known, Row, Seeker};
+use super::compose::{Composer, Known, Row, Seeker};
 use super::finding::{Finder, Finding};
 use super::methods::{FleetRun, Run};
-use super::probe::Table;
-use crate::bounds::{ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, held_out, largest, probes};
+use super::probe::{Probes, Table};
+use crate::bounds::{ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest};
 use crate::integrate::{Observed, SimulationError};
 use crate::model::Budget;
 
@@ -58,16 +59,15 @@ pub(super) struct Adapted {
 }
 
 /// A part of the box with its surrogate.
-struct Part {
+struct Part<'r> {
     domain: ParameterBox,
     grid: SparseGrid,
     /// Motions and outputs at the grid's nodes: so many of them, then row by row, line by line, node by node.
     nodes: Vec<(usize, Vec<f64>)>,
     /// What each index of the grid taught.
     taught: FxHashMap<Vec<u8>, f64>,
-    /// Samples that the surrogate is held against.
-    points: Vec<Vec<f64>>,
-    direct: Table,
+    /// Samples that the surrogate is held against, at the probes' ξ.
+    direct: Cow<'r, Table>,
     /// Largest error at those over the one that is allowed.
     error: f64,
 }
@@ -84,12 +84,13 @@ pub(super) struct Adaptation<'a, 'r> {
     /// Surrogates are held against samples in every so many rows.
     every: usize,
     seeker: Seeker,
-    halved: Halved<'r>,
+    /// Of the whole box.
+    probes: &'r Probes,
 }
 
 impl<'a, 'r> Adaptation<'a, 'r> {
     /// Before the first simulation.
-    pub fn new(run: &'r Run<'a>, goal: Goal, halved: Halved<'r>) -> Self {
+    pub fn new(run: &'r Run<'a>, goal: Goal, probes: &'r Probes) -> Self {
         let composer = Composer::new(&run.study.simulator);
         let every = goal.rows.div_ceil(CHECKED).max(1);
         let seeker = Seeker::new(run.study.domain.dimension());
@@ -102,16 +103,16 @@ impl<'a, 'r> Adaptation<'a, 'r> {
             exhausted: false,
             every,
             seeker,
-            halved,
+            probes,
         }
     }
 
-    /// Refines until the goal is met or the budget is spent. `points` and `direct` are held-out samples of the whole box.
+    /// Refines until the goal is met or the budget is spent.
     ///
     /// # Errors
     /// Where a sample cannot be assembled or a closure not be compiled.
-    pub fn search(mut self, points: Vec<Vec<f64>>, direct: Table) -> Result<Adapted, SimulationError> {
-        let mut parts = vec![self.part(self.run.study.domain.clone(), points, direct)?];
+    pub fn search(mut self) -> Result<Adapted, SimulationError> {
+        let mut parts = vec![self.part(self.run.study.domain.clone(), Cow::Borrowed(&self.probes.direct))?];
         loop {
             let worst = (0..parts.len()).max_by(|&a, &b| parts[a].error.total_cmp(&parts[b].error)).unwrap_or(0);
             // Not a number is not met.
@@ -128,9 +129,9 @@ impl<'a, 'r> Adaptation<'a, 'r> {
             match parts[worst].axis_to_split() {
                 Some(axis) => {
                     let whole = parts.swap_remove(worst);
-                    for half in halves(&whole.domain, axis) {
-                        let (points, direct) = self.hold_out(&half)?;
-                        parts.push(self.part(half, points, direct)?);
+                    for half in whole.domain.halves(axis) {
+                        let direct = Cow::Owned(self.hold_out(&half)?);
+                        parts.push(self.part(half, direct)?);
                     }
                 }
                 None => self.refine(&mut parts[worst])?,
@@ -146,27 +147,25 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     }
 
     /// The whole of a part is known at its middle alone.
-    fn part(&mut self, domain: ParameterBox, points: Vec<Vec<f64>>, direct: Table) -> Result<Part, SimulationError> {
+    fn part(&mut self, domain: ParameterBox, direct: Cow<'r, Table>) -> Result<Part<'r>, SimulationError> {
         let grid = SparseGrid::new(&vec![HIGHEST; domain.dimension()]);
         let nodes = vec![self.simulate(&domain, &[grid.sample(0)])?];
         let taught = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
-        Ok(Part { domain, grid, nodes, taught, points, direct, error: f64::INFINITY })
+        Ok(Part { domain, grid, nodes, taught, direct, error: f64::INFINITY })
     }
 
     /// Samples of a part to hold its surrogate against.
-    fn hold_out(&mut self, domain: &ParameterBox) -> Result<(Vec<Vec<f64>>, Table), SimulationError> {
-        let mut points = probes(domain.dimension());
-        points.extend(held_out(domain.dimension()));
-        let samples: Vec<Vec<f64>> = points.iter().map(|xi| domain.point(xi)).collect();
+    fn hold_out(&mut self, domain: &ParameterBox) -> Result<Table, SimulationError> {
+        let samples = domain.points(&self.probes.points);
         let (direct, done) = Table::of(self.run, &samples, Observed::Motion)?;
         self.done.add(self.goal.spent, done);
         self.goal.spent += samples.len();
-        Ok((points, direct))
+        Ok(direct)
     }
 
     /// Motions and outputs of new nodes.
     fn simulate(&mut self, domain: &ParameterBox, nodes: &[Vec<f64>]) -> Result<(usize, Vec<f64>), SimulationError> {
-        let samples: Vec<Vec<f64>> = nodes.iter().map(|xi| domain.point(xi)).collect();
+        let samples = domain.points(nodes);
         let mut motions = Vec::new();
         let done = self.run.fleet(&samples, Observed::Motion, |_, values| motions.extend_from_slice(values))?;
         self.done.add(self.goal.spent, done);
@@ -176,9 +175,6 @@ impl<'a, 'r> Adaptation<'a, 'r> {
 
     /// A round: the indices that are expected to teach most are added.
     fn refine(&mut self, part: &mut Part) -> Result<(), SimulationError> {
-        let before = Surrogate::sparse(&part.grid);
-        let motions = part.motions(self.lines(), 0..part.rows(self.lines()));
-        let first = part.grid.len();
         let room = self.goal.budget.solves.saturating_sub(self.goal.spent);
         let mut added = part.expected(part.grid.candidates());
         let most = added.first().map_or(0.0, |(_, expected)| *expected);
@@ -188,6 +184,9 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         if added.is_empty() {
             return Ok(());
         }
+        let before = Surrogate::sparse(&part.grid);
+        let motions = part.motions(self.lines(), 0..part.rows(self.lines()));
+        let first = part.grid.len();
         added.iter().for_each(|(levels, _)| part.grid.add(levels));
         let nodes: Vec<Vec<f64>> = (first..part.grid.len()).map(|node| part.grid.sample(node)).collect();
         let new = self.simulate(&part.domain, &nodes)?;
@@ -257,8 +256,8 @@ impl<'a, 'r> Adaptation<'a, 'r> {
         let times: Vec<f64> = rows.iter().map(|&row| self.run.schedule.time(row)).collect();
         let finder = Finder {
             seeker: &self.seeker,
-            held_out: (&part.points, &part.direct),
-            halved: last.then_some(self.halved),
+            held_out: (&self.probes.points, &part.direct),
+            halved: last.then_some((&self.probes.direct, &self.probes.halved)),
             apportion: (last && unsplit).then(|| Apportion::new(&part.domain, &surrogate)),
         };
         let look = |place: usize, row: &Row, known: &mut Known| finder.find(row, rows[place], known);
@@ -289,7 +288,7 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     }
 }
 
-impl Part {
+impl Part<'_> {
     /// Rows that all nodes have reached.
     fn rows(&self, lines: usize) -> usize {
         self.nodes.iter().map(|(count, values)| values.len() / (lines * count)).min().unwrap_or(0)
@@ -376,15 +375,6 @@ fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
         outer(of_a - a.lower, of_b - b.lower, -range.lower).max(outer(-of_a - a.lower, -of_b - b.lower, -range.lower));
     let error = if of_a.is_nan() || of_b.is_nan() { f64::NAN } else { above.max(below) };
     (range, error)
-}
-
-/// Both halves of a box. Each has its middle for its nominal.
-fn halves(domain: &ParameterBox, axis: usize) -> [ParameterBox; 2] {
-    let middle = domain.midpoint(axis);
-    let mut halves = [domain.clone(), domain.clone()];
-    halves[0].upper[axis] = middle;
-    halves[1].lower[axis] = middle;
-    halves
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::methods::{FleetRun, Lines, Outcome, Run};
-use crate::bounds::{Method, Range, TaylorRange};
+use crate::bounds::{Method, ParameterBox, Range, TaylorRange};
 use crate::integrate::{Certifier, Counters, Enclosure, Lost};
 use crate::model::RangeKind;
 
@@ -20,16 +20,9 @@ const ORDER: [usize; MOST_PARAMETERS + 1] = [0, 12, 6];
 /// Most pieces that are enclosed at last.
 const MOST_PIECES: usize = 16;
 
-/// A part of the box.
-#[derive(Clone, Debug)]
-struct Piece {
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-}
-
 /// What is known of a piece: ranges row by row, output by output, as far as they go.
 struct Enclosed {
-    piece: Piece,
+    piece: ParameterBox,
     ranges: Vec<Range>,
     lost: Option<(f64, Lost)>,
 }
@@ -41,7 +34,7 @@ impl Run<'_> {
         let domain = &self.study.domain;
         let certifier = Certifier::new(&self.study.simulator);
         let space = ModelSpace::new(domain.dimension(), ORDER[domain.dimension()]);
-        let mut open = vec![Piece { lower: domain.lower.clone(), upper: domain.upper.clone() }];
+        let mut open = vec![domain.clone()];
         let mut closed: Vec<Enclosed> = Vec::new();
         let mut solves = 0;
         while !open.is_empty() {
@@ -61,7 +54,7 @@ impl Run<'_> {
                 .collect();
             for (index, enclosed) in found.into_iter().enumerate() {
                 if cut.contains(&index) {
-                    open.extend(enclosed.piece.halves(&domain.lower, &domain.upper));
+                    open.extend(enclosed.piece.halves(widest(&enclosed.piece, domain)));
                 } else {
                     closed.push(enclosed);
                 }
@@ -71,7 +64,7 @@ impl Run<'_> {
     }
 
     /// One piece, as far as it goes.
-    fn enclose(&self, certifier: &Certifier, space: &ModelSpace, piece: Piece) -> Enclosed {
+    fn enclose(&self, certifier: &Certifier, space: &ModelSpace, piece: ParameterBox) -> Enclosed {
         let schedule = self.schedule;
         let outputs = self.outputs();
         let mut ranges = Vec::with_capacity(schedule.rows * outputs);
@@ -120,20 +113,13 @@ impl Enclosed {
     }
 }
 
-impl Piece {
-    /// Both halves, cut across the axis that is widest against the whole box.
-    fn halves(&self, lower: &[f64], upper: &[f64]) -> [Self; 2] {
-        let share = |axis: usize| {
-            let whole = upper[axis] - lower[axis];
-            if whole > 0.0 { (self.upper[axis] - self.lower[axis]) / whole } else { 0.0 }
-        };
-        let axis = (0..lower.len()).reduce(|a, b| if share(b) > 1.5 * share(a) { b } else { a }).unwrap_or(0);
-        let middle = 0.5 * self.lower[axis] + 0.5 * self.upper[axis];
-        let mut halves = [self.clone(), self.clone()];
-        halves[0].upper[axis] = middle;
-        halves[1].lower[axis] = middle;
-        halves
-    }
+/// The axis along which a piece is widest against the whole box.
+fn widest(piece: &ParameterBox, whole: &ParameterBox) -> usize {
+    let share = |axis: usize| {
+        let width = whole.upper[axis] - whole.lower[axis];
+        if width > 0.0 { (piece.upper[axis] - piece.lower[axis]) / width } else { 0.0 }
+    };
+    (0..whole.dimension()).reduce(|a, b| if share(b) > 1.5 * share(a) { b } else { a }).unwrap_or(0)
 }
 
 /// Range of a model: of its polynomial, the rounding errors of finding that, and its radius.

@@ -194,10 +194,7 @@ impl<'r> Row<'r> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; found.len()];
         }
-        let n = self.extent.len() / 2;
-        let error = |line: usize| (line, step_error(direct.line(row, line), halved.line(row, line)));
-        let errors: Vec<(usize, f64)> =
-            self.closure.independent().iter().flat_map(|&i| [error(i), error(n + i)]).collect();
+        let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
         self.moved(seeker, found, &errors)
     }
 
@@ -270,16 +267,18 @@ impl<'r> Row<'r> {
         found
     }
 
-    /// Lines of the independent coordinates and their velocities, pairwise, with the largest errors of their polynomials at
-    /// held-out samples.
+    /// The largest errors of the independent coordinates' polynomials, and of their velocities', at held-out samples.
     fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
-        let n = self.extent.len() / 2;
         let expanded = self.expanded(points);
-        let error = |line: usize| {
-            let values = |lines: &[f64]| lines[line * points.len()..][..points.len()].to_vec();
-            (line, surrogate_error(&values(&expanded), &values(motion)))
-        };
-        self.closure.independent().iter().flat_map(|&i| [error(i), error(n + i)]).collect()
+        let values = |line: usize| line * points.len()..(line + 1) * points.len();
+        self.of_independent(|line| surrogate_error(&expanded[values(line)], &motion[values(line)]))
+    }
+
+    /// Lines of the independent coordinates and their velocities, pairwise, each with its error.
+    fn of_independent(&self, error: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
+        let n = self.extent.len() / 2;
+        let lines = self.closure.independent().iter().flat_map(|&i| [i, n + i]);
+        lines.map(|line| (line, error(line))).collect()
     }
 
     /// Every output at some ξ as it follows from the motion there: 2n lines of points.

@@ -145,7 +145,7 @@ impl Run<'_> {
         let begun = Instant::now();
         let Degree::Fixed { order, nodes } = &request.degree else { return self.adapted(probes) };
         let surrogate = Surrogate::tensor(order, nodes);
-        let samples: Vec<Vec<f64>> = surrogate.samples().iter().map(|xi| self.study.domain.point(xi)).collect();
+        let samples = self.study.domain.points(surrogate.samples());
         let (lines, done) = match request.expand {
             Expand::Coordinates if self.study.composes() => self.composed(&surrogate, &samples, probes)?,
             _ => {
@@ -178,8 +178,7 @@ impl Run<'_> {
             let time = largest(time[..resolved].iter().copied());
             goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
         }
-        let search = Adaptation::new(self, goal, (&probes.direct, &probes.halved))
-            .search(probes.points.clone(), probes.direct.clone())?;
+        let search = Adaptation::new(self, goal, probes).search()?;
         let mut lines = Lines::new(self);
         for (place, found) in search.found.into_iter().enumerate() {
             lines.set_found(place / self.outputs(), place % self.outputs(), found);

@@ -1,7 +1,7 @@
 //! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
 
 use super::methods::{FleetRun, Run};
-use crate::bounds::{BandError, Range, held_out, probes, time_error};
+use crate::bounds::{BandError, Range, probes, time_error, validation};
 use crate::integrate::{Counters, Observed, Schedule, SimulationError};
 use crate::report::MethodSummary;
 
@@ -84,10 +84,9 @@ impl Probes {
     pub fn run(run: &Run, observed: Observed) -> Result<Self, SimulationError> {
         let begun = std::time::Instant::now();
         let domain = &run.study.domain;
-        let mut points = probes(domain.dimension());
-        let halved = points.len();
-        points.extend(held_out(domain.dimension()));
-        let samples: Vec<Vec<f64>> = points.iter().map(|xi| domain.point(xi)).collect();
+        let points = validation(domain.dimension());
+        let halved = probes(domain.dimension()).len();
+        let samples = domain.points(&points);
         let (direct, done) = Table::of(run, &samples, observed)?;
         let schedule: Schedule = run.schedule.refined(2);
         let finer = Run { schedule: &schedule, tolerance: None, ..*run };

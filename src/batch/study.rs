@@ -10,8 +10,8 @@ use super::probe::Probes;
 use super::step_search::StepSearch;
 use super::{Options, RunError, first_step, scheme};
 use crate::bounds::{
-    Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, held_out, largest, probes,
-    time_error, time_error_certified,
+    Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, largest, probes, time_error,
+    time_error_certified, validation,
 };
 use crate::integrate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
 use crate::mechanics::{self, System};
@@ -213,7 +213,7 @@ impl<'a> Study<'a> {
         let taylor = self.request.taylor.as_ref().map_or(0, |request| TAYLOR_WORK * (request.order + 1));
         let scan = self.request.scan.as_ref().map_or(0, |request| request.points.iter().product());
         let k = self.domain.dimension();
-        let probes = if self.request.is_empty() { 0 } else { 2 * probes(k).len() + held_out(k).len() };
+        let probes = if self.request.is_empty() { 0 } else { probes(k).len() + validation(k).len() };
         let methods = (chebyshev + taylor + scan) * if self.certify_time { 2 } else { 1 };
         (1 + probes + methods) * schedule.rows
     }

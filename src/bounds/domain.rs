@@ -58,6 +58,20 @@ impl ParameterBox {
         self.map(xi, &mut point);
         point
     }
+
+    /// The same of many.
+    pub fn points(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        xi.iter().map(|xi| self.point(xi)).collect()
+    }
+
+    /// Both halves, cut across an axis in its middle.
+    pub fn halves(&self, axis: usize) -> [Self; 2] {
+        let middle = self.midpoint(axis);
+        let mut halves = [self.clone(), self.clone()];
+        halves[0].upper[axis] = middle;
+        halves[1].lower[axis] = middle;
+        halves
+    }
 }
 
 #[cfg(test)]

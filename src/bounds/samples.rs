@@ -102,7 +102,7 @@ const HELD_OUT: usize = 8;
 
 /// Points spread evenly over the inside of the box (the additive recurrence of Kronecker), for a surrogate to be held
 /// against simulations that it was not made from.
-pub fn held_out(k: usize) -> Vec<Vec<f64>> {
+fn held_out(k: usize) -> Vec<Vec<f64>> {
     // Roberts' generalisation of the golden ratio: the root of x^(k+1) = x + 1.
     let mut ratio = 1.5_f64;
     for _ in 0..100 {
@@ -111,6 +111,13 @@ pub fn held_out(k: usize) -> Vec<Vec<f64>> {
     let count = if k == 0 { 0 } else { HELD_OUT.max(k) };
     let at = |index: usize, axis: usize| (0.5 + (index + 1) as f64 * ratio.powi(-(axis as i32 + 1))).fract();
     (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
+}
+
+/// All points at which a surrogate is held against the simulation: [`probes`], then those held out.
+pub fn validation(k: usize) -> Vec<Vec<f64>> {
+    let mut points = probes(k);
+    points.extend(held_out(k));
+    points
 }
 
 /// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all 3^k

@@ -3,7 +3,6 @@
 use rustc_hash::FxHashMap;
 use symdiff::{Vectorise, vectorised};
 
-use super::chebyshev::clenshaw;
 use super::sparse_grid::SparseGrid;
 
 /// Points or lines treated together.
@@ -156,30 +155,6 @@ impl SparseBasis {
         assert_eq!(coefficients.len() * points.len(), out.len() * self.len(), "a value for each polynomial and point");
         vectorised(Evaluation { basis: self, points, coefficients, out, work });
     }
-
-    /// Replaces a polynomial by what it is where parameter `axis` is `value`: constant along that axis.
-    pub fn restrict(&self, axis: usize, value: f64, coefficients: &mut [f64]) {
-        let mut line = Vec::with_capacity(usize::from(self.orders[axis]) + 1);
-        for fibre in self.fibres(axis).iter() {
-            line.clear();
-            line.extend(fibre.iter().map(|&t| std::mem::take(&mut coefficients[t as usize])));
-            coefficients[fibre[0] as usize] = clenshaw(&line, value);
-        }
-    }
-
-    /// Writes the coefficients of ∂f/∂ξ along an axis.
-    pub fn derivative(&self, axis: usize, coefficients: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        for fibre in self.fibres(axis).iter() {
-            // C_j′ = 2j (C_{j−1} + C_{j−3} + …), where C₀ counts half.
-            let (mut this, mut last) = (0.0, 0.0);
-            for j in (1..fibre.len()).rev() {
-                (this, last) = (last + 2.0 * j as f64 * coefficients[fibre[j] as usize], this);
-                out[fibre[j - 1] as usize] = this;
-            }
-            out[fibre[0] as usize] *= 0.5;
-        }
-    }
 }
 
 /// [`SparseBasis::values`], compiled for wide vectors.
@@ -265,30 +240,6 @@ mod tests {
                     prop_assert!((value - tensor.evaluate(line, xi)).abs() < 1e-14);
                 }
             }
-        }
-
-        #[test]
-        fn restrictions_and_derivatives(
-            c in prop::collection::vec(-1.0..1.0_f64, 40),
-            xi in prop::array::uniform3(-0.9..=0.9_f64), axis in 0..3_usize,
-        ) {
-            let basis = SparseBasis::tensor(&[1, 3, 4]);
-            let f = |x: f64| {
-                let mut at = xi;
-                at[axis] = x;
-                basis.evaluate(&c, &at)
-            };
-            let mut restricted = c.clone();
-            basis.restrict(axis, 0.3, &mut restricted);
-            prop_assert!((basis.evaluate(&restricted, &xi) - f(0.3)).abs() < 1e-13);
-            prop_assert!((0..40).all(|t| basis.degrees(t)[axis] == 0 || restricted[t] == 0.0));
-            // Exact for degrees up to 4: the five-point difference.
-            let h = 0.05;
-            let x = xi[axis];
-            let difference = (8.0 * (f(x + h) - f(x - h)) - f(x + 2.0 * h) + f(x - 2.0 * h)) / (12.0 * h);
-            let mut derivative = vec![f64::NAN; 40];
-            basis.derivative(axis, &c, &mut derivative);
-            prop_assert!((basis.evaluate(&derivative, &xi) - difference).abs() < 1e-11);
         }
     }
 }

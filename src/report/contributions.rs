@@ -6,7 +6,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::Axis;
 use super::csv::number;
-use super::plot::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, text_style, text_width};
+use super::plot::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, svg, text_style, text_width};
 use crate::bounds::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.
@@ -60,16 +60,7 @@ const TOGETHER: RGBColor = RGBColor(215, 215, 215);
 /// # Errors
 /// plotters' own, as text; none is known to occur.
 pub fn contributions_svg(times: &[f64], name: &str, contributions: &[Contribution]) -> Result<String, String> {
-    let mut svg = String::new();
-    let (width, height) = (fine(f64::from(SIZE.0)), fine(f64::from(SIZE.1)));
-    {
-        let canvas = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-        draw(&canvas, times, name, contributions).map_err(|error| error.to_string())?;
-        canvas.present().map_err(|error| error.to_string())?;
-    }
-    let drawn = format!("<svg width=\"{width}\" height=\"{height}\"");
-    let shown = format!("<svg width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", SIZE.0, SIZE.1);
-    Ok(svg.replacen(&drawn, &shown, 1))
+    svg(SIZE, |canvas| draw(canvas, times, name, contributions).map_err(|error| error.to_string()))
 }
 
 fn draw(canvas: &Canvas, times: &[f64], name: &str, contributions: &[Contribution]) -> Drawn {

@@ -69,16 +69,25 @@ fn style(method: Method) -> Style {
 /// # Errors
 /// plotters' own, as text; none is known to occur.
 pub fn plot_svg(times: &[f64], output: &OutputBounds) -> Result<String, String> {
+    let svg = svg(SIZE, |canvas| draw(canvas, times, output).map_err(|e| e.to_string()))?;
+    Ok(dashed(&svg))
+}
+
+/// What is drawn, as an SVG document of a size on the page in px.
+///
+/// # Errors
+/// The drawing's and plotters' own, as text.
+pub(super) fn svg(size: (u32, u32), draw: impl FnOnce(&Canvas) -> Result<(), String>) -> Result<String, String> {
     let mut svg = String::new();
-    let (width, height) = (fine(f64::from(SIZE.0)), fine(f64::from(SIZE.1)));
+    let (width, height) = (fine(f64::from(size.0)), fine(f64::from(size.1)));
     {
         let canvas = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-        draw(&canvas, times, output).map_err(|e| e.to_string())?;
+        draw(&canvas)?;
         canvas.present().map_err(|e| e.to_string())?;
     }
     let drawn = format!("<svg width=\"{width}\" height=\"{height}\"");
-    let shown = format!("<svg width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", SIZE.0, SIZE.1);
-    Ok(dashed(&svg.replacen(&drawn, &shown, 1)))
+    let shown = format!("<svg width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", size.0, size.1);
+    Ok(svg.replacen(&drawn, &shown, 1))
 }
 
 /// Gives methods' lines, known by their colours, their dashes: plotters would draw each dash as a line of its own.

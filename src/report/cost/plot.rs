@@ -10,7 +10,7 @@ use super::front::pareto;
 use super::log_axis::LogAxis;
 use super::study::{CostMethod, CostPoint, CostStudy, cost_curves};
 use crate::program::Scheme;
-use crate::report::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, text_style};
+use crate::report::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, svg, text_style};
 use crate::report::polyline::Point;
 
 /// Size on the page, px.
@@ -56,16 +56,7 @@ fn color(method: CostMethod) -> RGBColor {
 /// # Errors
 /// plotters' own, as text; none is known to occur.
 pub fn cost_svg(study: &CostStudy) -> Result<String, String> {
-    let mut svg = String::new();
-    let (width, height) = (fine(f64::from(SIZE.0)), fine(f64::from(SIZE.1)));
-    {
-        let canvas = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
-        draw(&canvas, study).map_err(|error| error.to_string())?;
-        canvas.present().map_err(|error| error.to_string())?;
-    }
-    let drawn = format!("<svg width=\"{width}\" height=\"{height}\"");
-    let shown = format!("<svg width=\"{}\" height=\"{}\" stroke-linejoin=\"round\"", SIZE.0, SIZE.1);
-    Ok(svg.replacen(&drawn, &shown, 1))
+    svg(SIZE, |canvas| draw(canvas, study).map_err(|error| error.to_string()))
 }
 
 fn draw(canvas: &Canvas, study: &CostStudy) -> Drawn {
