@@ -150,6 +150,7 @@ impl Graph {
                 self.sub(one, square)
             }
             Unary::Sign => self.constant(0.0),
+            Unary::Spline(spline, order) => self.unary(Unary::Spline(spline, order + 1), a),
         }
     }
 

@@ -6,6 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::scalar;
+use crate::spline::Spline;
 
 /// A handle to a node of a [`Graph`]; valid only for the graph that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -35,6 +36,8 @@ pub enum Unary {
     Abs,
     Tanh,
     Sign,
+    /// A derivative, of this order, of a table.
+    Spline(Spline, u8),
 }
 
 /// Functions of two arguments.

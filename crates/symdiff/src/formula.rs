@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use crate::expr::{Binary, Expr, Graph, Unary};
+use crate::spline::Spline;
 
 /// How deep parentheses, signs and powers may nest.
 const MAX_DEPTH: usize = 100;
@@ -79,7 +80,15 @@ impl Formula {
     /// # Errors
     /// The first syntax error, with its place.
     pub fn parse(text: &str) -> Result<Self, SyntaxError> {
-        let mut parser = Parser { text, position: 0, depth: 0, terms: Vec::new() };
+        Self::parse_with(text, &[])
+    }
+
+    /// Reads a formula in which tables, by their names, are functions of one argument.
+    ///
+    /// # Errors
+    /// The first syntax error, with its place.
+    pub fn parse_with(text: &str, tables: &[(&str, Spline)]) -> Result<Self, SyntaxError> {
+        let mut parser = Parser { text, tables, position: 0, depth: 0, terms: Vec::new() };
         parser.sum()?;
         parser.skip_space();
         if parser.position < text.len() {
@@ -91,6 +100,25 @@ impl Formula {
     /// The formula that is just a number.
     pub fn number(value: f64) -> Self {
         Self { terms: vec![(Term::Number(value), 0..0)] }
+    }
+
+    /// `function(self, other)`; places are those in either's own text.
+    #[must_use]
+    pub fn combined(&self, function: Binary, other: &Self) -> Self {
+        let shift = self.terms.len();
+        let shifted = |(term, span): &(Term, Range<usize>)| {
+            let term = match term {
+                Term::Unary(function, a) => Term::Unary(*function, a + shift),
+                Term::Binary(function, a, b) => Term::Binary(*function, a + shift, b + shift),
+                Term::Number(_) | Term::Name(_) => term.clone(),
+            };
+            (term, span.clone())
+        };
+        let mut terms = self.terms.clone();
+        terms.extend(other.terms.iter().map(shifted));
+        let last = terms.len() - 1;
+        terms.push((Term::Binary(function, shift - 1, last), 0..0));
+        Self { terms }
     }
 
     /// The number, if the formula is a literal one (a sign in front is allowed).
@@ -140,6 +168,7 @@ impl Formula {
 
 struct Parser<'t> {
     text: &'t str,
+    tables: &'t [(&'t str, Spline)],
     position: usize,
     depth: usize,
     terms: Vec<(Term, Range<usize>)>,
@@ -335,7 +364,9 @@ impl Parser<'_> {
         if name == "pi" {
             return Ok(self.push(Term::Number(std::f64::consts::PI), span));
         }
-        if FUNCTIONS.iter().any(|(function, _)| *function == name) {
+        if FUNCTIONS.iter().any(|(function, _)| *function == name)
+            || self.tables.iter().any(|(table, _)| *table == name)
+        {
             return Err(SyntaxError {
                 message: format!("`{name}` is a function"),
                 span,
@@ -346,8 +377,14 @@ impl Parser<'_> {
     }
 
     fn call(&mut self, name: &str, span: Range<usize>) -> Result<usize, SyntaxError> {
-        let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
-            let known: Vec<&str> = FUNCTIONS.iter().map(|(known, _)| *known).collect();
+        let table = self.tables.iter().find(|(known, _)| *known == name);
+        let function = match table {
+            Some((_, spline)) => Some(Function::Unary(Unary::Spline(*spline, 0))),
+            None => FUNCTIONS.iter().find(|(known, _)| *known == name).map(|(_, function)| *function),
+        };
+        let Some(function) = function else {
+            let known: Vec<&str> =
+                FUNCTIONS.iter().map(|(known, _)| *known).chain(self.tables.iter().map(|(known, _)| *known)).collect();
             return Err(SyntaxError {
                 message: format!("unknown function `{name}`"),
                 span,
@@ -359,16 +396,16 @@ impl Parser<'_> {
             let first = parser.sum()?;
             let second = if parser.take(',') { Some(parser.sum()?) } else { None };
             if second.is_some() && parser.peek() == Some(',') {
-                return Err(wrong_count(name, span.start..parser.position + 1, *function));
+                return Err(wrong_count(name, span.start..parser.position + 1, function));
             }
             parser.close()?;
             let span = span.start..parser.position;
             match (function, second) {
-                (Function::Unary(function), None) => Ok(parser.push(Term::Unary(*function, first), span)),
+                (Function::Unary(function), None) => Ok(parser.push(Term::Unary(function, first), span)),
                 (Function::Binary(function), Some(second)) => {
-                    Ok(parser.push(Term::Binary(*function, first, second), span))
+                    Ok(parser.push(Term::Binary(function, first, second), span))
                 }
-                _ => Err(wrong_count(name, span, *function)),
+                _ => Err(wrong_count(name, span, function)),
             }
         })
     }

@@ -251,6 +251,18 @@ impl JetSpace {
                 out[0] = value;
             }
             Unary::Sign => self.constant(value, out),
+            // A polynomial in a − a₀, by Horner.
+            Unary::Spline(spline, order) => {
+                let [constant, linear, square, cube] = spline.taylor(order, a[0]);
+                first.copy_from_slice(a);
+                first[0] = 0.0;
+                self.constant(cube, out);
+                for coefficient in [square, linear, constant] {
+                    self.mul(first, out, second);
+                    out.copy_from_slice(second);
+                    out[0] = coefficient;
+                }
+            }
         }
     }
 

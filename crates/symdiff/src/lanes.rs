@@ -195,7 +195,7 @@ unsafe fn sin_cos<const W: usize, const C: usize>(operands: &[u32], memory: *mut
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Expr, Graph, Input, Outputs, lower};
+    use crate::{Expr, Graph, Input, Outputs, Spline, lower};
 
     fn sample() -> (Graph, Vec<Input>, Outputs) {
         let mut g = Graph::new();
@@ -208,6 +208,10 @@ mod tests {
         let square = g.mul(sum, sum);
         let root = g.sqrt(square);
         let smaller = g.binary(Binary::Min, root, tangent);
+        let table = Spline::through(&[(-2.0, 1.0), (0.5, 3.0), (1.0, -2.0), (4.0, 0.3)]).unwrap();
+        let looked_up = g.unary(Unary::Spline(table, 0), smaller);
+        let slope = g.unary(Unary::Spline(table, 1), product);
+        let smaller = g.mul(looked_up, slope);
         let last = g.sub(smaller, product);
         let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol, stage: 0, slot }).to_vec();
         (g, inputs, vec![(sum, None), (tangent, None), (last, None), (s, None)])

@@ -10,7 +10,7 @@
 //! (D+1)^k terms, D its degree, and D+1 ≤ (d+1)(d'+1) for the degrees d, d' of its factors; hence the weights (d+1)^k
 //! by which norms bound the rounding errors of all coefficients at once.
 
-use crate::expr::{Binary, Unary};
+use crate::expr::{Binary, Node, Unary};
 use crate::interval::Interval;
 use crate::jet::{JetScratch, JetSpace};
 use crate::scalar;
@@ -310,6 +310,18 @@ impl ModelSpace {
     /// `out` = anything.
     fn unknown(&self, out: &mut [f64]) {
         self.constant(Interval::ENTIRE, out);
+    }
+}
+
+/// Whether a node's function has an enclosure; what has none is unknown everywhere.
+pub fn encloses(node: Node) -> bool {
+    match node {
+        Node::Constant(_) | Node::Symbol(_) => true,
+        Node::Unary(function, _) => matches!(
+            function,
+            Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos | Unary::Tan
+        ),
+        Node::Binary(function, ..) => matches!(function, Binary::Add | Binary::Sub | Binary::Mul | Binary::Div),
     }
 }
 
