@@ -28,6 +28,9 @@ pub(super) fn allowed_gap(scale: &[f64]) -> f64 {
     GAP * scale.iter().copied().fold(1.0, f64::min)
 }
 
+/// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
+const FAR: f64 = 0.25;
+
 /// A start that cannot be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
@@ -57,15 +60,54 @@ impl<'p> Assembly<'p> {
         width: usize,
         parameters: impl Fn(usize, usize) -> f64,
     ) -> Self {
-        let mut tile = Tile::new(width, program.slots(), program.constants());
-        for (parameter, slot) in program.layout.parameters.clone().enumerate() {
-            for lane in 0..width {
-                tile.lane_mut(slot)[lane] = parameters(parameter, lane);
+        let tile = Tile::new(width, program.slots(), program.constants());
+        let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
+        let mut assembly = Self { program, scale, tile };
+        assembly.set_parameters(parameters);
+        assembly
+    }
+
+    /// Other parameters.
+    pub(super) fn set_parameters(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+        for (parameter, slot) in self.program.layout.parameters.clone().enumerate() {
+            for lane in 0..self.tile.width() {
+                self.tile.lane_mut(slot)[lane] = parameters(parameter, lane);
             }
         }
-        tile.run(program.sample());
-        let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
-        Self { program, scale, tile }
+        self.tile.run(self.program.sample());
+    }
+
+    /// The same state in every lane.
+    pub(super) fn set_state(&mut self, state: &[f64]) {
+        for slot in self.program.layout.state() {
+            self.tile.lane_mut(slot).fill(state[slot]);
+        }
+    }
+
+    /// Positions for other parameters, from where they are.
+    pub(super) fn follow(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+        self.set_parameters(parameters);
+        self.tile.run(self.program.given());
+        self.correct_until_settled(self.program.position(), self.program.layout.q.start);
+    }
+
+    /// Lanes of which a coordinate is far from that of a state.
+    pub(super) fn far_from(&self, state: &[f64]) -> Vec<bool> {
+        let is_far = |lane: usize| {
+            let places = self.program.layout.q.clone().zip(&self.scale);
+            // Not a number is far.
+            !places.into_iter().all(|(slot, scale)| (self.tile.lane(slot)[lane] - state[slot]).abs() <= FAR * scale)
+        };
+        (0..self.tile.width()).map(is_far).collect()
+    }
+
+    /// Takes over some lanes of another.
+    pub(super) fn copy_lanes(&mut self, other: &Self, lanes: &[usize]) {
+        for slot in 0..self.program.slots() {
+            for &lane in lanes {
+                self.tile.lane_mut(slot)[lane] = other.tile.lane(slot)[lane];
+            }
+        }
     }
 
     /// The memory, to set what is to be assembled.
@@ -94,7 +136,7 @@ impl<'p> Assembly<'p> {
             }
             self.tile.run(self.program.given());
             match self.descend() {
-                Ok(()) => return self.complete(),
+                Ok(()) => return self.complete().into_iter().next().map_or(Ok(()), Err),
                 Err(gap)
                     if best
                         .as_ref()
@@ -108,24 +150,25 @@ impl<'p> Assembly<'p> {
         Err(best.expect("at least one guess was tried"))
     }
 
-    /// Assembles every lane from `nominal`, an assembled state of one lane.
-    ///
-    /// # Errors
-    /// The first lane that cannot be assembled.
-    pub fn assemble_from(&mut self, nominal: &[f64]) -> Result<(), Gap> {
-        for slot in self.program.layout.state() {
-            self.tile.lane_mut(slot).fill(nominal[slot]);
-        }
+    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the worst gap of each lane that cannot be
+    /// assembled, lane by lane.
+    pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<Gap> {
+        self.set_state(nominal);
+        self.assemble()
+    }
+
+    /// Assembles every lane from where it is; the worst gap of each that cannot be.
+    pub(super) fn assemble(&mut self) -> Vec<Gap> {
         self.tile.run(self.program.given());
         self.correct_until_settled(self.program.position(), self.program.layout.q.start);
         self.complete()
     }
 
-    /// Velocities, accelerations and multipliers for assembled positions.
-    fn complete(&mut self) -> Result<(), Gap> {
+    /// Velocities, accelerations and multipliers for assembled positions; the gaps of lanes where there are none.
+    fn complete(&mut self) -> Vec<Gap> {
         let program = self.program;
         self.tile.run(program.position());
-        self.check(&program.constraint, false)?;
+        let mut gaps = self.gaps(&program.constraint, false);
         for slot in program.layout.v.clone() {
             self.tile.lane_mut(slot).fill(0.0);
         }
@@ -133,12 +176,15 @@ impl<'p> Assembly<'p> {
         // `given` sets positions too: to the values they have already.
         self.correct_until_settled(program.velocity(), program.layout.v.start);
         self.tile.run(program.velocity());
-        self.check(&program.constraint_rate, true)?;
+        gaps.extend(self.gaps(&program.constraint_rate, true));
+        // Where positions gape, velocities mean nothing.
+        gaps.sort_by_key(|gap| (gap.lane, gap.of_velocities));
+        gaps.dedup_by_key(|gap| gap.lane);
         for slot in program.layout.w.start..program.layout.lambda.end {
             self.tile.lane_mut(slot).fill(0.0);
         }
         self.accelerate();
-        Ok(())
+        gaps
     }
 
     /// Accelerations and multipliers at the tile's positions, velocities and time.
@@ -168,7 +214,7 @@ impl<'p> Assembly<'p> {
     }
 
     /// Damped Gauss–Newton of a single lane.
-    fn descend(&mut self) -> Result<(), Gap> {
+    pub(super) fn descend(&mut self) -> Result<(), Gap> {
         let program = self.program;
         let q = program.layout.q.clone();
         self.tile.run(program.position());
@@ -200,7 +246,7 @@ impl<'p> Assembly<'p> {
             }
             damping = (2.0 * damping).min(1.0);
         }
-        self.check(&program.constraint, false)
+        self.gaps(&program.constraint, false).into_iter().next().map_or(Ok(()), Err)
     }
 
     fn constraint_norm(&self) -> f64 {
@@ -237,20 +283,16 @@ impl<'p> Assembly<'p> {
         }
     }
 
-    /// The first lane with a constraint that is not fulfilled.
-    fn check(&self, slots: &[usize], of_velocities: bool) -> Result<(), Gap> {
+    /// The worst gap of each lane with a constraint that is not fulfilled.
+    fn gaps(&self, slots: &[usize], of_velocities: bool) -> Vec<Gap> {
         let allowed = allowed_gap(&self.scale);
-        for lane in 0..self.tile.width() {
+        let of_lane = |lane: usize| {
             let gaps = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
             let worst = gaps.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
-            if let Some((constraint, amount)) = worst {
-                // Not a number is a gap too.
-                let closed = amount.abs() <= allowed;
-                if !closed {
-                    return Err(Gap { lane, constraint, amount, of_velocities });
-                }
-            }
-        }
-        Ok(())
+            // Not a number is a gap too.
+            let open = worst.filter(|(_, amount)| amount.is_nan() || amount.abs() > allowed);
+            open.map(|(constraint, amount)| Gap { lane, constraint, amount, of_velocities })
+        };
+        (0..self.tile.width()).filter_map(of_lane).collect()
     }
 }

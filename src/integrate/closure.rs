@@ -90,6 +90,11 @@ impl<'s> Closure<'s> {
         &self.independent
     }
 
+    /// Whether outputs depend on velocities; where not, those of [`Points`] are not looked at.
+    pub fn needs_velocities(&self) -> bool {
+        self.needs.0
+    }
+
     /// Outputs at all points: output by output, point by point; not a number where the closure has no solution near the
     /// point's motion.
     pub fn outputs(&self, time: f64, points: &Points, into: &mut Vec<f64>) {

@@ -6,6 +6,7 @@ use symdiff::WIDTHS;
 use super::hht::{Stepper, Stuck};
 use super::newton::Counters;
 use super::simulator::{SimulationError, Simulator};
+use super::singular::{SingularPass, SingularWatch};
 use super::steps::Schedule;
 
 /// Widest tile in use: a wider one's memory would leave the first-level cache.
@@ -32,8 +33,12 @@ struct Member<'s> {
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
-    /// Largest local error seen, over the tolerance, of each lane.
+    /// What each lane's local errors add up to, over the tolerance.
     strain: Vec<f64>,
+    /// The first of its samples that stopped, and where the step began that it did not take.
+    stopped: Option<(usize, Vec<f64>)>,
+    /// Looks for singular configurations of the first lane.
+    watch: Option<SingularWatch<'s>>,
 }
 
 /// What is looked at in each row.
@@ -66,6 +71,8 @@ pub struct Stop {
     pub time: f64,
     /// Of n + m, the one that resists most.
     pub equation: usize,
+    /// The constraint that stays open there whatever the position, and by how much, where it is known that one does.
+    pub open: Option<(usize, f64)>,
     /// Whether it would go on, but not with an invertible Newton matrix, which jets need.
     pub singular: bool,
 }
@@ -102,11 +109,20 @@ impl<'s> Fleet<'s> {
                 let start = simulator.assemble(width, first_step, sample)?;
                 let mut stepper = Stepper::new(&simulator.program, &start);
                 stepper.retire(count..width);
-                Ok(Member { stepper, first, count, strain: vec![0.0; width] })
+                Ok(Member { stepper, first, count, strain: vec![0.0; width], stopped: None, watch: None })
             })
             .collect();
         let tiles = assembled.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(Self { simulator, tiles, samples: samples.len() })
+    }
+
+    /// The same, looking for singular configurations that the first sample passes.
+    #[must_use]
+    pub fn watching(mut self) -> Self {
+        if let Some(member) = self.tiles.first_mut() {
+            member.watch = Some(SingularWatch::new(self.simulator, &member.stepper));
+        }
+        self
     }
 
     /// What is `observed` at `rows`, which follow those asked for last (row 0 is the start): row by row, value by value,
@@ -149,7 +165,22 @@ impl<'s> Fleet<'s> {
         })
     }
 
-    /// The sample whose local error was largest against the tolerance, and how large.
+    /// Singular configurations that the first sample has passed, where they were looked for.
+    pub fn singular_passes(&self) -> Vec<SingularPass> {
+        self.tiles.iter().filter_map(|member| member.watch.as_ref()).flat_map(SingularWatch::passes).collect()
+    }
+
+    /// A constraint that stays open where a sample stopped, whatever its position, and by how much: the mechanism locks there.
+    /// Known of the first sample of each tile that stops.
+    pub fn stays_open(&self, stop: &Stop, schedule: &Schedule) -> Option<(usize, f64)> {
+        let mut stopped = self.tiles.iter().filter_map(|member| member.stopped.as_ref());
+        let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
+        // An opening needs time to show.
+        let times = [stop.time, stop.time + schedule.output_step];
+        times.into_iter().find_map(|time| self.simulator.stays_open(state, time))
+    }
+
+    /// The sample whose local errors add up to most, and to how much over the tolerance.
     pub fn most_strained(&self) -> Option<(usize, f64)> {
         let strains = self.tiles.iter().flat_map(|member| {
             member.strain[..member.count].iter().enumerate().map(|(lane, &strain)| (member.first + lane, strain))
@@ -167,23 +198,37 @@ impl Member<'_> {
         (observed, outputs): (Observed, usize),
     ) -> (Vec<f64>, Vec<Stop>) {
         let width = self.stepper.tile().width();
+        if tolerance.is_some() {
+            self.stepper.estimate_errors();
+        }
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
         for (place, row) in rows.enumerate() {
             for (h, end) in schedule.steps_to(row) {
+                if !self.stepper.alive().contains(&true) {
+                    break;
+                }
                 self.stepper.set_step_size(h);
-                let before = tolerance.map(|_| self.stepper.save());
                 let stuck = self.stepper.step(h, end);
+                if let (Some(first), None) = (stuck.first(), &self.stopped) {
+                    self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
+                }
+                if let Some(watch) = &mut self.watch {
+                    watch.look(&self.stepper, end);
+                }
                 stops.extend(stuck.into_iter().map(|Stuck { lane, time, equation }| Stop {
                     sample: self.first + lane,
                     row,
                     time,
                     equation,
+                    open: None,
                     singular: false,
                 }));
-                if let (Some(tolerance), Some(before)) = (tolerance, before) {
-                    for (strain, error) in self.strain.iter_mut().zip(self.stepper.local_error(&before, h)) {
-                        *strain = strain.max(error / tolerance);
+                if let Some(tolerance) = tolerance {
+                    for (lane, error) in self.stepper.local_errors().iter().enumerate() {
+                        if self.stepper.alive()[lane] {
+                            self.strain[lane] += error.size / tolerance;
+                        }
                     }
                 }
             }

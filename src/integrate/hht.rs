@@ -19,6 +19,17 @@ pub struct Stuck {
     pub equation: usize,
 }
 
+/// A lane's local error in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalError {
+    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger.
+    pub size: f64,
+    /// The coordinate that has it.
+    pub coordinate: usize,
+    /// How much its acceleration changes within the step.
+    pub change: f64,
+}
+
 /// Samples in step: the states of a tile, advanced together.
 #[derive(Clone, Debug)]
 pub struct Stepper<'p> {
@@ -31,6 +42,8 @@ pub struct Stepper<'p> {
     prepared_size: f64,
     /// Whether a lane still runs.
     alive: Vec<bool>,
+    /// Local errors, where they are asked for.
+    errors: Option<Vec<LocalError>>,
 }
 
 impl<'p> Stepper<'p> {
@@ -48,6 +61,7 @@ impl<'p> Stepper<'p> {
             step_size: f64::NAN,
             prepared_size: f64::NAN,
             alive: vec![true; width],
+            errors: None,
         }
     }
 
@@ -59,6 +73,23 @@ impl<'p> Stepper<'p> {
     /// The memory, to put back a state that was saved.
     pub fn tile_mut(&mut self) -> &mut Tile {
         &mut self.tile
+    }
+
+    /// The layout's slots of one lane.
+    pub(super) fn lane(&self, lane: usize) -> Vec<f64> {
+        (0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]).collect()
+    }
+
+    /// The same into memory that is there.
+    pub(super) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
+        into.clear();
+        into.extend((0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]));
+    }
+
+    /// Largest |1/pivot| of a lane's last factors, over what is trusted.
+    pub(super) fn pivot_strain(&self, lane: usize) -> f64 {
+        let watched = self.program.watched.iter();
+        watched.map(|pivot| self.tile.lane(pivot.slot)[lane].abs() / pivot.largest_inverse).fold(0.0, f64::max)
     }
 
     /// Number of coordinates, n.
@@ -107,6 +138,7 @@ impl<'p> Stepper<'p> {
     /// One step without rescue: which of the running lanes converged and advanced. Those that did not keep their state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
         let converged = self.solve(h, end);
+        self.measure_errors(h);
         if converged != self.alive {
             let state = self.save();
             self.finish();
@@ -178,12 +210,21 @@ impl<'p> Stepper<'p> {
         }
         let mut single = Stepper::new(self.program, &alone);
         let start = single.save();
+        single.errors = self.errors.as_ref().map(|_| vec![LocalError::default()]);
         for halvings in 1..=MAX_HALVINGS {
             let parts = 1_u32 << halvings;
             single.rewind(&start, h);
             let part = h / f64::from(parts);
-            let done = (1..=parts).all(|count| single.try_step(part, end - f64::from(parts - count) * part)[0]);
+            let mut error = 0.0;
+            let done = (1..=parts).all(|count| {
+                let converged = single.try_step(part, end - f64::from(parts - count) * part)[0];
+                error += single.local_errors().first().map_or(0.0, |error| error.size);
+                converged
+            });
             if done {
+                for (error_of, last) in self.errors.iter_mut().zip(&single.errors) {
+                    error_of[lane] = LocalError { size: error, ..last[0] };
+                }
                 // Back to the schedule's step size, so that a fits it.
                 single.set_step_size(h);
                 for slot in layout.state() {
@@ -194,36 +235,54 @@ impl<'p> Stepper<'p> {
                 return Ok(());
             }
         }
-        Err(single.worst_equation())
+        Err(single.worst_equation(0))
     }
 
-    /// The equation with the largest residual at the iterate, each against its scale.
-    pub(super) fn worst_equation(&mut self) -> usize {
+    /// The equation with the largest residual at a lane's iterate, each against its scale.
+    pub(super) fn worst_equation(&mut self, lane: usize) -> usize {
         self.tile.run(self.program.matrix());
         let sizes = self.program.residual.iter().zip(&self.program.equilibration);
-        let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[0] * scale).abs());
+        let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[lane] * scale).abs());
         let sizes = sizes.map(|size| if size.is_nan() { f64::INFINITY } else { size });
         sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(equation, _)| equation)
     }
 
-    /// Largest local position error of each running lane in the step just taken, relative to max(1, |q|) and the
-    /// coordinate's scale: (β + Δ/2 − 1/6) h² (a₊ − a), with the state before the step given, saved after
-    /// [`set_step_size`](Self::set_step_size).
-    pub fn local_error(&self, before: &[f64], h: f64) -> Vec<f64> {
-        let layout = &self.program.layout;
-        let width = self.tile.width();
-        let gain = self.program.coefficients.error_gain(h).abs();
-        let algorithmic = &before[(layout.a.start - layout.q.start) * width..];
-        let mut errors = vec![0.0_f64; width];
-        for (place, (q, a)) in layout.q.clone().zip(layout.a.clone()).enumerate() {
-            for (lane, error) in errors.iter_mut().enumerate().filter(|(lane, _)| self.alive[*lane]) {
-                let change = self.tile.lane(a)[lane] - algorithmic[place * width + lane];
-                let size = self.program.scale[place].max(self.tile.lane(q)[lane].abs());
-                let relative = gain * change.abs() / size;
-                *error = if relative <= *error { *error } else { relative };
+    /// From now on every step's local error is known.
+    pub fn estimate_errors(&mut self) {
+        self.errors = Some(vec![LocalError::default(); self.tile.width()]);
+    }
+
+    /// Local errors of the lanes in the last step, where they are asked for.
+    pub fn local_errors(&self) -> &[LocalError] {
+        self.errors.as_deref().unwrap_or_default()
+    }
+
+    /// After the iteration: (β + Δ/2 − 1/6) h² (a₊ − a) of each lane, of which only the part that moves the mechanism counts.
+    /// The rest is along the constraints' normals, where positions have no error: a₊ − a is large there after every change of
+    /// h, since the scheme wants velocities with Φ_q v + Φ_t = C h², and would not fall with smaller steps.
+    fn measure_errors(&mut self, h: f64) {
+        let Some(errors) = &mut self.errors else { return };
+        self.tile.run(self.program.estimate());
+        let (layout, numbers) = (&self.program.layout, self.program.coefficients);
+        let gain = numbers.error_gain(h).abs();
+        for (lane, worst) in errors.iter_mut().enumerate() {
+            *worst = LocalError::default();
+            let value = |slot: usize| self.tile.lane(slot)[lane];
+            for (place, scale) in self.program.scale.iter().enumerate() {
+                let change = if self.newton.is_singular(lane) {
+                    // There are no factors.
+                    let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + place));
+                    numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a
+                } else {
+                    value(layout.correction.start + place)
+                };
+                let size = gain * change.abs() / scale.max(value(layout.q.start + place).abs());
+                // Written so that not a number wins and stays.
+                if !(size <= worst.size || worst.size.is_nan()) {
+                    *worst = LocalError { size, coordinate: place, change };
+                }
             }
         }
-        errors
     }
 
     /// Values of the outputs now: output by output, lane by lane; not a number for lanes that no longer run.

@@ -66,8 +66,8 @@ impl<'s> JetRun<'s> {
         for row in rows {
             for (h, end) in schedule.steps_to(row) {
                 if let Err(singular) = self.step(h, end) {
-                    let equation = self.center.worst_equation();
-                    return Some(Stop { sample: 0, row, time: end, equation, singular });
+                    let equation = self.center.worst_equation(0);
+                    return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
                 }
             }
             self.memory.run(self.simulator.program.observe());

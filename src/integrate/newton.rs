@@ -86,6 +86,11 @@ impl Newton {
         }
     }
 
+    /// Whether a lane's last step was solved whatever its rank.
+    pub(super) fn is_singular(&self, lane: usize) -> bool {
+        self.singular[lane]
+    }
+
     /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only those
     /// that converged. The step's tape must have run.
     pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, alive: &mut [bool]) {

@@ -115,12 +115,18 @@ impl Remainder {
     }
 }
 
-/// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that the rows before them imply: found by
-/// elimination in the rows' order, each time on the largest entry left.
+/// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that the rows before them imply.
 pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> {
+    let strengths = row_strengths(rows, tolerance).into_iter().enumerate();
+    strengths.filter(|(_, strength)| *strength <= tolerance).map(|(row, _)| row).collect()
+}
+
+/// How far each row of a sparse matrix stands out of those before it, relative to its own size: the largest entry that
+/// elimination in the rows' order leaves of it, each time on the largest. Rows within the tolerance are not eliminated with.
+pub fn row_strengths(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<f64> {
     let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
-    let mut dependent = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
+    let mut strengths = Vec::with_capacity(rows.len());
+    for row in rows {
         let size = row.iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
         let mut left: BTreeMap<usize, f64> = row.iter().copied().collect();
         // A pivot row has no entries in earlier pivots' columns only after them, so columns are cleared until none is left.
@@ -133,19 +139,18 @@ pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> 
             left.insert(column, 0.0);
         }
         let pivot = left.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map(|(&column, &value)| (column, value));
-        match pivot {
-            Some((column, value)) if value.abs() > tolerance * size => {
-                let row = left
-                    .into_iter()
-                    .filter(|&(_, entry)| entry != 0.0)
-                    .map(|(other, entry)| (other, entry / value))
-                    .collect();
-                reduced.insert(column, row);
-            }
-            _ => dependent.push(index),
+        let strength = pivot.map_or(0.0, |(_, value)| if size > 0.0 { value.abs() / size } else { 0.0 });
+        strengths.push(strength);
+        if let Some((column, value)) = pivot.filter(|_| strength > tolerance) {
+            let row = left
+                .into_iter()
+                .filter(|&(_, entry)| entry != 0.0)
+                .map(|(other, entry)| (other, entry / value))
+                .collect();
+            reduced.insert(column, row);
         }
     }
-    dependent
+    strengths
 }
 
 /// Columns of a matrix that its independent rows leave free, by elimination with complete pivoting; columns of large

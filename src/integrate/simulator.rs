@@ -1,20 +1,27 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
-use symdiff::Tile;
+use symdiff::{Tile, WIDTHS};
 
 use super::assemble::{Assembly, Gap};
 use super::rank::dependent_rows;
+use super::reactions::undetermined_outputs;
 use crate::mechanics::System;
 use crate::program::{Layout, PROBES, Probe, Program, Scheme, Singular, StartProgram, compile, compile_start};
 
 /// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
-const DEPENDENT: f64 = 1e-8;
+pub(super) const DEPENDENT: f64 = 1e-8;
 
 /// How far the probes for pivots are moved from the nominal start, in coordinate scales.
 const PROBE_SPREAD: f64 = 0.7;
 
 /// How far a configuration in general position is from the start, in coordinate scales.
 const APART: f64 = 0.05;
+
+/// Samples that are assembled together where only that is asked.
+const ASSEMBLED_AT_ONCE: usize = 8;
+
+/// Steps from the nominal parameters to those of a sample that is far from them.
+const LED: usize = 16;
 
 /// A mechanism that can be simulated.
 #[derive(Clone, Debug)]
@@ -29,6 +36,8 @@ pub struct Simulator {
     pub nominal: Vec<f64>,
     /// What is known of the constraints.
     pub mobility: Mobility,
+    /// Outputs that hang on reactions which equilibrium does not determine.
+    pub undetermined: Vec<usize>,
 }
 
 /// Degrees of freedom and redundancy.
@@ -64,10 +73,24 @@ pub enum SimulationError {
     #[error("the Newton matrix is singular at t = {time} s, so the response has no Taylor coefficients there")]
     #[allow(missing_docs)]
     SingularJet { time: f64 },
-    /// Step-size control asks for steps that make no headway.
-    #[error("the step size fell below {step:.3e} s at t = {time} s without meeting the tolerance")]
+    /// The constraints cannot be fulfilled any more.
+    #[error(
+        "the mechanism locks at t = {time} s ({}): `{constraint}` stays open by {amount:.3e} whatever the position",
+        parameter_list(parameters)
+    )]
     #[allow(missing_docs)]
-    StepTooSmall { step: f64, time: f64 },
+    Locked { time: f64, constraint: String, amount: f64, parameters: Vec<(String, f64)> },
+    /// Step-size control asks for steps that make no headway.
+    #[error(
+        "at t = {time} s ({}) the steps fell below {step:.1e} s without meeting the tolerance: {cause}",
+        parameter_list(parameters)
+    )]
+    #[allow(missing_docs)]
+    StepTooSmall { step: f64, time: f64, cause: String, parameters: Vec<(String, f64)> },
+    /// Steps that meet the tolerance are too many.
+    #[error("the tolerance takes more than {steps} steps; they are {step:.1e} s long at t = {time} s, where {cause}")]
+    #[allow(missing_docs)]
+    TooManySteps { steps: usize, step: f64, time: f64, cause: String },
 }
 
 fn parameter_list(parameters: &[(String, f64)]) -> String {
@@ -122,9 +145,10 @@ impl Simulator {
             start = compile_start(&system, &mobility.redundant, &probe).map_err(singular)?;
             nominal = assembled(&start)?;
         }
+        let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
         let probes = probes(&system, &layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &probes).map_err(singular)?;
-        Ok(Self { system, start, program, nominal, mobility })
+        Ok(Self { system, start, program, nominal, mobility, undetermined })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -133,10 +157,64 @@ impl Simulator {
     /// The first sample that cannot be assembled, with its parameters.
     pub fn assemble(&self, width: usize, h: f64, sample: impl Fn(usize) -> Vec<f64>) -> Result<Tile, SimulationError> {
         let samples: Vec<Vec<f64>> = (0..width).map(sample).collect();
-        let mut assembly = Assembly::new(&self.start, &self.system, width, |parameter, lane| samples[lane][parameter]);
-        assembly.assemble_from(&self.nominal).map_err(|gap| assembly_error(&self.system, &gap, &samples[gap.lane]))?;
+        let (mut assembly, gaps) = self.assembly(&samples);
+        if let Some(gap) = gaps.first() {
+            return Err(assembly_error(&self.system, gap, &samples[gap.lane]));
+        }
         assembly.shift_accelerations(self.program.coefficients.shift() * h);
         Ok(assembly.tile().clone())
+    }
+
+    /// The uncertain parameters with a sample's values.
+    pub fn with_names(&self, sample: &[f64]) -> Vec<(String, f64)> {
+        let names = self.system.parameters.iter().map(|parameter| parameter.name.clone());
+        names.zip(sample.iter().copied()).collect()
+    }
+
+    /// Whether each of some samples can be assembled.
+    pub fn can_assemble(&self, samples: &[Vec<f64>]) -> Vec<bool> {
+        let of_tile = |samples: &[Vec<f64>]| {
+            let mut can = vec![true; samples.len()];
+            // Lanes beyond the samples repeat the last one.
+            let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
+            let lanes: Vec<Vec<f64>> = (0..width).map(|lane| samples[lane.min(samples.len() - 1)].clone()).collect();
+            for gap in self.assembly(&lanes).1 {
+                can.get_mut(gap.lane).into_iter().for_each(|can| *can = false);
+            }
+            can
+        };
+        samples.chunks(ASSEMBLED_AT_ONCE).flat_map(of_tile).collect()
+    }
+
+    /// A tile of samples assembled from the nominal one, and the gaps of those that cannot be. A sample far from it is led there
+    /// by small changes of the parameters, lest it ends on another branch of the linkage.
+    fn assembly(&self, samples: &[Vec<f64>]) -> (Assembly<'_>, Vec<Gap>) {
+        let at = |share: f64| {
+            move |parameter: usize, lane: usize| {
+                let (nominal, value) = (self.system.parameters[parameter].nominal, samples[lane][parameter]);
+                if share == 1.0 { value } else { nominal + share * (value - nominal) }
+            }
+        };
+        let mut assembly = Assembly::new(&self.start, &self.system, samples.len(), at(1.0));
+        let mut gaps = assembly.assemble_from(&self.nominal);
+        let mut far = assembly.far_from(&self.nominal);
+        gaps.iter().for_each(|gap| far[gap.lane] = true);
+        if far.contains(&true) {
+            let mut led = Assembly::new(&self.start, &self.system, samples.len(), at(0.0));
+            led.set_state(&self.nominal);
+            for part in 1..LED {
+                led.follow(at(part as f64 / LED as f64));
+            }
+            led.set_parameters(at(1.0));
+            let gaping = led.assemble();
+            let closes = |lane: usize| gaping.iter().all(|gap| gap.lane != lane);
+            let gaped = |lane: usize| gaps.iter().any(|gap| gap.lane == lane);
+            let better: Vec<usize> =
+                (0..far.len()).filter(|&lane| far[lane] && (closes(lane) || gaped(lane))).collect();
+            assembly.copy_lanes(&led, &better);
+            gaps = gaping.into_iter().filter(|gap| better.contains(&gap.lane)).collect();
+        }
+        (assembly, gaps)
     }
 
     /// What a singular matrix of this mechanism means.
@@ -171,7 +249,7 @@ fn assembly_error(system: &System, gap: &Gap, parameters: &[f64]) -> SimulationE
 }
 
 /// Additive recurrences in [−1, 1): evenly spread numbers, the same on every machine.
-fn spread(series: usize, place: usize) -> f64 {
+pub(super) fn spread(series: usize, place: usize) -> f64 {
     2.0 * ((place + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
 }
 
@@ -224,6 +302,11 @@ fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility 
 
 /// Constraints that earlier ones imply at a state.
 fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -> Vec<usize> {
+    dependent_rows(&slope_rows(system, start, state), DEPENDENT)
+}
+
+/// Rows of Φ_q at a state (the layout's slots), per scale of each coordinate: (coordinate, value).
+pub(super) fn slope_rows(system: &System, start: &StartProgram, state: &[f64]) -> Vec<Vec<(usize, f64)>> {
     let mut tile = Tile::new(1, start.slots(), start.constants());
     tile.values_mut()[..state.len()].copy_from_slice(state);
     tile.run(start.sample());
@@ -232,11 +315,11 @@ fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -
     for &(row, column, slot) in &start.slope_entries {
         rows[row].push((column, tile.lane(slot)[0] * system.coordinates[column].scale));
     }
-    dependent_rows(&rows, DEPENDENT)
+    rows
 }
 
 /// An assembled state in general position near another; nothing is kept but the constraints. `None` where there is none.
-fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
+pub(super) fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
     let mut free = system.clone();
     free.start.position.fill(None);
     let start = compile_start(&free, &[], state).ok()?;

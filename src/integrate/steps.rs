@@ -111,25 +111,36 @@ impl Schedule {
     }
 }
 
-/// Step-size control for HHT (Negrut et al. 2007, §5): the local position error is of third order, and the controller
-/// aims at Θ = (‖δ‖/tol)² ≤ 1 with h ← 0.9 h Θ^(−1/6).
+/// Step-size control for HHT. The local position error δ of a step (Negrut et al. 2007, §5) is of third order; what it adds
+/// up to over the run is kept at the tolerance by allowing each step its share, δ ≤ tolerance · h / duration (an error per
+/// unit step). So the error at the end is proportional to the tolerance. Kept at the tolerance itself, as in the paper, the
+/// errors of ever more steps would add up: the error at the end would fall with tolerance^(2/3) only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controller {
-    /// Wanted local position error.
+    /// Wanted position error over the duration, relative to max(1, |q|) of each coordinate's scale.
     pub tolerance: f64,
+    /// s
+    pub duration: f64,
 }
 
 impl Controller {
     /// A step below this share of the duration is given up.
-    pub const SMALLEST: f64 = 1e-12;
+    pub const SMALLEST: f64 = 1e-13;
 
-    /// Factor for the next step after an error of `error` (the worst sample's).
-    pub fn factor(self, error: f64) -> f64 {
-        if !error.is_finite() {
+    /// Local errors below this are round-off and not judged: positions carry an error of ε, and δ the same.
+    const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+    /// A step's local error over its share of the tolerance: at most 1 where the step may stay.
+    pub fn strain(self, error: f64, h: f64) -> f64 {
+        error / (self.tolerance * h / self.duration).max(Self::ROUND_OFF)
+    }
+
+    /// Factor for the next step after one of this strain (the worst sample's): δ/h is of second order.
+    pub fn factor(self, strain: f64) -> f64 {
+        if !strain.is_finite() {
             return 0.25;
         }
-        let theta = (error / self.tolerance).powi(2);
-        (0.9 * theta.powf(-1.0 / 6.0)).clamp(0.2, 2.0)
+        (0.9 / strain.sqrt()).clamp(0.2, 2.0)
     }
 }
 

@@ -14,8 +14,9 @@
 
 use symdiff::{Expr, Graph};
 
+use super::carried::Carried;
 use super::rotation::{self, Quaternion};
-use super::space::{self, Vector};
+use super::space::{self, Matrix, Vector};
 
 /// Places for coordinates: x, y, z, then θ or p₀ to p₃.
 pub const FREEDOMS: usize = 7;
@@ -44,8 +45,12 @@ pub struct Body {
     pub velocity: [Expr; FREEDOMS],
     /// Their second derivatives by time.
     pub acceleration: [Expr; FREEDOMS],
-    /// Their positions in q; `None` where held.
+    /// Their positions in q; `None` where held, and where the body is carried.
     pub index: [Option<usize>; FREEDOMS],
+    /// How a joint carries the body, if one does.
+    pub carried: Option<Box<Carried>>,
+    /// Of a body that is carried and does not only turn about z.
+    pub attitude: Option<Attitude>,
     /// Mass m, kg; zero where the body declares none.
     pub mass: Expr,
     /// Inertia tensor J about the centre of mass in the frame's axes, kg m²; zero where the body declares none, and but
@@ -57,6 +62,17 @@ pub struct Body {
     pub points: Vec<Vector>,
     /// Rotations of the frames at those points against the body's.
     pub frames: Vec<Option<Quaternion>>,
+}
+
+/// How a body stands and turns, without Euler parameters in it.
+#[derive(Clone, Debug)]
+pub struct Attitude {
+    /// R
+    pub matrix: Matrix,
+    /// ω in the ground's axes.
+    pub omega: Vector,
+    /// ω̇ in the ground's axes.
+    pub alpha: Vector,
 }
 
 /// A point fixed in a body.
@@ -92,7 +108,22 @@ impl Body {
                 let (sx, cy) = (g.mul(sin, a[0]), g.mul(cos, a[1]));
                 [g.sub(cx, sy), g.add(sx, cy), a[2]]
             }
-            Turn::Euler => rotation::matrix(g, self.euler()).map(|row| space::dot(g, row, a)),
+            Turn::Euler => {
+                let matrix = self.matrix(g);
+                space::times(g, &matrix, a)
+            }
+        }
+    }
+
+    /// R.
+    pub fn matrix(&self, g: &mut Graph) -> Matrix {
+        match (&self.attitude, self.turn) {
+            (Some(attitude), _) => attitude.matrix,
+            (None, Turn::Angle) => {
+                let axis = space::along(g, 2);
+                rotation::matrix_about(g, axis, self.position[ANGLE])
+            }
+            (None, Turn::Euler) => rotation::matrix(g, self.euler()),
         }
     }
 
@@ -119,12 +150,18 @@ impl Body {
 
     /// ω in the ground's axes.
     pub fn angular_velocity(&self, g: &mut Graph) -> Vector {
-        self.turning(g, &self.velocity)
+        match &self.attitude {
+            Some(attitude) => attitude.omega,
+            None => self.turning(g, &self.velocity),
+        }
     }
 
     /// ω̇ in the ground's axes.
     pub fn angular_acceleration(&self, g: &mut Graph) -> Vector {
-        self.turning(g, &self.acceleration)
+        match &self.attitude {
+            Some(attitude) => attitude.alpha,
+            None => self.turning(g, &self.acceleration),
+        }
     }
 
     fn turning(&self, g: &mut Graph, derivative: &[Expr; FREEDOMS]) -> Vector {
@@ -140,11 +177,26 @@ impl Body {
         }
     }
 
-    /// ω or ω̇ in the body's axes.
-    pub fn turning_in_body(&self, g: &mut Graph, derivative: &[Expr; FREEDOMS]) -> Vector {
-        match self.turn {
-            Turn::Angle => self.turning(g, derivative),
-            Turn::Euler => {
+    /// ω in the body's axes.
+    pub fn angular_velocity_in_body(&self, g: &mut Graph) -> Vector {
+        let omega = self.attitude.as_ref().map(|attitude| attitude.omega);
+        self.turning_in_body(g, omega, &self.velocity)
+    }
+
+    /// ω̇ in the body's axes.
+    pub fn angular_acceleration_in_body(&self, g: &mut Graph) -> Vector {
+        let alpha = self.attitude.as_ref().map(|attitude| attitude.alpha);
+        self.turning_in_body(g, alpha, &self.acceleration)
+    }
+
+    fn turning_in_body(&self, g: &mut Graph, turning: Option<Vector>, derivative: &[Expr; FREEDOMS]) -> Vector {
+        match (turning, self.turn) {
+            (Some(turning), _) => {
+                let back = space::transposed(&self.matrix(g));
+                space::times(g, &back, turning)
+            }
+            (None, Turn::Angle) => self.turning(g, derivative),
+            (None, Turn::Euler) => {
                 let rates = rotation::body_rates(g, self.euler());
                 rotation::turning(g, &rates, euler(derivative))
             }

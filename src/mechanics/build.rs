@@ -1,34 +1,74 @@
 //! The equations of motion of a description.
 
+use symdiff::taylor_model::encloses;
 use symdiff::{Expr, Graph};
 
-use crate::model::Description;
+use crate::model::{Description, Formulation};
 
 use super::body::{Body, EULER, Turn};
 use super::effects::{self, Loads};
 use super::error::BuildError;
 use super::joints::{self, Row};
 use super::mechanism::Mechanism;
-use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, LeftOut, System};
+use super::recursion;
+use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, System};
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
 /// only.
 const CLOSED: f64 = 1e-9;
 
-/// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description.
+/// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description, in the formulation that it asks for; `auto` is in absolute
+/// coordinates here.
 ///
 /// Parameters that are certain are folded in; only intervals become symbols. Constraints that hold whatever moves (both
 /// sides held) are left out. The work is linear in the number of bodies, joints and effects.
 ///
 /// # Errors
-/// A constraint that nothing can fulfil, and (for descriptions that were not checked) a name out of place.
+/// A constraint that nothing can fulfil, joint coordinates that are asked for where they do not do, and (for descriptions
+/// that were not checked) a name out of place.
 pub fn build(description: &Description) -> Result<System, BuildError> {
+    match description.simulation.formulation {
+        Formulation::Joint => in_joint_coordinates(description, None)?.map_err(|why| BuildError::NotCarried { why }),
+        Formulation::Absolute | Formulation::Auto => in_absolute_coordinates(description),
+    }
+}
+
+/// Every body has coordinates of its own.
+///
+/// # Errors
+/// As for [`build`].
+pub fn in_absolute_coordinates(description: &Description) -> Result<System, BuildError> {
     let mut graph = Graph::new();
-    let g = &mut graph;
-    let mut mechanism = Mechanism::new(g, description)?;
+    let mechanism = Mechanism::new(&mut graph, description, false)?;
+    equations(graph, mechanism)
+}
+
+/// Joints carry bodies as far as they can; or why they cannot do here. With `deepest`, not where joints close loops, nor where
+/// a body is more joints than that from its root on average.
+///
+/// # Errors
+/// As for [`build`].
+pub fn in_joint_coordinates(
+    description: &Description,
+    deepest: Option<usize>,
+) -> Result<Result<System, String>, BuildError> {
+    let mut graph = Graph::new();
+    let mechanism = Mechanism::new(&mut graph, description, true)?;
+    if let Some(why) = deepest.and_then(|deepest| mechanism.tree.too_involved(description, deepest)) {
+        return Ok(Err(why));
+    }
+    match mechanism.obstacle(&mut graph) {
+        Some(why) => Ok(Err(why)),
+        None => equations(graph, mechanism).map(Ok),
+    }
+}
+
+fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, BuildError> {
+    let (g, description) = (&mut graph, mechanism.description);
     let length = mechanism.characteristic_length(g)?;
 
     let mut left_out = Vec::new();
+    let mut closures = Vec::new();
     let mut constraints = Constraints::default();
     for (body, built) in description.bodies.iter().zip(&mechanism.bodies) {
         if let Some(value) = normalisation(g, built) {
@@ -36,6 +76,12 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         }
     }
     for (index, joint) in description.joints.iter().enumerate() {
+        if mechanism.tree.uses(index) {
+            // Its reaction follows from the motion, once the forces are known.
+            let none = joints::reaction(g, &joint.kind, &[]);
+            mechanism.reactions.push(none);
+            continue;
+        }
         let rows = joints::rows(g, &mechanism, index)?;
         let mut kept = Vec::with_capacity(rows.len());
         for row in rows {
@@ -50,6 +96,7 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         }
         let reaction = joints::reaction(g, &joint.kind, &kept);
         mechanism.reactions.push(reaction);
+        closures.push(index);
         for (coordinate, value) in mechanism.definitions(g, index)? {
             let name = format!("{}.{coordinate}", joint.name);
             constraints.add(g, ConstraintInfo { name, joint: joint.name.clone() }, value);
@@ -58,24 +105,40 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
 
     let mut loads = Loads::new(g, mechanism.bodies.len());
     let mut effects = Vec::new();
-    for effect in &description.effects {
+    for (index, effect) in description.effects.iter().enumerate() {
         let nodes = g.len();
         loads.begin();
         effects::apply(g, &mechanism, &mut loads, &effect.kind)?;
+        let measured = loads.measured().iter().map(|&(measure, value)| ((index, measure), value));
+        mechanism.measures.extend(measured);
         let forces = loads.coordinates_touched(&mechanism);
         if forces == 0 {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
-        effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes });
+        let enclosed = g.exprs_after(nodes).all(|expr| encloses(g.node(expr)));
+        effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes, enclosed });
     }
     let mut mass = Vec::new();
     let mut force = loads.generalised(g, &mechanism);
-    mechanism.potentials = loads.potentials;
     for body in &mechanism.bodies {
         body.add_inertia(g, &mut mass, &mut force);
     }
+    let mut inertia = vec![g.constant(0.0); mechanism.q.len()];
+    for &(row, column, value) in &mass {
+        let part = g.mul(value, mechanism.w[column]);
+        inertia[row] = g.add(inertia[row], part);
+    }
+    if !mechanism.tree.is_absolute() {
+        let carried = recursion::inertial_forces(g, &mechanism, loads.field);
+        mechanism.react(g, &loads, &carried, &closures);
+        for (total, part) in inertia.iter_mut().zip(carried.generalised) {
+            *total = g.add(*total, part);
+        }
+        mass = mass_matrix(g, &inertia, &mechanism.w);
+    }
+    mechanism.potentials = loads.potentials;
     mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
 
     let outputs = mechanism.outputs(g)?;
@@ -95,6 +158,7 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         lambda: constraints.lambda,
         constraints: constraints.infos,
         mass,
+        inertia,
         force,
         constraint: constraints.values,
         outputs,
@@ -102,10 +166,26 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
         effects,
         left_out,
         space: description.space.clone(),
+        formulation: FormulationInfo {
+            joint: !mechanism.tree.is_absolute(),
+            why: "the model asks for them".to_owned(),
+        },
         graph,
     };
     system.note_unused_parameters();
     Ok(system)
+}
+
+/// ∂ inertia / ∂w, both triangles: it is symmetric, so one is enough to be computed.
+fn mass_matrix(g: &mut Graph, inertia: &[Expr], w: &[Expr]) -> Vec<(usize, usize, Expr)> {
+    let slopes = g.jacobian(inertia, w);
+    let lower = slopes.entries().filter(|&(row, column, _)| column <= row);
+    lower
+        .flat_map(|(row, column, value)| {
+            let mirrored = (row != column).then_some((column, row, value));
+            std::iter::once((row, column, value)).chain(mirrored)
+        })
+        .collect()
 }
 
 /// (pᵀp − 1) / 2 of a body that turns by Euler parameters.

@@ -16,13 +16,11 @@ use std::collections::BTreeSet;
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::model::{
-    Description, EffectKind, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning, Twisted,
-};
+use crate::model::{Description, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning};
 
 use super::body::ANGLE;
 use super::error::BuildError;
-use super::joints::Pair;
+use super::joints::{self, Pair};
 use super::mechanism::{Context, Mechanism};
 use super::space;
 
@@ -42,6 +40,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
     for (index, joint) in description.joints.iter().enumerate() {
         match &joint.kind {
             JointKind::Screw { .. } => add(index, JointCoordinate::Angle),
+            JointKind::Motor { joint, coordinate, .. } => add(*joint, *coordinate),
             JointKind::Gear { between, .. } => between.iter().for_each(|turning| {
                 if let Turning::Joint(joint) = turning {
                     add(*joint, JointCoordinate::Angle);
@@ -55,9 +54,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
         }
     }
     for effect in &description.effects {
-        if let EffectKind::TorsionalSpringDamper { on: Twisted::Joint(joint), .. } = effect.kind {
-            add(joint, JointCoordinate::Angle);
-        }
+        effect.kind.coordinates().into_iter().for_each(|on| add(on.joint, on.coordinate));
     }
     for formula in formulas(description) {
         for (name, _) in formula.names() {
@@ -71,30 +68,19 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
 
 /// Formulas that may speak of the motion.
 fn formulas(description: &Description) -> Vec<&Formula> {
-    let mut found: Vec<&Formula> = description.outputs.iter().map(|output| &output.formula).collect();
+    let outputs = description.outputs.iter().map(|output| &output.formula);
+    formulas_of_motion(description).into_iter().chain(outputs).collect()
+}
+
+/// Formulas of constraints and effects.
+pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
+    let mut found: Vec<&Formula> = Vec::new();
     for joint in &description.joints {
         if let JointKind::Equation { left, right } = &joint.kind {
             found.extend([left, right]);
         }
     }
-    for effect in &description.effects {
-        match &effect.kind {
-            EffectKind::Gravity { acceleration: value }
-            | EffectKind::Force { value, .. }
-            | EffectKind::Torque { value, .. } => found.extend(value),
-            EffectKind::JointTorque { value, .. } => found.push(value),
-            EffectKind::SpringDamper { stiffness, damping, free_length: free, along, .. } => {
-                found.extend([stiffness, damping, free]);
-                found.extend(along.iter().flatten());
-            }
-            EffectKind::TorsionalSpringDamper { stiffness, damping, free_angle: free, .. } => {
-                found.extend([stiffness, damping, free]);
-            }
-            EffectKind::Bushing { stiffness, damping, torsional_stiffness, torsional_damping, .. } => {
-                found.extend([stiffness, damping, torsional_stiffness, torsional_damping].into_iter().flatten());
-            }
-        }
-    }
+    found.extend(description.effects.iter().flat_map(|effect| effect.kind.formulas()));
     found
 }
 
@@ -121,10 +107,38 @@ impl Mechanism<'_> {
         g.sub(second, first)
     }
 
+    /// The rate of a joint's coordinate; one that is not a coordinate of its own follows from the bodies' velocities.
+    pub fn joint_rate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
+        let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
+        let between = self.description.joints[joint].kind.between();
+        let (Some(between), false) =
+            (between, planar_angle || self.joint_coordinates.contains_key(&(joint, coordinate)))
+        else {
+            return Ok(self.joint_coordinate(g, joint, coordinate, TimeOrder::Velocity));
+        };
+        let axis = joints::axis_in_ground(g, self, joint, coordinate)?;
+        let [first, second] = between.map(|point| point.body);
+        let relative = match coordinate {
+            JointCoordinate::Angle => {
+                let [first, second] = [first, second].map(|body| self.bodies[body].angular_velocity(g));
+                space::sub(g, second, first)
+            }
+            JointCoordinate::Displacement => {
+                let at = self.point(g, between[1]);
+                let there = self.carried_along(g, first, at.position);
+                space::sub(g, at.velocity, there.velocity)
+            }
+        };
+        Ok(space::dot(g, axis, relative))
+    }
+
     /// The constraints that define a joint's own coordinates: name and Φ.
     pub fn definitions(&self, g: &mut Graph, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
         let kind = &self.description.joints[joint].kind;
         let mut rows = Vec::new();
+        if self.tree.uses(joint) {
+            return Ok(rows);
+        }
         for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
             let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
             let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { continue };

@@ -20,6 +20,12 @@ pub enum BuildError {
         /// Where between the bounds of the parameters; `None` where it is so at the nominal values.
         at: Option<&'static str>,
     },
+    /// Joint coordinates are asked for where they do not do.
+    #[error("`formulation: joint` does not do here: {why}")]
+    NotCarried {
+        /// What is in the way.
+        why: String,
+    },
     /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
     #[error("`{name}` cannot stand in a formula of {allowed}")]
     Name {

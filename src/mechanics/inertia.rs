@@ -32,7 +32,7 @@ impl Body {
     /// Adds the body's entries to M and its velocity-dependent inertial forces to Q. A held coordinate that moves (by
     /// a formula of t) drives the others through its column of M.
     pub fn add_inertia(&self, g: &mut Graph, mass: &mut Vec<(usize, usize, Expr)>, force: &mut [Expr]) {
-        if self.index.iter().all(Option::is_none) {
+        if self.carried.is_some() || self.index.iter().all(Option::is_none) {
             return;
         }
         let (matrix, inertial) = match self.turn {
@@ -103,7 +103,7 @@ impl Body {
         let stretch = g.scale(1.0 / 3.0, sum);
         for j in 0..4 {
             let column = rates.map(|row| row[j]);
-            let turned = times(g, &about_origin, column);
+            let turned = space::times(g, &about_origin, column);
             for i in j..4 {
                 let row = rates.map(|row| row[i]);
                 let turning = space::dot(g, row, turned);
@@ -118,15 +118,15 @@ impl Body {
         let arm = self.rotate(g, self.center);
         let centripetal = self.centripetal(g, arm);
         let pull = space::scale(g, self.mass, centripetal);
-        let omega = self.turning_in_body(g, &self.velocity);
-        let momentum = times(g, &about_origin, omega);
+        let omega = self.angular_velocity_in_body(g);
+        let momentum = space::times(g, &about_origin, omega);
         let gyroscopic = space::cross(g, momentum, omega);
         let turning = rotation::transposed(g, 2.0, &rates, gyroscopic);
         (matrix, [pull[0], pull[1], pull[2], turning[0], turning[1], turning[2], turning[3]])
     }
 
     /// J₀ = J + m (sᵀs 1 − s sᵀ).
-    fn inertia_about_origin(&self, g: &mut Graph) -> [Vector; 3] {
+    pub fn inertia_about_origin(&self, g: &mut Graph) -> [Vector; 3] {
         let s = self.center;
         let square = space::dot(g, s, s);
         let mut shifted = self.inertia;
@@ -153,17 +153,12 @@ impl Body {
                 g.mul(self.inertia[2][2], square)
             }
             Turn::Euler => {
-                let omega = self.turning_in_body(g, &self.velocity);
-                let momentum = times(g, &self.inertia, omega);
+                let omega = self.angular_velocity_in_body(g);
+                let momentum = space::times(g, &self.inertia, omega);
                 space::dot(g, momentum, omega)
             }
         };
         let doubled = g.add(moving, turning);
         g.scale(0.5, doubled)
     }
-}
-
-/// J a.
-fn times(g: &mut Graph, tensor: &[Vector; 3], a: Vector) -> Vector {
-    tensor.map(|row| space::dot(g, row, a))
 }

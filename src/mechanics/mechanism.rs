@@ -6,7 +6,8 @@ use std::fmt;
 use symdiff::{Expr, Formula, Graph};
 
 use crate::model::{
-    self, Coordinate, Description, JointCoordinate, ParameterValue, PointRef, Referent, Rotation, TimeOrder,
+    self, Coordinate, Description, JointCoordinate, JointKind, Measure, ParameterValue, PointRef, Referent, Rotation,
+    TimeOrder,
 };
 
 use super::body::{ANGLE, Body, EULER, FREEDOMS, MaterialPoint, Turn};
@@ -15,6 +16,7 @@ use super::joints::Reaction;
 use super::rotation::{self, Quaternion};
 use super::space::{self, Vector};
 use super::system::UncertainParameter;
+use super::tree::Tree;
 
 /// What a formula may speak of; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,7 +61,8 @@ impl Context {
             },
             Referent::RollPitchYaw { .. } => Self::Positions,
             Referent::Reaction { .. } => Self::Motion,
-            Referent::Energy(_) => Self::Everything,
+            Referent::Measure { measure, .. } if measure.is_motion() => Self::Motion,
+            Referent::Measure { .. } | Referent::Energy(_) => Self::Everything,
         }
     }
 }
@@ -116,17 +119,21 @@ pub struct Mechanism<'d> {
     /// What each of `q` is.
     pub coordinates: Vec<Owner>,
     pub bodies: Vec<Body>,
+    /// Which bodies joints carry.
+    pub tree: Tree,
     /// Places in `q` of the coordinates of joints that are coordinates of their own.
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction>,
     /// Potential energies of the effects built so far, J.
     pub potentials: Vec<Expr>,
+    /// What the effects built so far measure.
+    pub measures: BTreeMap<(usize, Measure), Expr>,
 }
 
 impl<'d> Mechanism<'d> {
-    /// The symbols and bodies of a description.
-    pub fn new(g: &mut Graph, description: &'d Description) -> Result<Self, BuildError> {
+    /// The symbols and bodies of a description; with `carry`, as many bodies as can be are carried by their joints.
+    pub fn new(g: &mut Graph, description: &'d Description, carry: bool) -> Result<Self, BuildError> {
         let time = g.symbol("t");
         let mut mechanism = Self {
             description,
@@ -138,9 +145,11 @@ impl<'d> Mechanism<'d> {
             w: Vec::new(),
             coordinates: Vec::new(),
             bodies: Vec::new(),
+            tree: Tree::absolute(description),
             joint_coordinates: BTreeMap::new(),
             reactions: Vec::new(),
             potentials: Vec::new(),
+            measures: BTreeMap::new(),
         };
         for parameter in &description.parameters {
             let expr = match &parameter.value {
@@ -154,15 +163,39 @@ impl<'d> Mechanism<'d> {
             };
             mechanism.parameters.push(expr);
         }
+        if carry {
+            mechanism.tree = Tree::spanning(description, |kind| mechanism.is_steady(g, kind));
+        }
         for (index, body) in description.bodies.iter().enumerate() {
             let body = mechanism.body(g, index, body)?;
             mechanism.bodies.push(body);
         }
+        for body in mechanism.tree.order.clone() {
+            if let Some(carrier) = mechanism.tree.carriers[body] {
+                mechanism.carry(g, body, carrier)?;
+            }
+        }
         for (joint, coordinate) in super::coordinates::called_for(description) {
-            let index = mechanism.add_coordinate(g, Owner::Joint(joint, coordinate));
-            mechanism.joint_coordinates.insert((joint, coordinate), index);
+            if !mechanism.joint_coordinates.contains_key(&(joint, coordinate)) {
+                let index = mechanism.add_coordinate(g, Owner::Joint(joint, coordinate));
+                mechanism.joint_coordinates.insert((joint, coordinate), index);
+            }
         }
         Ok(mechanism)
+    }
+
+    /// Whether nothing of a joint is driven by t.
+    fn is_steady(&self, g: &mut Graph, kind: &JointKind) -> bool {
+        let mut formulas: Vec<&Formula> = Vec::new();
+        for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
+            formulas.extend(kind.axis_of(coordinate).into_iter().flatten());
+        }
+        match kind {
+            JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } => formulas.push(angle),
+            JointKind::Screw { pitch, .. } => formulas.push(pitch),
+            _ => {}
+        }
+        formulas.into_iter().all(|formula| self.formula(g, formula, Context::Parameters).is_ok())
     }
 
     fn body(&mut self, g: &mut Graph, index: usize, body: &model::Body) -> Result<Body, BuildError> {
@@ -174,6 +207,8 @@ impl<'d> Mechanism<'d> {
             velocity: [zero; FREEDOMS],
             acceleration: [zero; FREEDOMS],
             index: [None; FREEDOMS],
+            carried: None,
+            attitude: None,
             mass: match &body.mass {
                 Some(mass) => self.formula(g, mass, Context::Parameters)?,
                 None => zero,
@@ -193,7 +228,8 @@ impl<'d> Mechanism<'d> {
             };
             built.position[EULER..].copy_from_slice(&held);
         }
-        for &coordinate in &body.coordinates {
+        let carried = self.tree.carriers[index].is_some();
+        for &coordinate in body.coordinates.iter().filter(|_| !carried) {
             let freedom = freedom(coordinate);
             let index = self.add_coordinate(g, Owner::Body(index, coordinate));
             built.index[freedom] = Some(index);
@@ -222,7 +258,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// Symbols for one more coordinate; its place in q.
-    fn add_coordinate(&mut self, g: &mut Graph, owner: Owner) -> usize {
+    pub fn add_coordinate(&mut self, g: &mut Graph, owner: Owner) -> usize {
         let name = match owner {
             Owner::Body(..) => self.coordinate_name(owner),
             // A joint may be called like a body.
@@ -279,6 +315,18 @@ impl<'d> Mechanism<'d> {
         formula.build(g, |g, name| match self.description.referent(name) {
             Some(referent) if Context::of(referent) <= context => Ok(self.observe(g, referent)),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: context }),
+        })
+    }
+
+    /// A formula of an effect, which may speak of what the effect measures itself.
+    pub fn own_formula(&self, g: &mut Graph, formula: &Formula, own: &[(Measure, Expr)]) -> Result<Expr, BuildError> {
+        formula.build(g, |g, name| match self.description.referent(name) {
+            Some(Referent::Measure { effect, measure }) if !self.measures.contains_key(&(effect, measure)) => {
+                let found = own.iter().find(|(known, _)| *known == measure).map(|&(_, expr)| expr);
+                found.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: Context::Motion })
+            }
+            Some(referent) if Context::of(referent) <= Context::Motion => Ok(self.observe(g, referent)),
+            _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Motion }),
         })
     }
 

@@ -15,23 +15,30 @@
 
 mod body;
 mod build;
+mod carried;
 mod coordinates;
 mod effects;
 mod error;
+mod formulation;
 mod inertia;
 mod joints;
 mod mechanism;
 mod outputs;
 mod placement;
 mod pose;
+mod recursion;
 mod rotation;
 mod space;
 mod start;
 mod system;
 #[cfg(test)]
 pub(crate) mod tests;
+mod tree;
 
-pub use build::build;
+pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
+pub use effects::{SHEETS, Sheet};
 pub use error::BuildError;
 pub use mechanism::Context;
-pub use system::{ConstraintInfo, CoordinateInfo, EffectInfo, LeftOut, OutputInfo, Start, System, UncertainParameter};
+pub use system::{
+    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, Start, System, UncertainParameter,
+};

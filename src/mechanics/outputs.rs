@@ -27,14 +27,13 @@ impl Mechanism<'_> {
             }
             Referent::AngularMotion { body, axis, order, in_body } => {
                 let body = &self.bodies[body];
-                let derivative = if order == TimeOrder::Acceleration { &body.acceleration } else { &body.velocity };
-                if in_body {
-                    body.turning_in_body(g, derivative)[axis]
-                } else if order == TimeOrder::Acceleration {
-                    body.angular_acceleration(g)[axis]
-                } else {
-                    body.angular_velocity(g)[axis]
-                }
+                let turning = match (order, in_body) {
+                    (TimeOrder::Acceleration, true) => body.angular_acceleration_in_body(g),
+                    (TimeOrder::Acceleration, false) => body.angular_acceleration(g),
+                    (_, true) => body.angular_velocity_in_body(g),
+                    (_, false) => body.angular_velocity(g),
+                };
+                turning[axis]
             }
             Referent::RollPitchYaw { body, angle } => {
                 let orientation = self.bodies[body].orientation(g);
@@ -64,6 +63,10 @@ impl Mechanism<'_> {
                     ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
                 }
             }
+            Referent::Measure { effect, measure } => match self.measures.get(&(effect, measure)) {
+                Some(&measured) => measured,
+                None => g.constant(0.0),
+            },
             Referent::Energy(EnergyKind::Kinetic) => self.kinetic_energy(g),
             Referent::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
             Referent::Energy(EnergyKind::Total) => {

@@ -76,7 +76,7 @@ impl Placement {
             for (freedom, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
                 let value = match body.index[freedom] {
                     Some(index) => known[index],
-                    None => Some(body.position[freedom]),
+                    None => body.carried.is_none().then_some(body.position[freedom]),
                 };
                 *given = value.map(|value| m.nominal(g, &[value])[0]);
             }

@@ -258,6 +258,7 @@ impl Known {
 fn known_of(g: &mut Graph, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> Known {
     let value = |place: usize| match body.index[place] {
         Some(index) => values[index],
+        None if body.carried.is_some() => None,
         None => Some(m.nominal(g, &[body.position[place]])[0]),
     };
     let orientation = match body.turn {

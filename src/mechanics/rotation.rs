@@ -14,7 +14,7 @@
 
 use symdiff::{Expr, Graph};
 
-use super::space::{self, Vector};
+use super::space::{self, Matrix, Vector};
 
 /// p₀, p₁, p₂, p₃.
 pub type Quaternion = [Expr; 4];
@@ -75,7 +75,7 @@ pub fn normalised(g: &mut Graph, p: Quaternion) -> Quaternion {
 }
 
 /// R, by rows.
-pub fn matrix(g: &mut Graph, p: Quaternion) -> [Vector; 3] {
+pub fn matrix(g: &mut Graph, p: Quaternion) -> Matrix {
     let squares = p.map(|component| g.mul(component, component));
     let all = squares[1..].iter().fold(squares[0], |rest, &square| g.sub(rest, square));
     let [px, py, pz] = [1, 2, 3].map(|i| g.mul(p[0], p[i]));
@@ -94,6 +94,26 @@ pub fn matrix(g: &mut Graph, p: Quaternion) -> [Vector; 3] {
         [twice(xy, pz, true), yy, twice(yz, px, false)],
         [twice(xz, py, false), twice(yz, px, true), zz],
     ]
+}
+
+/// R of a rotation by an angle about a unit vector a: cos φ 1 + sin φ ã + (1 − cos φ) a aᵀ, by rows.
+pub fn matrix_about(g: &mut Graph, axis: Vector, angle: Expr) -> Matrix {
+    let (cos, sin, one) = (g.cos(angle), g.sin(angle), g.constant(1.0));
+    let rest = g.sub(one, cos);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let both = g.mul(axis[i], axis[j]);
+            if i == j {
+                // a² + (1 − a²) cos φ: nothing but 1 or cos φ about an axis of the frame.
+                let across = g.sub(one, both);
+                let turning = g.mul(across, cos);
+                return g.add(both, turning);
+            }
+            let straight = g.mul(both, rest);
+            let across = g.mul(axis[3 - i - j], sin);
+            if (i + 1) % 3 == j { g.sub(straight, across) } else { g.add(straight, across) }
+        })
+    })
 }
 
 /// E: rates of rotation in the ground's axes.

@@ -5,6 +5,9 @@ use symdiff::{Expr, Graph};
 /// (x, y, z).
 pub type Vector = [Expr; 3];
 
+/// By rows.
+pub type Matrix = [Vector; 3];
+
 /// (0, 0, 0).
 pub fn zero(g: &mut Graph) -> Vector {
     [g.constant(0.0); 3]
@@ -66,4 +69,20 @@ pub fn norm(g: &mut Graph, a: Vector) -> Expr {
 pub fn unit(g: &mut Graph, a: Vector) -> Vector {
     let length = norm(g, a);
     a.map(|component| g.div(component, length))
+}
+
+/// `A a`.
+pub fn times(g: &mut Graph, matrix: &Matrix, a: Vector) -> Vector {
+    matrix.map(|row| dot(g, row, a))
+}
+
+/// `Aᵀ`.
+pub fn transposed(matrix: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| matrix[j][i]))
+}
+
+/// `A B`.
+pub fn product(g: &mut Graph, left: &Matrix, right: &Matrix) -> Matrix {
+    let columns = transposed(right);
+    left.map(|row| columns.map(|column| dot(g, row, column)))
 }

@@ -2,7 +2,7 @@
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::model::{JointCoordinate, JointKind, StartValue, TimeOrder};
+use crate::model::{Coordinate, JointCoordinate, JointKind, StartValue, TimeOrder};
 
 use super::body::EULER;
 use super::error::BuildError;
@@ -11,6 +11,16 @@ use super::placement::Placement;
 use super::pose::Poses;
 use super::rotation;
 use super::system::Start;
+
+/// What the angle of a carried body says of its joint's.
+pub struct CarrierAngle<'d> {
+    /// Place of the joint's angle in q.
+    index: usize,
+    /// Turn of the body for one of it: 1 or −1.
+    turn: Expr,
+    /// The angle of the body that carries; `None` for the ground.
+    parent: Option<&'d Formula>,
+}
 
 impl Mechanism<'_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
@@ -53,6 +63,14 @@ impl Mechanism<'_> {
                 StartValue::Coordinate { body, coordinate, order, value } if *order == wanted => {
                     if let Some(index) = self.bodies[*body].index[freedom(*coordinate)] {
                         found[index] = Some(self.formula(g, value, Context::Parameters)?);
+                    } else if let Some(carrier) = self.angle_of_carrier(*body, *coordinate, *order) {
+                        let own = self.formula(g, value, Context::Parameters)?;
+                        let parent = match carrier.parent {
+                            Some(parent) => self.formula(g, parent, Context::Parameters)?,
+                            None => g.constant(0.0),
+                        };
+                        let angle = g.sub(own, parent);
+                        found[carrier.index] = Some(g.mul(carrier.turn, angle));
                     }
                 }
                 StartValue::Joint { joint, coordinate, order, value } if *order == wanted => {
@@ -75,6 +93,28 @@ impl Mechanism<'_> {
             }
         }
         Ok(found)
+    }
+
+    /// The coordinate that an angle at the start, of a body of the plane that is carried, comes to: the joint's, where the
+    /// angle of the body that carries is named too or is the ground's.
+    pub fn angle_of_carrier(&self, body: usize, coordinate: Coordinate, order: TimeOrder) -> Option<CarrierAngle<'_>> {
+        let carried = self.bodies[body].carried.as_ref()?;
+        let [freedom] = carried.freedoms.as_slice() else { return None };
+        let turns = self.description.joints[carried.joint].kind.axis_of(JointCoordinate::Angle).is_some();
+        if coordinate != Coordinate::Angle || !turns {
+            return None;
+        }
+        let named = self.description.initial.iter().chain(&self.description.guess).find_map(|value| match value {
+            StartValue::Coordinate { body, coordinate: Coordinate::Angle, order: of, value } => {
+                (*body == carried.parent && *of == order).then_some(value)
+            }
+            _ => None,
+        });
+        (named.is_some() || carried.parent == 0).then_some(CarrierAngle {
+            index: freedom.index,
+            turn: freedom.turn,
+            parent: named,
+        })
     }
 
     fn set_euler(&self, body: usize, values: rotation::Quaternion, found: &mut [Option<Expr>]) {

@@ -29,7 +29,9 @@ pub struct System {
     pub constraints: Vec<ConstraintInfo>,
     /// M(q)'s nonzero entries (row, column, value), both triangles.
     pub mass: Vec<(usize, usize, Expr)>,
-    /// Q(t, q, v, λ), n, velocity-dependent inertial forces included.
+    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights.
+    pub inertia: Vec<Expr>,
+    /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
@@ -43,6 +45,17 @@ pub struct System {
     pub left_out: Vec<LeftOut>,
     /// In how many dimensions the bodies move, and why.
     pub space: Space,
+    /// By which coordinates, and why.
+    pub formulation: FormulationInfo,
+}
+
+/// By which coordinates a motion is described.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FormulationInfo {
+    /// Whether joints carry bodies.
+    pub joint: bool,
+    /// For people.
+    pub why: String,
 }
 
 /// What an effect came to.
@@ -56,6 +69,8 @@ pub struct EffectInfo {
     pub forces: usize,
     /// Number of expressions that no earlier effect has.
     pub expressions: usize,
+    /// Whether all of them have an enclosure over a box of parameters.
+    pub enclosed: bool,
 }
 
 /// Something that the model says and no equation holds.
@@ -122,7 +137,7 @@ impl System {
     /// Uncertain parameters that no equation, output or start value depends on are noted as left out.
     pub(super) fn note_unused_parameters(&mut self) {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
-        roots.extend(self.force.iter().chain(&self.constraint).chain(&self.start.guess));
+        roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
         let used = self.graph.symbols_of(&roots);

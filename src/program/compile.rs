@@ -8,6 +8,9 @@ use super::scheme::{Coefficients, Scheme};
 use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
 use crate::mechanics::System;
 
+/// Where numbers grow more than this in the elimination, pivots are chosen anew, fewer of them.
+const MOST_GROWTH: f64 = 1e4;
+
 /// A state that guides the choice of pivots: values of the layout's first slots (parameters to λ), at a step size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
@@ -65,6 +68,7 @@ const CORRECT: usize = 1;
 const ADVANCE: usize = 2;
 const OBSERVE: usize = 3;
 const MATRIX: usize = 4;
+const ESTIMATE: usize = 5;
 
 impl Program {
     /// Number of slots of a tile.
@@ -117,6 +121,12 @@ impl Program {
         &self.lowered.kernels[MATRIX]
     }
 
+    /// In the correction's first n slots the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the factors at hand:
+    /// after the iteration, and before the state is advanced.
+    pub fn estimate(&self) -> &Tape {
+        &self.lowered.kernels[ESTIMATE]
+    }
+
     /// Slots that the factors occupy.
     pub fn factor_slots(&self) -> &[u32] {
         &self.lowered.outputs[FACTOR]
@@ -159,15 +169,24 @@ pub fn compile(
         numbers.insert(place + offset, [-weight; PROBES]);
     }
 
-    let pivoting = if system.space.spatial { Pivoting::Symmetric { heavy: &heavy } } else { Pivoting::Any };
-    let plan = |graph: &mut Graph, numbers: &[Numbers]| {
-        factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, pivoting)
+    let blocks = mass_blocks(system);
+    let symmetric = Pivoting::Symmetric { heavy: &heavy, blocks: &blocks };
+    let plan = |graph: &mut Graph, pivoting: Pivoting| {
+        let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
+            factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, pivoting)
+        };
+        // A start in a singular configuration has no pivots of its own: then states in general position decide.
+        factorised(graph, &numbers).or_else(|_| {
+            let mut apart = numbers.clone();
+            apart.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
+            factorised(graph, &apart)
+        })
     };
-    // A start in a singular configuration has no pivots of its own: then states in general position decide.
-    let factors = plan(&mut graph, &numbers).or_else(|_| {
-        numbers.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
-        plan(&mut graph, &numbers)
-    })?;
+    let factors = match plan(&mut graph, if system.space.spatial { symmetric } else { Pivoting::Any }) {
+        Ok(factors) if factors.growth <= MOST_GROWTH || system.space.spatial => factors,
+        // In a long chain free choice hands errors on from body to body, each time larger.
+        free => plan(&mut graph, symmetric).or(free)?,
+    };
     let mut stages = Stages::new(&inputs);
     stages.update(&graph);
 
@@ -199,6 +218,9 @@ pub fn compile(
     }
     let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
     let correction = substituted.solve(&mut graph, &opposite);
+    let mut changes = newton.inertial_change.clone();
+    changes.resize(n + m, graph.constant(0.0));
+    let moving = substituted.solve(&mut graph, &changes);
 
     let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
         values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
@@ -212,7 +234,8 @@ pub fn compile(
     let mut matrix: Vec<(Expr, Option<u32>)> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
 
-    let lowered = lower(&graph, &inputs, ITERATION, next, &[frozen, correct, advance, observe, matrix]);
+    let estimate = at(&moving[..n], layout.correction.start);
+    let lowered = lower(&graph, &inputs, ITERATION, next, &[frozen, correct, advance, observe, matrix, estimate]);
     debug_assert_eq!(lowered.stages.len(), STEP_SIZE + 2);
     let nonzeros = newton.matrix.nonzeros();
     let places = &lowered.outputs[MATRIX];
@@ -232,6 +255,23 @@ pub fn compile(
         layout,
         lowered,
     })
+}
+
+/// By coordinate, the first of those that M couples it with: of a body with coordinates of its own, or of a tree.
+fn mass_blocks(system: &System) -> Vec<usize> {
+    let mut coupled: Vec<Vec<usize>> = vec![Vec::new(); system.q.len()];
+    system.mass.iter().for_each(|&(row, column, _)| coupled[row].push(column));
+    let mut blocks = vec![usize::MAX; system.q.len()];
+    for first in 0..blocks.len() {
+        let mut next = vec![first];
+        while let Some(coordinate) = next.pop().filter(|_| blocks[first] >= first) {
+            if blocks[coordinate] == usize::MAX {
+                blocks[coordinate] = first;
+                next.extend(&coupled[coordinate]);
+            }
+        }
+    }
+    blocks
 }
 
 /// Values of the matrix's entries at each probe.
@@ -255,8 +295,10 @@ fn probe_numbers(
 fn equilibrate(newton: &NewtonSystem, numbers: &[Numbers], heavy: &[bool]) -> Vec<f64> {
     let n = heavy.len();
     let mut scale = vec![1.0; newton.matrix.rows.len()];
+    // At the start alone a row of Φ may vanish: then it is singular.
+    let size = |numbers: &Numbers| numbers.iter().fold(0.0_f64, |largest, number| largest.max(number.abs()));
     let entries =
-        || newton.matrix.entries().zip(numbers).map(|((row, column, _), numbers)| (row, column, numbers[0].abs()));
+        || newton.matrix.entries().zip(numbers).map(|((row, column, _), numbers)| (row, column, size(numbers)));
     for (row, column, size) in entries() {
         if row == column && row < n && heavy[row] && size > 0.0 {
             scale[row] = 1.0 / size.sqrt();

@@ -14,9 +14,8 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
         let pull = graph.mul(slope, system.lambda[constraint]);
         rows[coordinate] = graph.add(rows[coordinate], pull);
     }
-    for &(row, column, mass) in &system.mass {
-        let inertia = graph.mul(mass, system.w[column]);
-        rows[row] = graph.add(rows[row], inertia);
+    for (row, &inertia) in rows.iter_mut().zip(&system.inertia) {
+        *row = graph.add(*row, inertia);
     }
     (rows, slopes)
 }

@@ -46,6 +46,8 @@ pub struct NewtonSystem {
     pub algorithmic: Vec<Expr>,
     /// w₊, n: the iterate itself.
     pub acceleration: Vec<Expr>,
+    /// M(q₊) (a₊ − a), n: what local errors are made of.
+    pub inertial_change: Vec<Expr>,
 }
 
 /// The symbols of a step that the system does not have: the state at its beginning, h and the iterate.
@@ -179,6 +181,14 @@ pub fn newton_system(
         at_end.insert(system.w[i], symbols.x[i]);
     }
     let residual = graph.substitute(&residual, &at_end);
+    let masses: Vec<Expr> = system.mass.iter().map(|&(_, _, mass)| mass).collect();
+    let masses = graph.substitute(&masses, &at_end);
+    let mut inertial_change = vec![graph.constant(0.0); n];
+    for (&(row, column, _), mass) in system.mass.iter().zip(masses) {
+        let change = graph.sub(algorithmic[column], symbols.a[column]);
+        let change = graph.mul(mass, change);
+        inertial_change[row] = graph.add(inertial_change[row], change);
+    }
     let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
     let mut values = graph.substitute(&values, &at_end).into_iter();
     for entry in matrix.rows.iter_mut().flatten() {
@@ -186,5 +196,85 @@ pub fn newton_system(
     }
     let inputs = symbols.inputs(layout, system);
     let acceleration = symbols.x;
-    (NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration }, inputs)
+    (NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration, inertial_change }, inputs)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::mechanics::tests::model::{Model, formula};
+    use crate::model::{DryFriction, EffectKind, JointFriction, Rubbing};
+    use crate::program::scheme::Scheme;
+
+    /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
+    #[test]
+    fn the_matrix_is_the_residuals_slope_where_forces_depend_on_reactions() {
+        let mut m = Model::new();
+        m.body("rod", "2", "0.1", "xya", &[("pin", "-0.3", "0.1"), ("tip", "0.4", "0")]);
+        m.body("bob", "1", "0.1", "xya", &[]);
+        m.revolute("pin", "ground", "rod.pin");
+        m.revolute("knee", "rod.tip", "bob");
+        m.gravity();
+        for joint in 0..2 {
+            let dry = DryFriction {
+                coefficient: formula("0.4"),
+                breakaway: formula("1.5"),
+                stribeck: Some(formula("0.7")),
+                transition: formula("0.2"),
+            };
+            let (coulomb, viscous, radius) = (formula("0.1"), formula("0.2"), formula("0.05"));
+            let rubbing = Rubbing::Turning;
+            m.effect(EffectKind::JointFriction(JointFriction {
+                joint,
+                rubbing,
+                dry,
+                coulomb,
+                viscous,
+                radius,
+                length: None,
+            }));
+        }
+        let system = m.build();
+        let (n, count) = (system.q.len(), system.lambda.len());
+        let layout = Layout::new(0, n, count);
+        let mut graph = system.graph.clone();
+        let (newton, inputs) = newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients());
+        let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
+        let mut values: HashMap<usize, f64> =
+            (0..layout.slots()).map(|slot| (slot, (1.7 * slot as f64 + 0.3).sin())).collect();
+        values.insert(layout.step, 0.05);
+        let residual = |values: &HashMap<usize, f64>| {
+            graph.evaluate(&newton.residual, |symbol| {
+                let input = inputs.iter().find(|input| input.symbol == symbol).unwrap();
+                values[&(input.slot as usize)]
+            })
+        };
+        let entries: Vec<_> = newton.matrix.entries().collect();
+        let exprs: Vec<Expr> = entries.iter().map(|entry| entry.2).collect();
+        let numbers = graph.evaluate(&exprs, |symbol| {
+            values[&(inputs.iter().find(|input| input.symbol == symbol).unwrap().slot as usize)]
+        });
+        let mut by_friction = 0;
+        for (column, slot) in unknowns.enumerate() {
+            let ends = [1e-6, -1e-6].map(|step| {
+                let mut moved = values.clone();
+                *moved.get_mut(&slot).unwrap() += step;
+                residual(&moved)
+            });
+            for (row, (ahead, behind)) in ends[0].iter().zip(&ends[1]).enumerate() {
+                let slope = (ahead - behind) / 2e-6;
+                let entry = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (row, column));
+                let entry = entry.map_or(0.0, |(_, number)| *number);
+                assert!((slope - entry).abs() < 1e-6 * (1.0 + slope.abs()), "({row}, {column}): {entry}, not {slope}");
+                // The constraints' slopes are the columns' other half; the rest is friction's.
+                if row < n && column >= n {
+                    let transposed = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (column, row));
+                    by_friction += usize::from((entry - transposed.map_or(0.0, |(_, number)| *number)).abs() > 1e-6);
+                }
+            }
+        }
+        assert!(by_friction >= 6, "only {by_friction} entries depend on friction");
+    }
 }

@@ -17,6 +17,10 @@ pub type Numbers = [f64; PROBES];
 /// A pivot is at least this large against the largest entry of its column, at every probe.
 const THRESHOLD: f64 = 0.1;
 
+/// The same for pivots of [`Pivoting::Symmetric`], which cannot vanish: their order matters more. The corrections lose up to as
+/// many digits, and have more than they need.
+const THRESHOLD_SYMMETRIC: f64 = 1e-3;
+
 /// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
 const SINGULAR: f64 = 1e-11;
 
@@ -34,12 +38,14 @@ pub enum Pivoting<'m> {
     /// What cannot vanish wherever the mechanism goes, in a matrix [M Φᵀ; Φ 0] with M positive definite but for coordinates
     /// without inertia (`heavy` says which have some, and how many coordinates there are): diagonal entries of M; a slope of
     /// Φ that does not change or is by a coordinate without inertia, twice, which takes the coordinate and the multiplier
-    /// out together; and, where nothing of its row is left in Φ, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
+    /// out together; and, where all coordinates of its row of Φ are gone, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
     ///
     /// Bodies that turn freely need it: each of their Euler parameters, and so each slope by them, passes through zero.
     Symmetric {
         #[allow(missing_docs)]
         heavy: &'m [bool],
+        /// By coordinate, the first of those that M couples it with.
+        blocks: &'m [usize],
     },
     /// The diagonal only, of the rows before `constraints` first: for quasi-definite matrices, where this order exists
     /// whatever the numbers.
@@ -54,6 +60,13 @@ impl Pivoting<'_> {
         match self {
             Self::Any | Self::Symmetric { .. } => SINGULAR,
             Self::Diagonal { .. } => SINGULAR_DIAGONAL,
+        }
+    }
+
+    fn threshold(self) -> f64 {
+        match self {
+            Self::Any | Self::Diagonal { .. } => THRESHOLD,
+            Self::Symmetric { .. } => THRESHOLD_SYMMETRIC,
         }
     }
 
@@ -86,6 +99,9 @@ pub struct Pivot {
 pub struct Factors {
     /// In elimination order.
     pub pivots: Vec<Pivot>,
+    /// Largest number met in the elimination over the largest of the matrix, scaled, at the worst probe: so many times the
+    /// rounding errors may grow.
+    pub growth: f64,
 }
 
 /// The matrix has no acceptable pivot left for these rows.
@@ -94,6 +110,35 @@ pub struct Factors {
 pub struct Singular {
     /// Rows that are left.
     pub rows: Vec<usize>,
+}
+
+/// An order of the coordinates of `[M Φᵀ; Φ 0]` by blocks, from 1: blocks are what M couples (bodies), and the one comes next that
+/// shares constraints with the fewest others, those of the blocks before it counting as one (minimum degree; Tinney &
+/// Walker, Proc. IEEE 55 (1967) 1801). A chain is so taken from an end.
+fn block_order(block: &[usize], awaited: &[BTreeSet<usize>]) -> Vec<usize> {
+    let n = block.len();
+    let mut neighbours: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); n];
+    for coordinates in awaited {
+        let blocks: BTreeSet<usize> = coordinates.iter().map(|&coordinate| block[coordinate]).collect();
+        for &a in &blocks {
+            neighbours[a].extend(blocks.iter().filter(|&&b| b != a));
+        }
+    }
+    let mut left: BTreeSet<(usize, usize)> = block.iter().map(|&block| (neighbours[block].len(), block)).collect();
+    let mut turn = vec![0; n];
+    let mut next = 1;
+    while let Some((_, first)) = left.pop_first() {
+        turn[first] = next;
+        next += 1;
+        let around = std::mem::take(&mut neighbours[first]);
+        for &a in &around {
+            left.remove(&(neighbours[a].len(), a));
+            neighbours[a].extend(around.iter().filter(|&&b| b != a));
+            neighbours[a].remove(&first);
+            left.insert((neighbours[a].len(), a));
+        }
+    }
+    block.iter().map(|&block| turn[block]).collect()
 }
 
 /// Whether it is late, number of entries, index.
@@ -114,8 +159,19 @@ struct Active<'g> {
     rows: Vec<BTreeMap<usize, Entry>>,
     columns: Vec<BTreeSet<usize>>,
     pivoting: Pivoting<'g>,
+    /// For [`Pivoting::Symmetric`], by row: the coordinates that a constraint is still waiting for. What eliminating others
+    /// adds to its row is small against M, and need not be waited for; otherwise a chain's multipliers would all come last,
+    /// and be coupled by then, each with each.
+    awaited: Vec<BTreeSet<usize>>,
+    /// For [`Pivoting::Symmetric`], by coordinate: when its block's turn comes; and the coordinates left, by that.
+    rank: Vec<usize>,
+    by_rank: BTreeSet<(usize, usize)>,
+    /// Constraints that wait for nothing any more.
+    ready: BTreeSet<usize>,
     /// The second pivot of a pair, to be taken next.
     mate: Option<(usize, usize)>,
+    /// Largest number of any probe so far.
+    largest: f64,
     /// The rows and columns left.
     sparsest_rows: BTreeSet<Key>,
     sparsest_columns: BTreeSet<Key>,
@@ -138,15 +194,46 @@ pub fn factorise<'g>(
     let size = matrix.rows.len();
     let mut rows = vec![BTreeMap::new(); size];
     let mut columns = vec![BTreeSet::new(); size];
+    let mut largest = 0.0;
     for ((row, column, value), numbers) in matrix.entries().zip(numbers) {
         let numbers = numbers.map(|number| number * scale[row] * scale[column]);
+        largest = numbers.iter().fold(largest, |largest: f64, number| largest.max(number.abs()));
         rows[row].insert(column, Entry { value, numbers });
         columns[column].insert(row);
     }
     let sparsest_rows = rows.iter().enumerate().map(|(row, entries)| pivoting.key(entries.len(), row)).collect();
     let sparsest_columns = columns.iter().enumerate().map(|(column, rows)| pivoting.key(rows.len(), column)).collect();
-    let mut active =
-        Active { graph, stages, dear, pivoting, mate: None, rows, columns, sparsest_rows, sparsest_columns };
+    let awaited = match pivoting {
+        Pivoting::Symmetric { heavy, .. } => {
+            let of = |(row, entries): (usize, &BTreeMap<usize, Entry>)| -> BTreeSet<usize> {
+                let coordinates = entries.range(..heavy.len()).map(|(&column, _)| column);
+                coordinates.filter(|_| row >= heavy.len()).collect()
+            };
+            rows.iter().enumerate().map(of).collect()
+        }
+        Pivoting::Any | Pivoting::Diagonal { .. } => Vec::new(),
+    };
+    let rank = match pivoting {
+        Pivoting::Symmetric { blocks, .. } => block_order(blocks, &awaited),
+        Pivoting::Any | Pivoting::Diagonal { .. } => Vec::new(),
+    };
+    let by_rank = rank.iter().enumerate().map(|(row, &rank)| (rank, row)).collect();
+    let mut active = Active {
+        graph,
+        stages,
+        dear,
+        pivoting,
+        rank,
+        by_rank,
+        ready: BTreeSet::new(),
+        awaited,
+        mate: None,
+        largest,
+        rows,
+        columns,
+        sparsest_rows,
+        sparsest_columns,
+    };
     let mut pivots = Vec::with_capacity(size);
     while pivots.len() < size {
         match active.choose() {
@@ -154,7 +241,7 @@ pub fn factorise<'g>(
             None => return Err(Singular { rows: active.sparsest_rows.iter().map(|&(_, _, row)| row).collect() }),
         }
     }
-    Ok(Factors { pivots })
+    Ok(Factors { pivots, growth: active.largest / largest })
 }
 
 impl Active<'_> {
@@ -166,7 +253,7 @@ impl Active<'_> {
         }
         self.stages.update(self.graph);
         let singular = self.pivoting.smallest();
-        let mut threshold = THRESHOLD;
+        let mut threshold = self.pivoting.threshold();
         while threshold > singular {
             let mut searched = SEARCHED;
             loop {
@@ -174,6 +261,7 @@ impl Active<'_> {
                     if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
                         self.mate = Some((column, row));
                     }
+                    self.stop_awaiting(row, column);
                     return Some((row, column));
                 }
                 if searched >= self.sparsest_columns.len() {
@@ -186,17 +274,36 @@ impl Active<'_> {
         None
     }
 
+    /// A pivot of [`Pivoting::Symmetric`] takes a coordinate out. Where it is expressed by the others of a constraint, what
+    /// waited for it waits for those.
+    fn stop_awaiting(&mut self, row: usize, column: usize) {
+        if self.awaited.is_empty() || !self.columns[row].iter().any(|&other| self.awaited[other].contains(&row)) {
+            return;
+        }
+        let others = if column == row { BTreeSet::new() } else { self.awaited[column].clone() };
+        for &constraint in &self.columns[row] {
+            if self.awaited[constraint].remove(&row) {
+                self.awaited[constraint].extend(others.iter().filter(|&&other| other != row));
+                if self.awaited[constraint].is_empty() {
+                    self.ready.insert(constraint);
+                }
+            }
+        }
+    }
+
     fn best_of(&self, searched: usize, threshold: f64) -> Option<(usize, usize)> {
-        // (cost, off the diagonal, row, column): the least is the best, and ties are decided alike everywhere.
-        let mut best: Option<(usize, bool, usize, usize)> = None;
+        // (rank, cost, off the diagonal, row, column): the least is the best, and ties are decided alike everywhere.
+        let mut best: Option<(usize, usize, bool, usize, usize)> = None;
         for (row, column) in self.candidates(searched) {
-            let merit = (self.cost(row, column), row != column, row, column);
+            let cost = self.cost(row, column);
+            let rank = if cost == 0 { 0 } else { self.rank.get(row).copied().unwrap_or(0) };
+            let merit = (rank, cost, row != column, row, column);
             let better = best.is_none_or(|least| merit < least);
             if better && self.size_against_column(row, column, self.pivoting.smallest()) >= threshold {
                 best = Some(merit);
             }
         }
-        best.map(|(_, _, row, column)| (row, column))
+        best.map(|(_, _, _, row, column)| (row, column))
     }
 
     /// Entries in the sparsest columns and rows.
@@ -211,18 +318,23 @@ impl Active<'_> {
             .iter()
             .take(searched)
             .flat_map(|&(_, _, row)| self.rows[row].keys().map(move |&column| (row, column)));
-        in_columns.chain(in_rows).filter(|&(row, column)| self.may_be_pivot(row, column))
+        let next = self.by_rank.first().map(|&(rank, _)| rank);
+        let of_block = self.by_rank.iter().take_while(move |&&(rank, _)| Some(rank) == next).map(|&(_, row)| row);
+        let in_block = of_block
+            .chain(self.ready.iter().copied())
+            .flat_map(|row| self.rows[row].keys().map(move |&column| (row, column)));
+        in_columns.chain(in_rows).chain(in_block).filter(|&(row, column)| self.may_be_pivot(row, column))
     }
 
     fn may_be_pivot(&self, row: usize, column: usize) -> bool {
         match self.pivoting {
             Pivoting::Any => true,
             Pivoting::Diagonal { .. } => row == column,
-            Pivoting::Symmetric { heavy } if row == column => match heavy.get(row) {
+            Pivoting::Symmetric { heavy, .. } if row == column => match heavy.get(row) {
                 Some(heavy) => *heavy,
-                None => self.rows[row].range(..heavy.len()).next().is_none(),
+                None => self.awaited[row].is_empty(),
             },
-            Pivoting::Symmetric { heavy } => {
+            Pivoting::Symmetric { heavy, .. } => {
                 let slope = row < heavy.len() && column >= heavy.len();
                 let steady = |value: Expr| self.stages.of(value) != Some(self.dear);
                 let mate = self.rows[column].get(&row).filter(|_| slope);
@@ -269,6 +381,10 @@ impl Active<'_> {
     fn eliminate(&mut self, row: usize, column: usize) -> Pivot {
         self.sparsest_rows.remove(&self.pivoting.key(self.rows[row].len(), row));
         self.sparsest_columns.remove(&self.pivoting.key(self.columns[column].len(), column));
+        self.ready.remove(&row);
+        if let Some(&rank) = self.rank.get(row) {
+            self.by_rank.remove(&(rank, row));
+        }
         let mut upper = std::mem::take(&mut self.rows[row]);
         let pivot = upper.remove(&column).expect("the pivot was chosen among the row's entries");
         let one = self.graph.constant(1.0);
@@ -311,7 +427,8 @@ impl Active<'_> {
             None => self.graph.neg(product),
         };
         let before = old.map_or([0.0; PROBES], |entry| entry.numbers);
-        let numbers = std::array::from_fn(|probe| before[probe] - ratio[probe] * above.numbers[probe]);
+        let numbers: Numbers = std::array::from_fn(|probe| before[probe] - ratio[probe] * above.numbers[probe]);
+        self.largest = numbers.iter().fold(self.largest, |largest, number| largest.max(number.abs()));
         if self.graph.is_zero(value) {
             self.rows[row].remove(&column);
             self.recount_column(column, |rows| {
@@ -370,7 +487,7 @@ impl Factors {
                 *value = replace(*value);
             }
         }
-        Self { pivots }
+        Self { pivots, growth: self.growth }
     }
 }
 
@@ -414,7 +531,8 @@ mod tests {
             vec![0.3, -0.4, -1.0, 0.0, 0.0],
         ];
         let right = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let (x, factors) = solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false] }).unwrap();
+        let (x, factors) =
+            solve_by(&dense, &right, Pivoting::Symmetric { heavy: &[true, true, false], blocks: &[0, 1, 2] }).unwrap();
         for (row, b) in dense.iter().zip(right) {
             let product: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
             assert!((product - b).abs() < 1e-13);

@@ -4,9 +4,11 @@
 //! ```text
 //! positions       [ D  Φ_qᵀ ] [δq]   [ 0 ]        velocities      the same matrix,  right side −(Φ_q v + Φ_t)
 //!                 [ Φ_q  −ε ] [μ ] = [−Φ ]
-//! accelerations   [ M  Φ_qᵀ ] [δw]     [ M w + Φ_qᵀ λ − Q ]
-//!                 [ Φ_q  −ε ] [δλ] = − [ Φ̈(q, v, w, t)    ]
+//! accelerations   [ M  Φ_qᵀ − Q_λ ] [δw]     [ M w + Φ_qᵀ λ − Q ]
+//!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
+//!
+//! Q_λ is there where friction depends on reactions; the corrections are then Newton's.
 //!
 //! A coordinate without inertia has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
 //! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
@@ -123,10 +125,13 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
         metric.iter().enumerate().map(|(i, &weight)| (i, i, builder.graph.constant(weight))).collect();
     let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
     let zero = vec![builder.graph.constant(0.0); system.q.len()];
-    let position = builder.correction(&diagonal, &kept(&system.start.position), &zero, &system.constraint)?;
-    let velocity = builder.correction(&diagonal, &kept(&system.start.velocity), &zero, &rate)?;
+    let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
+    let position = builder.correction(&diagonal, &none, &kept(&system.start.position), &zero, &system.constraint)?;
+    let velocity = builder.correction(&diagonal, &none, &kept(&system.start.velocity), &zero, &rate)?;
+    let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
     let (mass, motion) = builder.with_defined_coordinates(motion, &rate_of_rate);
-    let acceleration = builder.correction(&mass, &vec![false; system.q.len()], &motion, &rate_of_rate)?;
+    let free = vec![false; system.q.len()];
+    let acceleration = builder.correction(&mass, &by_multiplier, &free, &motion, &rate_of_rate)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
@@ -195,10 +200,11 @@ struct Builder<'s> {
 }
 
 impl Builder<'_> {
-    /// Solution of [metric Φ_qᵀ; Φ_q −ε] (δ, μ) = −(first, second), n + m; kept coordinates have δ = 0.
+    /// Solution of [metric Φ_qᵀ − `loaded`; Φ_q −ε] (δ, μ) = −(first, second), n + m; kept coordinates have δ = 0.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
+        loaded: &SparseMatrix,
         kept: &[bool],
         first: &[Expr],
         second: &[Expr],
@@ -211,6 +217,10 @@ impl Builder<'_> {
         for (row, column, value) in self.slopes.entries().filter(|(_, column, _)| !kept[*column]) {
             matrix.add(&mut self.graph, n + row, column, value);
             matrix.add(&mut self.graph, column, n + row, value);
+        }
+        for (row, column, value) in loaded.entries() {
+            let value = self.graph.neg(value);
+            matrix.add(&mut self.graph, row, n + column, value);
         }
         for coordinate in (0..n).filter(|&coordinate| kept[coordinate]) {
             matrix.add(&mut self.graph, coordinate, coordinate, one);

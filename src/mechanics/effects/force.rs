@@ -12,7 +12,10 @@ use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
 use crate::model::PointRef;
 
-use super::Loads;
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet { keyword: "force", formulas: &["F = value"], source: "Newton" };
 
 pub fn apply(
     g: &mut Graph,

@@ -12,17 +12,21 @@ use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
 use crate::mechanics::space;
 
-use super::Loads;
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet { keyword: "gravity", formulas: &["F = m g at each centre of mass"], source: "Newton" };
 
 pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
     let acceleration = m.vector(g, acceleration, Context::Motion)?;
     for (index, body) in m.bodies.iter().enumerate() {
         let weight = space::scale(g, body.mass, acceleration);
         let center = m.point_at(g, index, body.center);
-        loads.add_force(g, &center, weight);
+        loads.add_weight(g, m, &center, weight);
         let height = space::dot(g, weight, center.position);
         let potential = g.neg(height);
         loads.add_potential(g, m, &weight, potential);
     }
+    loads.add_field(g, acceleration);
     Ok(())
 }

@@ -4,12 +4,25 @@
 //! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion, which [`Loads`] sees to. Values may depend on
 //! parameters, t, positions, velocities and reactions.
 //!
-//! To add an effect: its file here, its variant in [`EffectKind`], its line in [`apply`].
+//! To add an effect: its file here, its variant in [`EffectKind`], its lines in [`apply`] and [`SHEETS`].
 
+mod backlash;
+mod beam;
 mod bushing;
+mod cable;
+mod clearance_joint;
+mod contact;
+mod drag;
+mod dry_friction;
 mod force;
 mod gravity;
+mod impact;
+mod joint_friction;
+mod positive_part;
+mod preload;
+mod servo;
 mod spring_damper;
+mod stop;
 mod torque;
 mod torsional_spring_damper;
 
@@ -17,13 +30,44 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::{Expr, Graph};
 
-use crate::model::{EffectKind, JointCoordinate};
+use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints;
 use super::mechanism::Mechanism;
 use super::space::{self, Vector};
+
+/// What people are told of an effect, next to its keys.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet {
+    /// The word for it in a model file.
+    pub keyword: &'static str,
+    /// What it does, in the symbols of its file's head.
+    pub formulas: &'static [&'static str],
+    /// Where that is from.
+    pub source: &'static str,
+}
+
+/// Of every effect.
+pub const SHEETS: [Sheet; 16] = [
+    gravity::SHEET,
+    force::SHEET,
+    torque::SHEET,
+    spring_damper::SHEET,
+    torsional_spring_damper::SHEET,
+    bushing::SHEET,
+    joint_friction::SHEET,
+    stop::SHEET,
+    contact::SHEET,
+    clearance_joint::SHEET,
+    servo::SHEET,
+    drag::SHEET,
+    cable::SHEET,
+    backlash::SHEET,
+    preload::SHEET,
+    beam::SHEET,
+];
 
 /// Applies an effect.
 pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
@@ -32,17 +76,36 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, kind: &EffectKind)
         EffectKind::Force { on, value, in_body } => force::apply(g, m, loads, *on, value, *in_body),
         EffectKind::Torque { on, from, value, in_body } => torque::apply(g, m, loads, *on, *from, value, *in_body),
         EffectKind::JointTorque { joint, value } => torque::apply_at_joint(g, m, loads, *joint, value),
-        EffectKind::SpringDamper { between, along, stiffness, damping, free_length } => {
+        EffectKind::SpringDamper { between, along, stiffness, damping, free_length, force } => {
             let spring = spring_damper::Spring { stiffness, damping, free_length };
-            spring_damper::apply(g, m, loads, *between, along.as_ref(), spring)
+            spring_damper::apply(g, m, loads, *between, along.as_ref(), spring, force.as_ref())
         }
-        EffectKind::TorsionalSpringDamper { on, stiffness, damping, free_angle } => {
-            torsional_spring_damper::apply(g, m, loads, *on, stiffness, damping, free_angle)
+        EffectKind::TorsionalSpringDamper { on, stiffness, damping, free_angle, torque } => {
+            torsional_spring_damper::apply(g, m, loads, *on, [stiffness, damping, free_angle], torque.as_ref())
         }
-        EffectKind::Bushing { between, stiffness, damping, torsional_stiffness, torsional_damping } => {
-            let straight = [stiffness, damping];
-            bushing::apply(g, m, loads, *between, straight, [torsional_stiffness, torsional_damping])
+        EffectKind::Bushing {
+            between,
+            stiffness,
+            damping,
+            torsional_stiffness,
+            torsional_damping,
+            stiffness_matrix,
+            damping_matrix,
+        } => {
+            let stiffness = bushing::Law::new(g, m, [stiffness, torsional_stiffness], stiffness_matrix.as_deref())?;
+            let damping = bushing::Law::new(g, m, [damping, torsional_damping], damping_matrix.as_deref())?;
+            bushing::apply(g, m, loads, *between, &stiffness, &damping)
         }
+        EffectKind::JointFriction(friction) => joint_friction::apply(g, m, loads, friction),
+        EffectKind::Stop(stop) => stop::apply(g, m, loads, stop),
+        EffectKind::Contact(contact) => contact::apply(g, m, loads, contact),
+        EffectKind::ClearanceJoint(joint) => clearance_joint::apply(g, m, loads, joint),
+        EffectKind::Servo(servo) => servo::apply(g, m, loads, servo),
+        EffectKind::Drag(drag) => drag::apply(g, m, loads, drag),
+        EffectKind::Cable(cable) => cable::apply(g, m, loads, cable),
+        EffectKind::Backlash(backlash) => backlash::apply(g, m, loads, backlash),
+        EffectKind::Preload(preload) => preload::apply(g, m, loads, preload),
+        EffectKind::Beam(beam) => beam::apply(g, m, loads, beam),
     }
 }
 
@@ -54,15 +117,20 @@ enum Target {
 }
 
 /// The forces on all bodies.
+#[derive(Clone)]
 pub struct Loads {
     /// Force on each body, and torque about its frame's origin, in the ground's axes: N, N m.
     bodies: Vec<[Expr; 6]>,
     /// Generalised forces on joints' own coordinates, by their place in q.
     coordinates: BTreeMap<usize, Expr>,
+    /// The acceleration that gives carried bodies their weight, in the ground's axes, m/s².
+    pub field: Vector,
     /// Potential energies, J.
     pub potentials: Vec<Expr>,
     /// What was added to since the last [`Loads::begin`].
     touched: BTreeSet<Target>,
+    /// What was measured since then.
+    measured: Vec<(Measure, Expr)>,
 }
 
 impl Loads {
@@ -70,12 +138,30 @@ impl Loads {
     pub fn new(g: &mut Graph, bodies: usize) -> Self {
         let zero = g.constant(0.0);
         let (coordinates, potentials, touched) = (BTreeMap::new(), Vec::new(), BTreeSet::new());
-        Self { bodies: vec![[zero; 6]; bodies], coordinates, potentials, touched }
+        Self {
+            bodies: vec![[zero; 6]; bodies],
+            coordinates,
+            field: [zero; 3],
+            potentials,
+            touched,
+            measured: Vec::new(),
+        }
     }
 
     /// The next effect begins.
     pub fn begin(&mut self) {
         self.touched.clear();
+        self.measured.clear();
+    }
+
+    /// Something that the effect measures, for outputs.
+    pub fn measure(&mut self, measure: Measure, value: Expr) {
+        self.measured.push((measure, value));
+    }
+
+    /// What the effect measures.
+    pub fn measured(&self) -> &[(Measure, Expr)] {
+        &self.measured
     }
 
     /// Number of coordinates that the effect acts on.
@@ -86,8 +172,12 @@ impl Loads {
                 Target::Coordinate(index) => {
                     moved.insert(index);
                 }
-                Target::Body(body, component) => {
-                    let body = &m.bodies[body];
+                Target::Body(mut index, component) => {
+                    while let Some(carried) = &m.bodies[index].carried {
+                        moved.extend(carried.freedoms.iter().map(|freedom| freedom.index));
+                        index = carried.parent;
+                    }
+                    let body = &m.bodies[index];
                     let freedoms = match (component, body.turn) {
                         (0..3, _) => component..component + 1,
                         (5, Turn::Angle) => EULER..EULER + 1,
@@ -101,10 +191,38 @@ impl Loads {
         moved.len()
     }
 
+    /// Forces and torques on all bodies, and on each what acts on the bodies that it carries too.
+    pub fn carried_on(&self, g: &mut Graph, m: &Mechanism) -> Vec<[Expr; 6]> {
+        let mut totals = self.bodies.clone();
+        for &index in m.tree.order.iter().rev() {
+            let Some(carried) = &m.bodies[index].carried else { continue };
+            let [fx, fy, fz, tx, ty, tz] = totals[index];
+            let arm = space::sub(g, m.bodies[index].origin(), m.bodies[carried.parent].origin());
+            let moment = space::cross(g, arm, [fx, fy, fz]);
+            let torque = space::add(g, [tx, ty, tz], moment);
+            for (total, part) in totals[carried.parent].iter_mut().zip([fx, fy, fz].into_iter().chain(torque)) {
+                *total = g.add(*total, part);
+            }
+        }
+        totals
+    }
+
     /// Generalised forces on all coordinates.
     pub fn generalised(&self, g: &mut Graph, m: &Mechanism) -> Vec<Expr> {
         let mut force = vec![g.constant(0.0); m.q.len()];
-        for (body, &[fx, fy, fz, tx, ty, tz]) in m.bodies.iter().zip(&self.bodies) {
+        for (body, &[fx, fy, fz, tx, ty, tz]) in m.bodies.iter().zip(&self.carried_on(g, m)) {
+            if let Some(carried) = &body.carried {
+                let axis = body.rotate(g, carried.axis[0]);
+                let foot = body.rotate(g, carried.foot);
+                let moment = space::cross(g, foot, [fx, fy, fz]);
+                let at_joint = space::sub(g, [tx, ty, tz], moment);
+                let (about, along) = (space::dot(g, axis, at_joint), space::dot(g, axis, [fx, fy, fz]));
+                for freedom in &carried.freedoms {
+                    let (turn, slide) = (g.mul(freedom.turn, about), g.mul(freedom.slide, along));
+                    force[freedom.index] = g.add(turn, slide);
+                }
+                continue;
+            }
             let parts = body.generalised(g, [fx, fy, fz], [tx, ty, tz]);
             for (index, part) in body.index.iter().zip(parts) {
                 if let Some(row) = *index {
@@ -113,7 +231,7 @@ impl Loads {
             }
         }
         for (&row, &part) in &self.coordinates {
-            force[row] = part;
+            force[row] = g.add(force[row], part);
         }
         force
     }
@@ -124,6 +242,21 @@ impl Loads {
         for (component, part) in force.into_iter().chain(moment).enumerate() {
             self.add(g, at.body, component, part);
         }
+    }
+
+    /// A body's weight at its centre of mass. A carried body's is left to the field.
+    pub fn add_weight(&mut self, g: &mut Graph, m: &Mechanism, center: &MaterialPoint, weight: Vector) {
+        if m.bodies[center.body].carried.is_none() {
+            self.add_force(g, center, weight);
+            return;
+        }
+        let felt = (0..3).filter(|&axis| !g.is_zero(weight[axis]));
+        self.touched.extend(felt.map(|axis| Target::Body(center.body, axis)));
+    }
+
+    /// A uniform field of acceleration, m/s² in the ground's axes, on all carried bodies.
+    pub fn add_field(&mut self, g: &mut Graph, acceleration: Vector) {
+        self.field = space::add(g, self.field, acceleration);
     }
 
     /// A force at `to` and its opposite at `from`.
@@ -152,13 +285,7 @@ impl Loads {
         joint: usize,
         torque: Expr,
     ) -> Result<(), BuildError> {
-        if let Some(&index) = m.joint_coordinates.get(&(joint, JointCoordinate::Angle)) {
-            if !g.is_zero(torque) {
-                let zero = g.constant(0.0);
-                let total = self.coordinates.entry(index).or_insert(zero);
-                *total = g.add(*total, torque);
-                self.touched.insert(Target::Coordinate(index));
-            }
+        if self.add_to_coordinate(g, m, OnJoint { joint, coordinate: JointCoordinate::Angle }, torque) {
             return Ok(());
         }
         let axis = joints::axis_in_ground(g, m, joint, JointCoordinate::Angle)?;
@@ -167,6 +294,54 @@ impl Loads {
             self.add_torque_pair(g, first.body, second.body, torque);
         }
         Ok(())
+    }
+
+    /// A force along a joint's axis on its second body at the second point, and the opposite on its first at the same
+    /// place: on the joint's displacement, where that is a coordinate of its own.
+    pub fn add_joint_force(
+        &mut self,
+        g: &mut Graph,
+        m: &Mechanism,
+        joint: usize,
+        force: Expr,
+    ) -> Result<(), BuildError> {
+        if self.add_to_coordinate(g, m, OnJoint { joint, coordinate: JointCoordinate::Displacement }, force) {
+            return Ok(());
+        }
+        let axis = joints::axis_in_ground(g, m, joint, JointCoordinate::Displacement)?;
+        let force = space::scale(g, force, axis);
+        if let Some([first, second]) = m.description.joints[joint].kind.between() {
+            let at = m.point(g, second);
+            let there = m.carried_along(g, first.body, at.position);
+            self.add_force_pair(g, &there, &at, force);
+        }
+        Ok(())
+    }
+
+    /// A force or torque that pushes a joint's coordinate up.
+    pub fn add_joint_effort(
+        &mut self,
+        g: &mut Graph,
+        m: &Mechanism,
+        on: OnJoint,
+        effort: Expr,
+    ) -> Result<(), BuildError> {
+        match on.coordinate {
+            JointCoordinate::Angle => self.add_joint_torque(g, m, on.joint, effort),
+            JointCoordinate::Displacement => self.add_joint_force(g, m, on.joint, effort),
+        }
+    }
+
+    /// Whether the joint's coordinate is one of its own, which the force then acts on.
+    fn add_to_coordinate(&mut self, g: &mut Graph, m: &Mechanism, on: OnJoint, force: Expr) -> bool {
+        let Some(&index) = m.joint_coordinates.get(&(on.joint, on.coordinate)) else { return false };
+        if !g.is_zero(force) {
+            let zero = g.constant(0.0);
+            let total = self.coordinates.entry(index).or_insert(zero);
+            *total = g.add(*total, force);
+            self.touched.insert(Target::Coordinate(index));
+        }
+        true
     }
 
     fn add(&mut self, g: &mut Graph, body: usize, component: usize, part: Expr) {

@@ -10,7 +10,8 @@
 //! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
 //! ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
-//! Where k or ℓ₀ depend on the motion there is no potential and none is counted.
+//! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may speak of.
+//! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
 use symdiff::{Expr, Formula, Graph};
 
@@ -18,9 +19,16 @@ use crate::mechanics::body::MaterialPoint;
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
 use crate::mechanics::space::{self, Vector};
-use crate::model::PointRef;
+use crate::model::{Measure, PointRef};
 
-use super::Loads;
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet {
+    keyword: "spring_damper",
+    formulas: &["f = k (ℓ − ℓ₀) + c ℓ̇ + force(ℓ, ℓ̇), pulls the points together"],
+    source: "Hooke; Kelvin and Voigt",
+};
 
 /// Its numbers.
 #[derive(Clone, Copy)]
@@ -40,6 +48,7 @@ pub fn apply(
     between: [PointRef; 2],
     along: Option<&[Formula; 3]>,
     spring: Spring<&Formula>,
+    further: Option<&Formula>,
 ) -> Result<(), BuildError> {
     let spring = Spring {
         stiffness: m.formula(g, spring.stiffness, Context::Motion)?,
@@ -47,24 +56,50 @@ pub fn apply(
         free_length: m.formula(g, spring.free_length, Context::Motion)?,
     };
     let [a, b] = between.map(|point| m.point(g, point));
-    let (pull, stretch) = match along {
+    let Stretched { mut pull, direction, length, rate, tension } = match along {
         Some(axis) => {
             let axis = m.vector(g, axis, Context::Motion)?;
             along_axis(g, &a, &b, axis, spring)
         }
         None => along_line(g, &a, &b, spring),
     };
+    let mut tension = tension;
+    if let Some(further) = further {
+        let further = m.own_formula(g, further, &[(Measure::Length, length), (Measure::Rate, rate)])?;
+        let further_pull = space::scale(g, further, direction);
+        pull = space::add(g, pull, further_pull);
+        tension = g.add(tension, further);
+    }
     // The tension pulls A towards B.
     loads.add_force_pair(g, &b, &a, pull);
+    let stretch = g.sub(length, spring.free_length);
     let square = g.mul(stretch, stretch);
     let doubled = g.mul(spring.stiffness, square);
     let potential = g.scale(0.5, doubled);
-    loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
+    if further.is_none() {
+        loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
+    }
+    for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
+        loads.measure(measure, value);
+    }
     Ok(())
 }
 
-/// F_A and ℓ − ℓ₀.
-fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> (Vector, Expr) {
+/// A spring in its place.
+struct Stretched {
+    /// F_A
+    pull: Vector,
+    /// Of F_A under tension.
+    direction: Vector,
+    /// ℓ or s
+    length: Expr,
+    /// ℓ̇ or ṡ
+    rate: Expr,
+    /// f
+    tension: Expr,
+}
+
+fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> Stretched {
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);
     let square = space::dot(g, line, line);
@@ -76,18 +111,13 @@ fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Sprin
     let growth = space::dot(g, line, rate);
     let relative = g.div(growth, square);
     let viscous = g.mul(spring.damping, relative);
-    let tension = g.add(elastic, viscous);
-    (space::scale(g, tension, line), g.sub(length, spring.free_length))
+    let density = g.add(elastic, viscous);
+    let pull = space::scale(g, density, line);
+    let direction = line.map(|component| g.div(component, length));
+    Stretched { pull, direction, length, rate: g.div(growth, length), tension: g.mul(density, length) }
 }
 
-/// F_A and s − ℓ₀.
-fn along_axis(
-    g: &mut Graph,
-    a: &MaterialPoint,
-    b: &MaterialPoint,
-    axis: Vector,
-    spring: Spring<Expr>,
-) -> (Vector, Expr) {
+fn along_axis(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring<Expr>) -> Stretched {
     let axis = space::unit(g, axis);
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);
@@ -96,5 +126,5 @@ fn along_axis(
     let elastic = g.mul(spring.stiffness, stretch);
     let viscous = g.mul(spring.damping, growth);
     let tension = g.add(elastic, viscous);
-    (space::scale(g, tension, axis), stretch)
+    Stretched { pull: space::scale(g, tension, axis), direction: axis, length: extent, rate: growth, tension }
 }

@@ -13,7 +13,11 @@ use symdiff::{Formula, Graph};
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
 
-use super::Loads;
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet =
+    Sheet { keyword: "torque", formulas: &["τ(on) = value, τ(from) = −value"], source: "Newton" };
 
 pub fn apply(
     g: &mut Graph,

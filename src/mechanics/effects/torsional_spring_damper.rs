@@ -5,26 +5,32 @@
 //! −τ about the axis on the second body, +τ on the first
 //! ```
 //!
-//! Angles are never wrapped: the spring winds up over many turns. Where k or φ₀ depend on the motion there is no
-//! potential and none is counted.
+//! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
+//! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
 use symdiff::{Formula, Graph};
 
 use crate::mechanics::body::ANGLE;
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
-use crate::model::{JointCoordinate, TimeOrder, Twisted};
+use crate::model::{JointCoordinate, Measure, TimeOrder, Twisted};
 
-use super::Loads;
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet {
+    keyword: "torsional_spring_damper",
+    formulas: &["τ = k (φ − φ₀) + c φ̇ + torque(φ, φ̇), turns back"],
+    source: "Hooke; Kelvin and Voigt",
+};
 
 pub fn apply(
     g: &mut Graph,
     m: &Mechanism,
     loads: &mut Loads,
     on: Twisted,
-    stiffness: &Formula,
-    damping: &Formula,
-    free_angle: &Formula,
+    [stiffness, damping, free_angle]: [&Formula; 3],
+    further: Option<&Formula>,
 ) -> Result<(), BuildError> {
     let stiffness = m.formula(g, stiffness, Context::Motion)?;
     let damping = m.formula(g, damping, Context::Motion)?;
@@ -42,7 +48,14 @@ pub fn apply(
     let twist = g.sub(turned, free_angle);
     let elastic = g.mul(stiffness, twist);
     let viscous = g.mul(damping, rate);
-    let torque = g.add(elastic, viscous);
+    let mut torque = g.add(elastic, viscous);
+    if let Some(further) = further {
+        let further = m.own_formula(g, further, &[(Measure::Angle, turned), (Measure::Rate, rate)])?;
+        torque = g.add(torque, further);
+    }
+    for (measure, value) in [(Measure::Angle, turned), (Measure::Rate, rate), (Measure::Torque, torque)] {
+        loads.measure(measure, value);
+    }
     match on {
         Twisted::Bodies([first, second]) => {
             let zero = g.constant(0.0);
@@ -56,6 +69,8 @@ pub fn apply(
     let square = g.mul(twist, twist);
     let doubled = g.mul(stiffness, square);
     let potential = g.scale(0.5, doubled);
-    loads.add_potential(g, m, &[stiffness, free_angle], potential);
+    if further.is_none() {
+        loads.add_potential(g, m, &[stiffness, free_angle], potential);
+    }
     Ok(())
 }

@@ -11,6 +11,7 @@ mod distance;
 mod equation;
 mod fixed;
 mod gear;
+mod motor;
 mod pair;
 mod pin_in_slot;
 mod planar;
@@ -74,6 +75,7 @@ pub fn rows(g: &mut Graph, m: &Mechanism, joint: usize) -> Result<Vec<Row>, Buil
         JointKind::Distance { between, length } => distance::rows(g, m, *between, length),
         JointKind::Gear { between, ratio, offset } => gear::rows(g, m, *between, ratio, offset),
         JointKind::Rack { pinion, rack, radius, offset } => rack::rows(g, m, [*pinion, *rack], radius, offset),
+        JointKind::Motor { joint, coordinate, motion } => motor::rows(g, m, *joint, *coordinate, motion),
         JointKind::Equation { left, right } => equation::rows(g, m, left, right),
     }
 }

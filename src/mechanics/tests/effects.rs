@@ -1,5 +1,8 @@
 use crate::mechanics::System;
-use crate::model::{EffectKind, Twisted};
+use crate::model::{
+    Backlash, Beam, Cable, Contact, DryFriction, EffectKind, Impact, Loss, Preload, Preloaded, Surface, Turning,
+    Twisted,
+};
 
 use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_close, output};
@@ -104,6 +107,7 @@ fn spring(m: &Model, along: Option<[symdiff::Formula; 3]>, stiffness: &str, damp
         stiffness: formula(stiffness),
         damping: formula(damping),
         free_length: formula("0.4"),
+        force: None,
     }
 }
 
@@ -156,6 +160,7 @@ fn tension_pulls_the_points_together() {
             stiffness: formula("10"),
             damping: formula("3"),
             free_length: formula("2"),
+            force: None,
         });
         let system = m.build();
         let mut state = State::at(&system, &[1.0, 4.0]);
@@ -173,6 +178,7 @@ fn a_torsional_spring_turns_back() {
         stiffness: formula("k"),
         damping: formula("0.3"),
         free_angle: formula("0.2"),
+        torque: None,
     });
     let system = m.build();
     let state = State::random(&system, 6);
@@ -191,6 +197,7 @@ fn nothing_is_left_of_a_spring_without_stiffness() {
         stiffness: formula("0"),
         damping: formula("0"),
         free_length: formula("2"),
+        force: None,
     });
     let system = m.build();
     assert!(system.force.iter().all(|&force| system.graph.is_zero(force)));
@@ -216,4 +223,113 @@ fn effects_may_speak_of_reactions() {
     let system = m.build();
     let symbols = system.graph.symbols_of(&[system.force[2]]);
     assert!(system.lambda.iter().all(|lambda| symbols.contains(lambda)));
+}
+
+fn elastic(stiffness: &str) -> Impact {
+    Impact { stiffness: formula(stiffness), exponent: 1.5, loss: Loss::Dissipation(formula("0")) }
+}
+
+/// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths are
+/// such that it acts wherever the bodies are, and nowhere just at its corner.
+#[test]
+fn what_takes_nothing_has_its_potential() {
+    let m = two_bodies();
+    let between = m.between("a.P", "b.P");
+    let contact = |surface: Surface| {
+        let (radius, impact) = (formula("0.9"), elastic("k"));
+        EffectKind::Contact(Contact { between, surface, radius, axis: None, impact, friction: None })
+    };
+    let cable = Cable {
+        between,
+        free_length: formula("0.05"),
+        stiffness: formula("k"),
+        damping: formula("0"),
+        transition: formula("0.01"),
+    };
+    let backlash = Backlash {
+        between: [Turning::Body(m.body_index("a")), Turning::Body(m.body_index("b"))],
+        ratio: formula("-1.7"),
+        offset: formula("0.1"),
+        backlash: formula("0.02"),
+        stiffness: formula("k"),
+        damping: formula("0"),
+        transition: formula("0.3"),
+    };
+    // A symmetric matrix with everything in it that the plane has.
+    let row = |texts: [&str; 6]| texts.map(formula);
+    let matrix = [
+        row(["30", "4", "0", "0", "0", "2"]),
+        row(["4", "50", "0", "0", "0", "-3"]),
+        row(["0"; 6]),
+        row(["0"; 6]),
+        row(["0"; 6]),
+        row(["2", "-3", "0", "0", "0", "k/10"]),
+    ];
+    let beam = Beam {
+        between,
+        axis: pair("1", "0.5"),
+        length: formula("0.7"),
+        axial_stiffness: formula("k"),
+        bending_stiffness: formula("3"),
+        damping: formula("0"),
+    };
+    let nothing = || [0.0; 3].map(symdiff::Formula::number);
+    let bushing = EffectKind::Bushing {
+        between,
+        stiffness: nothing(),
+        damping: nothing(),
+        torsional_stiffness: nothing(),
+        torsional_damping: nothing(),
+        stiffness_matrix: Some(Box::new(matrix)),
+        damping_matrix: None,
+    };
+    let kinds = [
+        contact(Surface::Plane(pair("1", "2"))),
+        contact(Surface::Round(formula("3"))),
+        contact(Surface::Hollow(formula("0.91"))),
+        EffectKind::Cable(cable),
+        EffectKind::Backlash(backlash),
+        EffectKind::Preload(Preload { on: Preloaded::Points(between), value: formula("k/3") }),
+        EffectKind::Beam(beam),
+        bushing,
+    ];
+    for (index, kind) in kinds.into_iter().enumerate() {
+        let mut m = two_bodies();
+        m.effect(kind);
+        let system = m.build();
+        let mut acting = 0;
+        for seed in 0..6 {
+            let state = State::random(&system, seed);
+            let (power, rate) = (power(&system, &state), potential_rate(&system, &state));
+            assert!((power + rate).abs() <= 1e-6 * (1.0 + power.abs()), "effect {index}: {power} is not {}", -rate);
+            acting += usize::from(power.abs() > 1e-3);
+        }
+        assert!(acting >= 2, "effect {index} did nothing");
+    }
+}
+
+/// Friction of a contact takes power, and no more than the load times the speed.
+#[test]
+fn rubbing_takes_power() {
+    let contact = |friction: Option<DryFriction>| {
+        let mut m = two_bodies();
+        let between = m.between("a.P", "b.P");
+        let (surface, radius, impact) = (Surface::Round(formula("3")), formula("0.9"), elastic("k"));
+        m.effect(EffectKind::Contact(Contact { between, surface, radius, axis: None, impact, friction }));
+        m.output("effect0.force");
+        m.build()
+    };
+    let law = DryFriction {
+        coefficient: formula("0.3"),
+        breakaway: formula("1.5"),
+        stribeck: Some(formula("0.1")),
+        transition: formula("0.01"),
+    };
+    let (smooth, rough) = (contact(None), contact(Some(law)));
+    for seed in 0..5 {
+        let [without, with] = [&smooth, &rough].map(|system| power(system, &State::random(system, seed)));
+        let load = value(&rough, &State::random(&rough, seed), "effect0.force");
+        assert!(load > 1.0 && with < without, "{with} {without}");
+        assert!(without - with < 0.3 * 1.5 * load * 10.0);
+    }
 }

@@ -38,6 +38,7 @@ impl Model {
             name: "test".to_owned(),
             description: None,
             space: Space { spatial: false, why: String::new() },
+            robot: None,
             parameters: Vec::new(),
             bodies: Vec::new(),
             joints: Vec::new(),
@@ -45,7 +46,13 @@ impl Model {
             initial: Vec::new(),
             guess: Vec::new(),
             outputs: Vec::new(),
-            simulation: Simulation { duration: 1.0, stepping: Stepping::Fixed(1e-3), alpha: -0.1, output_step: 0.01 },
+            simulation: Simulation {
+                duration: 1.0,
+                stepping: Stepping::Fixed(1e-3),
+                alpha: -0.1,
+                output_step: 0.01,
+                formulation: Formulation::Auto,
+            },
             bounds: BoundsRequest::default(),
         });
         model.body("ground", "0", "0", "", &[]);
@@ -184,6 +191,7 @@ pub fn slider_crank() -> Model {
         stiffness: formula("k"),
         damping: formula("c"),
         free_length: formula("l1 + l2"),
+        force: None,
     };
     m.effect(spring);
     m.initial("crank", 'a', TimeOrder::Position, "0");

@@ -300,6 +300,7 @@ fn springs_bushings_and_gravity_have_their_potential() {
         stiffness: formula("50"),
         damping: formula("0"),
         free_length: formula("0.4"),
+        force: None,
     };
     let bushing = EffectKind::Bushing {
         between: m.between("a.P", "b.P"),
@@ -307,6 +308,8 @@ fn springs_bushings_and_gravity_have_their_potential() {
         damping: zero(),
         torsional_stiffness: vector(["3", "5", "8"]),
         torsional_damping: zero(),
+        stiffness_matrix: None,
+        damping_matrix: None,
     };
     let gravity = EffectKind::Gravity { acceleration: vector(["1", "-2", "-9.81"]) };
     for kind in [spring(None), spring(Some(vector(["1", "2", "-2"]))), bushing, gravity] {
@@ -330,6 +333,8 @@ fn a_bushing_damps_relative_motion_only() {
         damping: vector(["3", "3", "3"]),
         torsional_stiffness: [0.0; 3].map(symdiff::Formula::number),
         torsional_damping: vector(["2", "2", "2"]),
+        stiffness_matrix: None,
+        damping_matrix: None,
     });
     let system = m.build();
     let mut state = on_sphere(&system, 9);

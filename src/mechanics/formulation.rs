@@ -1,0 +1,82 @@
+//! Whether a mechanism can be described in joint coordinates.
+
+use symdiff::{Formula, Graph};
+
+use crate::model::{EffectKind, JointFriction, JointKind, Referent, StartValue, Turning};
+
+use super::coordinates::formulas_of_motion;
+use super::mechanism::{Context, Mechanism};
+
+impl Mechanism<'_> {
+    /// What is in the way of joint coordinates; `None` where they do.
+    pub fn obstacle(&self, g: &mut Graph) -> Option<String> {
+        if self.tree.is_absolute() {
+            return Some("no joint can carry a body".to_owned());
+        }
+        self.lost_start().or_else(|| self.loaded_friction(g)).or_else(|| self.lost_reaction())
+    }
+
+    /// Friction by the load of a joint that carries.
+    fn loaded_friction(&self, g: &mut Graph) -> Option<String> {
+        let d = self.description;
+        let mut loaded = |friction: &JointFriction| {
+            let coefficient = self.formula(g, &friction.dry.coefficient, Context::Motion);
+            self.tree.uses(friction.joint) && !coefficient.is_ok_and(|coefficient| g.is_zero(coefficient))
+        };
+        let joint = d.effects.iter().find_map(|effect| match &effect.kind {
+            EffectKind::JointFriction(friction) if loaded(friction) => Some(friction.joint),
+            _ => None,
+        })?;
+        Some(format!("friction grows with the reaction of joint `{}`, which carries a body", d.joints[joint].name))
+    }
+
+    /// A value at the start of a coordinate that there is not.
+    fn lost_start(&self) -> Option<String> {
+        let d = self.description;
+        d.initial.iter().chain(&d.guess).find_map(|value| {
+            let body = match value {
+                StartValue::Coordinate { body, coordinate, order, .. } => {
+                    let known = self.angle_of_carrier(*body, *coordinate, *order).is_some();
+                    Some(body).filter(|_| !known)
+                }
+                StartValue::Orientation { body, .. } | StartValue::AngularVelocity { body, .. } => Some(body),
+                StartValue::Joint { .. } => None,
+            };
+            let body = body.filter(|body| self.tree.carriers[**body].is_some())?;
+            let name = &d.bodies[*body].name;
+            Some(format!("the start names a coordinate of body `{name}`, whose place follows from its joint's"))
+        })
+    }
+
+    /// A reaction of a joint that carries, where it cannot be told from the forces that it depends on.
+    fn lost_reaction(&self) -> Option<String> {
+        let d = self.description;
+        let reaction = |formulas: Vec<&Formula>| {
+            formulas.iter().flat_map(|formula| formula.names()).find_map(|(name, _)| match d.referent(name) {
+                Some(Referent::Reaction { joint, .. }) if self.tree.uses(joint) => Some(&d.joints[joint].name),
+                _ => None,
+            })
+        };
+        if let Some(joint) = reaction(formulas_of_motion(d)) {
+            return Some(format!("a force depends on the reaction of joint `{joint}`, which carries a body"));
+        }
+        // What acts on coordinates of joints alone is no part of a joint's reaction.
+        let of_joints = |formula: &Formula| {
+            formula.names().all(|(name, _)| {
+                let known = d.referent(name);
+                matches!(known, Some(Referent::JointCoordinate { .. } | Referent::Parameter(_) | Referent::Time))
+            })
+        };
+        let couples = |kind: &JointKind| match kind {
+            JointKind::Equation { left, right } => !(of_joints(left) && of_joints(right)),
+            JointKind::Gear { between, .. } => between.iter().any(|turning| matches!(turning, Turning::Body(_))),
+            _ => false,
+        };
+        let coupling = d.joints.iter().find(|joint| couples(&joint.kind))?;
+        let joint = reaction(d.outputs.iter().map(|output| &output.formula).collect())?;
+        Some(format!(
+            "an output is the reaction of joint `{joint}`, which carries a body, and what `{}` adds to it is not known",
+            coupling.name
+        ))
+    }
+}
