@@ -295,6 +295,10 @@ impl Reader<'_> {
     /// The point that is named: `body.point`, or `body` for the origin of its frame.
     pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
         let scalar = self.scalar(node, "`body` or `body.point`")?;
+        let text = &scalar.text;
+        if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
+            return Some(place);
+        }
         let Some((name, point)) = scalar.text.split_once('.') else {
             return Some(PointRef { body: self.find_body(node, &scalar.text)?, point: None });
         };

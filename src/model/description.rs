@@ -2,7 +2,8 @@
 
 use symdiff::Formula;
 
-use super::kinds::{EffectKind, JointCoordinate, JointKind};
+use super::effect_kinds::{EffectKind, Measure};
+use super::kinds::{JointCoordinate, JointKind};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -16,6 +17,8 @@ pub struct Description {
     pub description: Option<String>,
     /// Whether the mechanism stays in the plane.
     pub space: Space,
+    /// The tree of a URDF, where the model names one.
+    pub robot: Option<RobotTree>,
     /// In an order in which each depends only on earlier ones.
     pub parameters: Vec<Parameter>,
     /// `bodies[0]` is the ground: no coordinates, no mass, perhaps points.
@@ -34,6 +37,51 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+}
+
+/// The links and joints of a URDF, which the bodies and joints of the model were made of.
+#[derive(Clone, Debug)]
+pub struct RobotTree {
+    /// As the file calls it.
+    pub name: String,
+    /// Each behind its parent.
+    pub links: Vec<TreeLink>,
+}
+
+/// A link of a URDF.
+#[derive(Clone, Debug)]
+pub struct TreeLink {
+    /// Its name in formulas.
+    pub name: String,
+    /// Joints between it and the root.
+    pub depth: usize,
+    /// kg, where the file has one.
+    pub mass: Option<f64>,
+    /// Its frame; absent where the link is left out.
+    pub place: Option<PointRef>,
+    /// The joint that leads to it; absent for the root.
+    pub joint: Option<TreeJoint>,
+}
+
+/// A joint of a URDF.
+#[derive(Clone, Debug)]
+pub struct TreeJoint {
+    /// Its name in formulas.
+    pub name: String,
+    /// The file's word for it.
+    pub kind: &'static str,
+    /// In the child's frame, where the joint has one coordinate.
+    pub axis: Option<[f64; 3]>,
+    /// Smallest and largest position.
+    pub limits: Option<[f64; 2]>,
+    /// rad or m, of its position.
+    pub unit: &'static str,
+    /// N m s/rad or N s/m
+    pub damping: f64,
+    /// N m or N
+    pub friction: f64,
+    /// The joint that it follows.
+    pub mimics: Option<String>,
 }
 
 /// In how many dimensions a mechanism moves.
@@ -320,6 +368,13 @@ pub enum Referent {
         #[allow(missing_docs)]
         component: ReactionComponent,
     },
+    /// `effect.length`, `effect.force`, …: what an effect measures.
+    Measure {
+        #[allow(missing_docs)]
+        effect: usize,
+        #[allow(missing_docs)]
+        measure: Measure,
+    },
     /// `energy`, `kinetic_energy`, `potential_energy`, J.
     Energy(EnergyKind),
 }
@@ -357,6 +412,20 @@ pub struct Simulation {
     pub alpha: f64,
     /// s between rows of output.
     pub output_step: f64,
+    /// By which coordinates the motion is described.
+    pub formulation: Formulation,
+}
+
+/// By which coordinates a motion is described; the motion is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulation {
+    /// Whichever takes fewer instructions.
+    #[default]
+    Auto,
+    /// Each body has its own, and joints constrain them.
+    Absolute,
+    /// Those of the joints, of which each carries a body; joints that close loops constrain them.
+    Joint,
 }
 
 /// How steps are chosen.
@@ -364,7 +433,8 @@ pub struct Simulation {
 pub enum Stepping {
     /// Every step this long, s.
     Fixed(f64),
-    /// Local position error kept below this, relative to |q|, or to the model's size where that is larger.
+    /// Steps' local position errors add up to no more than this over the run, relative to |q|, or to the model's size where that
+    /// is larger.
     Tolerance(f64),
 }
 

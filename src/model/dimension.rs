@@ -5,7 +5,7 @@
 //! A parameter without unit fits anywhere, and so does what is made with it.
 
 use symdiff::formula::Term;
-use symdiff::{Binary, Formula, Unary};
+use symdiff::{Binary, Formula, Spline, Unary};
 
 use super::quantity::Dimension;
 use super::source::Span;
@@ -55,13 +55,20 @@ pub struct Mismatch {
     pub span: Span,
 }
 
-/// The formula's dimension, each name's given by `name`; every mismatch within it goes to `mismatches`.
-pub fn analyse(formula: &Formula, mut name: impl FnMut(&str) -> Kind, mismatches: &mut Vec<Mismatch>) -> Kind {
+/// The formula's dimension, each name's given by `name`, those of a table's argument and value by `table`; every mismatch within
+/// it goes to `mismatches`.
+pub fn analyse(
+    formula: &Formula,
+    mut name: impl FnMut(&str) -> Kind,
+    table: impl Fn(Spline) -> [Option<Dimension>; 2],
+    mismatches: &mut Vec<Mismatch>,
+) -> Kind {
     let mut kinds: Vec<Kind> = Vec::with_capacity(formula.terms().len());
     for (term, span) in formula.terms() {
         let kind = match term {
             Term::Number(value) => Ok(Kind::Number(Some(*value))),
             Term::Name(text) => Ok(name(text)),
+            Term::Unary(Unary::Spline(spline, _), a) => looked_up(table(*spline), kinds[*a]),
             Term::Unary(function, a) => unary(*function, kinds[*a]),
             Term::Binary(function, a, b) => binary(*function, kinds[*a], kinds[*b]),
         };
@@ -71,6 +78,16 @@ pub fn analyse(formula: &Formula, mut name: impl FnMut(&str) -> Kind, mismatches
         }));
     }
     kinds.pop().unwrap_or(Kind::Any)
+}
+
+/// A table's value.
+fn looked_up([argument, value]: [Option<Dimension>; 2], a: Kind) -> Result<Kind, String> {
+    if let (Some(wanted), Kind::Known { dimension, .. }) = (argument, a)
+        && !dimension.fits(wanted)
+    {
+        return Err(format!("{dimension} stands where {wanted} belongs"));
+    }
+    Ok(value.map_or(Kind::Any, Kind::parameter))
 }
 
 fn unary(function: Unary, a: Kind) -> Result<Kind, String> {
@@ -185,7 +202,7 @@ mod tests {
 
     fn unit(text: &str) -> Result<String, String> {
         let mut mismatches = Vec::new();
-        let kind = analyse(&Formula::parse(text).unwrap(), name, &mut mismatches);
+        let kind = analyse(&Formula::parse(text).unwrap(), name, |_| [None; 2], &mut mismatches);
         match mismatches.into_iter().next() {
             Some(mismatch) => Err(format!("{:?} {}", mismatch.span, mismatch.message)),
             None => Ok(match kind {

@@ -1,21 +1,29 @@
 //! `effects:`.
 
+mod acting;
+mod touching;
+
 use symdiff::Formula;
 
 use super::description::Effect;
+use super::effect_kinds::{EffectKind, Twisted};
 use super::file;
-use super::kinds::{EffectKind, JointCoordinate, Twisted};
+use super::kinds::JointCoordinate;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::yaml::{Entry, Value};
+use super::yaml::{Entry, Node, Value};
 
-/// Reads the effects.
+/// Reads the effects. A formula may speak of what its own effect and those before it measure.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name(entry, "an effect");
-        if let Some(kind) = effect(reader, entry) {
-            reader.model.effects.push(Effect { name: entry.key.clone(), kind });
+        let nothing = [0.0; 3].map(Formula::number);
+        let kind = EffectKind::Gravity { acceleration: nothing };
+        reader.model.effects.push(Effect { name: entry.key.clone(), kind });
+        let kind = effect(reader, entry);
+        if let Some((effect, kind)) = reader.model.effects.last_mut().zip(kind) {
+            effect.kind = kind;
         }
     }
 }
@@ -52,13 +60,19 @@ fn effect(reader: &mut Reader, entry: &Entry) -> Option<EffectKind> {
             };
             let [stiffness, damping] = coefficients(reader, &fields, Dimension::STIFFNESS, Dimension::DAMPING);
             let free_length = or_zero(reader, &fields, "free_length", Dimension::LENGTH);
-            Some(EffectKind::SpringDamper {
+            let spring = EffectKind::SpringDamper {
                 between: between?,
                 along: along?,
                 stiffness: stiffness?,
                 damping: damping?,
                 free_length: free_length?,
-            })
+                force: None,
+            };
+            let further = own_formula(reader, &fields, "force", Dimension::FORCE, &spring)?;
+            let EffectKind::SpringDamper { between, along, stiffness, damping, free_length, .. } = spring else {
+                return None;
+            };
+            Some(EffectKind::SpringDamper { between, along, stiffness, damping, free_length, force: further })
         }
         "torsional_spring_damper" => {
             let fields = reader.fields::<file::TorsionalSpringDamper>(node, at)?;
@@ -66,13 +80,29 @@ fn effect(reader: &mut Reader, entry: &Entry) -> Option<EffectKind> {
             let [stiffness, damping] =
                 coefficients(reader, &fields, Dimension::TORSIONAL_STIFFNESS, Dimension::TORSIONAL_DAMPING);
             let free_angle = or_zero(reader, &fields, "free_angle", Dimension::ANGLE);
-            Some(EffectKind::TorsionalSpringDamper {
+            let spring = EffectKind::TorsionalSpringDamper {
                 on: on?,
                 stiffness: stiffness?,
                 damping: damping?,
                 free_angle: free_angle?,
-            })
+                torque: None,
+            };
+            let further = own_formula(reader, &fields, "torque", Dimension::TORQUE, &spring)?;
+            let EffectKind::TorsionalSpringDamper { on, stiffness, damping, free_angle, .. } = spring else {
+                return None;
+            };
+            Some(EffectKind::TorsionalSpringDamper { on, stiffness, damping, free_angle, torque: further })
         }
+        "joint_friction" => touching::joint_friction(reader, node, at).map(EffectKind::JointFriction),
+        "stop" => touching::stop(reader, node, at).map(EffectKind::Stop),
+        "contact" => touching::contact(reader, node, at).map(EffectKind::Contact),
+        "clearance_joint" => touching::clearance_joint(reader, node, at).map(EffectKind::ClearanceJoint),
+        "servo" => acting::servo(reader, node, at).map(EffectKind::Servo),
+        "drag" => acting::drag(reader, node, at).map(EffectKind::Drag),
+        "cable" => acting::cable(reader, node, at).map(EffectKind::Cable),
+        "backlash" => acting::backlash(reader, node, at).map(EffectKind::Backlash),
+        "preload" => acting::preload(reader, node, at).map(EffectKind::Preload),
+        "beam" => acting::beam(reader, node, at).map(EffectKind::Beam),
         // `only` lets through the kinds of the grammar; this is the last.
         _ => {
             let fields = reader.fields::<file::Bushing>(node, at)?;
@@ -90,12 +120,18 @@ fn effect(reader: &mut Reader, entry: &Entry) -> Option<EffectKind> {
             let damping = per_axis("damping", Dimension::DAMPING);
             let torsional_stiffness = per_axis("torsional_stiffness", Dimension::TORSIONAL_STIFFNESS);
             let torsional_damping = per_axis("torsional_damping", Dimension::TORSIONAL_DAMPING);
+            let straight = [Dimension::STIFFNESS, Dimension::FORCE, Dimension::TORSIONAL_STIFFNESS];
+            let stiffness_matrix = matrix(reader, &fields, "stiffness_matrix", straight);
+            let rates = straight.map(|dimension| dimension.times(Dimension::TIME));
+            let damping_matrix = matrix(reader, &fields, "damping_matrix", rates);
             Some(EffectKind::Bushing {
                 between: between?,
                 stiffness: stiffness?,
                 damping: damping?,
                 torsional_stiffness: torsional_stiffness?,
                 torsional_damping: torsional_damping?,
+                stiffness_matrix: stiffness_matrix?,
+                damping_matrix: damping_matrix?,
             })
         }
     }
@@ -163,6 +199,78 @@ fn twisted(reader: &mut Reader, fields: &Fields) -> Option<Twisted> {
     Some(Twisted::Bodies(bodies))
 }
 
+/// The formula of a key that may speak of what the effect itself measures; `kind` is the effect without it.
+fn own_formula(
+    reader: &mut Reader,
+    fields: &Fields,
+    key: &str,
+    wanted: Dimension,
+    kind: &EffectKind,
+) -> Option<Option<Formula>> {
+    let Some(node) = fields.get(key) else { return Some(None) };
+    reader.model.effects.last_mut()?.kind = kind.clone();
+    reader.formula(node, Context::Effect, wanted).map(Some)
+}
+
+/// Six rows of six; dimensions of force by displacement, of force by rotation and torque by displacement, of torque by
+/// rotation.
+#[allow(clippy::type_complexity)]
+fn matrix(
+    reader: &mut Reader,
+    fields: &Fields,
+    key: &str,
+    dimensions: [Dimension; 3],
+) -> Option<Option<Box<[[Formula; 6]; 6]>>> {
+    let Some(node) = fields.get(key) else { return Some(None) };
+    let rows = six(reader, node, "six rows of six numbers")?;
+    let mut read = Vec::with_capacity(6);
+    for (row, entries) in rows.iter().enumerate() {
+        let mut line = Vec::with_capacity(6);
+        for (column, entry) in six(reader, entries, "a row of six numbers")?.iter().enumerate() {
+            let dimension = dimensions[usize::from(row >= 3) + usize::from(column >= 3)];
+            line.push(reader.formula(entry, Context::Effect, dimension)?);
+        }
+        read.push(<[Formula; 6]>::try_from(line).ok()?);
+    }
+    <[[Formula; 6]; 6]>::try_from(read).ok().map(|matrix| Some(Box::new(matrix)))
+}
+
+fn six<'n>(reader: &mut Reader, node: &'n Node, wanted: &str) -> Option<&'n [Node]> {
+    let found = match &node.value {
+        Value::Sequence(items) if items.len() == 6 => return Some(items),
+        Value::Sequence(items) => format!("a list of {}", items.len()),
+        _ => node.kind().to_owned(),
+    };
+    reader.error(node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
+    None
+}
+
+/// A formula of a key that must be there.
+fn needed(reader: &mut Reader, fields: &Fields, key: &str, context: Context, wanted: Dimension) -> Option<Formula> {
+    let node = reader.required(fields, key)?;
+    reader.formula(node, context, wanted)
+}
+
+/// A number of parameters that is positive at every corner.
+fn positive(reader: &mut Reader, fields: &Fields, key: &str, wanted: Dimension) -> Option<Formula> {
+    let node = reader.required(fields, key)?;
+    reader.formula_that(node, Context::Constant, wanted, |value| value > 0.0, "must be positive")
+}
+
+/// A number of parameters that is positive at every corner, or this one.
+fn positive_or(
+    reader: &mut Reader,
+    fields: &Fields,
+    key: &str,
+    wanted: Dimension,
+    default: Formula,
+) -> Option<Formula> {
+    match fields.get(key) {
+        Some(_) => positive(reader, fields, key, wanted),
+        None => Some(default),
+    }
+}
+
 /// Stiffness and damping, of which one must be there.
 fn coefficients(
     reader: &mut Reader,
@@ -170,7 +278,8 @@ fn coefficients(
     stiffness: Dimension,
     damping: Dimension,
 ) -> [Option<Formula>; 2] {
-    if fields.get("stiffness").is_none() && fields.get("damping").is_none() {
+    let given = ["stiffness", "damping", if stiffness == Dimension::STIFFNESS { "force" } else { "torque" }];
+    if given.iter().all(|key| fields.get(key).is_none()) {
         reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
     }
     [or_zero(reader, fields, "stiffness", stiffness), or_zero(reader, fields, "damping", damping)]

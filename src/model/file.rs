@@ -71,6 +71,26 @@ enum SpaceName {
     Spatial,
 }
 
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum FormulationName {
+    /// Whichever takes fewer instructions.
+    Auto,
+    /// Each body has coordinates of its own, and joints constrain them.
+    Absolute,
+    /// The joints' angles and displacements, of which each carries a body; joints that close loops constrain them.
+    Joint,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum BaseName {
+    /// The root link is part of the ground.
+    Fixed,
+    /// The root link is a body like any other.
+    Floating,
+}
+
 /// A place in a body's frame, or a frame there.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -124,6 +144,43 @@ enum Frame {
     Body,
 }
 
+/// A column by its name, or by its number.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum Column {
+    Number(u32),
+    Name(String),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum JointCoordinateName {
+    /// About the joint's axis.
+    Angle,
+    /// Along it.
+    Displacement,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum ProfileName {
+    /// Its acceleration is a sine.
+    Cycloidal,
+    /// A polynomial that begins and ends without rate and acceleration.
+    Quintic,
+    /// A constant rate between constant accelerations.
+    Trapezoidal,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case", inline)]
+enum RestitutionLawName {
+    /// 3 (1 - e)/(2 v)
+    HuntCrossley,
+    /// 3 (1 - e^2)/(4 v)
+    LankaraniNikravesh,
+}
+
 #[derive(JsonSchema)]
 #[schemars(rename_all = "lowercase", inline)]
 enum Range {
@@ -164,6 +221,8 @@ enum PerParameter {
 enum ParameterFile {
     /// A number, a formula, or a number with its unit.
     Number(Number),
+    /// Of a number of the URDF: its smallest and largest value.
+    Interval([Number; 2]),
     Full(Parameter),
 }
 
@@ -197,10 +256,16 @@ grammar! {
         description: Option<String>,
         /// Whether the mechanism stays in the plane; by default it does where nothing in the file leaves it.
         space: Option<SpaceName>,
+        /// A robot to begin with: a URDF file, beside this one. Its links are bodies, its numbers parameters.
+        urdf: Option<String>,
+        /// Whether the robot's root link is fixed to the ground, which is the default.
+        base: Option<BaseName>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Functions given by their values: in formulas, `NAME(t)`.
+        tables: Option<IndexMap<String, Table>>,
         /// Rigid bodies. `ground` is there already, and may be given points.
-        bodies: IndexMap<String, Body>,
+        bodies: Option<IndexMap<String, Body>>,
         /// What holds the bodies together.
         joints: Option<IndexMap<String, Joint>>,
         /// What moves the bodies.
@@ -210,7 +275,7 @@ grammar! {
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
         /// What is observed: names with formulas, e.g. `x3: slider.x`.
-        outputs: IndexMap<String, Number>,
+        outputs: Option<IndexMap<String, Number>>,
         /// How long, and in which steps.
         simulation: Simulation,
         /// Which bounds to compute; without this, Chebyshev of order 5.
@@ -233,6 +298,18 @@ grammar! {
         minus: Option<Number>,
         /// What it is, for people.
         description: Option<String>,
+    }
+
+    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends.
+    Table is "a table" {
+        /// A CSV file, beside the model; `#` begins a comment.
+        file: Option<String>,
+        /// Names or numbers (from 1) of the file's columns with argument and value; by default the first two.
+        columns: Option<[Column; 2]>,
+        /// Instead of `file`: pairs of argument and value, arguments ascending.
+        points: Option<Vec<[f64; 2]>>,
+        /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
+        units: Option<[String; 2]>,
     }
 
     /// A rigid body with its frame.
@@ -331,6 +408,8 @@ grammar! {
         gear: Option<Gear>,
         /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
         rack: Option<Rack>,
+        /// A joint's coordinate moves as is prescribed.
+        motor: Option<Motor>,
         /// `left = right` between coordinates, parameters and t, e.g. `crank.angle = omega*t`.
         equation: Option<String>,
     }
@@ -421,6 +500,30 @@ grammar! {
         offset: Option<Number>,
     }
 
+    /// A prescribed motion; one of `position`, `speed` and `to` says which.
+    Motor is "a motor" {
+        /// A revolute, prismatic, cylindrical or screw joint.
+        on: String,
+        /// Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+        coordinate: Option<JointCoordinateName>,
+        /// The coordinate over time, rad or m: a formula of t, twice differentiable.
+        position: Option<Number>,
+        /// rad/s or m/s: from the beginning or, with a `profile`, from rest within the `duration`.
+        speed: Option<Number>,
+        /// Where a move from rest to rest ends, rad or m.
+        to: Option<Number>,
+        /// Where the motion begins, rad or m; by default 0.
+        from: Option<Number>,
+        /// How the coordinate (of a move) or the speed (of a run-up) gets from the one to the other.
+        profile: Option<ProfileName>,
+        /// s; by default 0.
+        start: Option<Number>,
+        /// s
+        duration: Option<Number>,
+        /// Part of the duration that a trapezoidal profile takes to its full rate, and again to rest; by default 0.25.
+        ramp: Option<Number>,
+    }
+
     /// A gear pair.
     Gear is "a gear" {
         /// Two bodies (their angles about z) or two joints.
@@ -445,6 +548,26 @@ grammar! {
         torsional_spring_damper: Option<TorsionalSpringDamper>,
         /// Springs and dampers between two frames.
         bushing: Option<Bushing>,
+        /// Friction in a revolute, prismatic or cylindrical joint, proportional to the joint's reaction.
+        joint_friction: Option<JointFriction>,
+        /// Stops at the ends of a joint's way.
+        stop: Option<Stop>,
+        /// Contact of a plane, circle, sphere or cylinder on one body with a circle, sphere, cylinder or point on another.
+        contact: Option<Contact>,
+        /// A journal that is loose in its bearing.
+        clearance_joint: Option<ClearanceJoint>,
+        /// A drive that controls a joint's coordinate, with a limit.
+        servo: Option<Servo>,
+        /// Resistance of a fluid.
+        drag: Option<Drag>,
+        /// A cable: it pulls, and does not push.
+        cable: Option<Cable>,
+        /// A gear pair whose teeth have play.
+        backlash: Option<Backlash>,
+        /// A constant tension between two points, or a constant force or torque of a joint.
+        preload: Option<Preload>,
+        /// A massless beam of the plane that bends between two bodies.
+        beam: Option<Beam>,
     }
 
     /// Gravity.
@@ -487,6 +610,8 @@ grammar! {
         damping: Option<Number>,
         /// m; by default 0.
         free_length: Option<Number>,
+        /// Further tension, N; may speak of the spring's own `NAME.length` and `NAME.rate`.
+        force: Option<Number>,
     }
 
     /// A torsional spring and damper.
@@ -501,6 +626,8 @@ grammar! {
         damping: Option<Number>,
         /// rad; by default 0.
         free_angle: Option<Number>,
+        /// Further torque against the twist, N*m; may speak of the spring's own `NAME.angle` and `NAME.rate`.
+        torque: Option<Number>,
     }
 
     /// A bushing.
@@ -515,6 +642,204 @@ grammar! {
         torsional_stiffness: Option<PerAxis>,
         /// N*m*s/rad; by default 0.
         torsional_damping: Option<PerAxis>,
+        /// Six rows: forces along and torques about those axes by displacements (N/m, N) and small rotations (N/rad, N*m/rad).
+        stiffness_matrix: Option<[[Number; 6]; 6]>,
+        /// The same by velocities and angular velocities.
+        damping_matrix: Option<[[Number; 6]; 6]>,
+    }
+
+    /// Friction in a joint.
+    JointFriction is "a joint friction" {
+        /// A revolute, prismatic or cylindrical joint.
+        on: String,
+        /// Dry friction over the joint's reaction while sliding; by default 0.
+        coefficient: Option<Number>,
+        /// Dry friction at rest over that while sliding; by default 1.
+        breakaway: Option<Number>,
+        /// Speed at which the excess at rest has fallen to 1/e: rad/s of a revolute joint, else m/s.
+        stribeck_velocity: Option<Number>,
+        /// Speed that counts as rest: rad/s of a revolute joint, else m/s; by default 1e-3.
+        transition_velocity: Option<Number>,
+        /// Dry friction that does not depend on the reaction: N*m of a revolute joint, else N; by default 0.
+        coulomb: Option<Number>,
+        /// N*m*s/rad of a revolute joint, else N*s/m; by default 0.
+        viscous: Option<Number>,
+        /// Of the pin, m; needed where something turns and has a `coefficient`.
+        radius: Option<Number>,
+        /// Of the bearing along its axis, m: then the torque across the axis presses on its ends.
+        length: Option<Number>,
+    }
+
+    /// Stops of a joint.
+    Stop is "a stop" {
+        /// A revolute, prismatic, cylindrical or screw joint.
+        on: String,
+        /// Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+        coordinate: Option<JointCoordinateName>,
+        /// m or rad
+        lower: Option<Number>,
+        /// m or rad
+        upper: Option<Number>,
+        /// How it pushes back.
+        impact: Impact,
+    }
+
+    /// How surfaces push each other apart: K*depth^n*(1 + dissipation*rate).
+    Impact is "`impact`" {
+        /// K, N/m^n or N*m/rad^n
+        stiffness: Number,
+        /// n, from 1 to 3; by default 1.5.
+        exponent: Option<Number>,
+        /// s/m or s/rad; by default 0: nothing is lost.
+        dissipation: Option<Number>,
+        /// Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
+        restitution: Option<Number>,
+        /// Speed of the impact for which the restitution holds, m/s or rad/s.
+        impact_velocity: Option<Number>,
+        /// Whose formula makes dissipation of restitution; by default Hunt and Crossley's.
+        law: Option<RestitutionLawName>,
+    }
+
+    /// Dry friction.
+    Friction is "`friction`" {
+        /// Over the force across the contact, while sliding.
+        coefficient: Number,
+        /// Dry friction at rest over that while sliding; by default 1.
+        breakaway: Option<Number>,
+        /// Speed at which the excess at rest has fallen to 1/e, m/s.
+        stribeck_velocity: Option<Number>,
+        /// Speed that counts as rest, m/s; by default 1e-3.
+        transition_velocity: Option<Number>,
+    }
+
+    /// A contact; one of `plane`, `circle` and `hollow` says what the first body's surface is.
+    Contact is "a contact" {
+        /// A point of the first surface or its centre, then the centre of the second; each `body.point` or `body`.
+        between: [String; 2],
+        /// Normal of a plane in the first point's frame, to the side where the second body is.
+        plane: Option<Direction>,
+        /// Radius of a circle, sphere or cylinder, m.
+        circle: Option<Number>,
+        /// Radius of a hollow circle, sphere or cylinder that the second is in, m.
+        hollow: Option<Number>,
+        /// Of the second, m; by default 0: a point.
+        radius: Option<Number>,
+        /// In space: axis of two parallel cylinders, in the first point's frame; by default they are spheres.
+        axis: Option<Direction>,
+        /// How the surfaces push each other apart.
+        impact: Impact,
+        /// By default none.
+        friction: Option<Friction>,
+    }
+
+    /// A journal that is loose in its bearing.
+    ClearanceJoint is "a clearance joint" {
+        /// The bearing's centre, then the journal's; each `body.point` or `body`.
+        between: [String; 2],
+        /// Radius of the bearing less that of the journal, m.
+        clearance: Number,
+        /// Of the journal, m; by default 0.
+        radius: Option<Number>,
+        /// Direction in the bearing's frame; by default z.
+        axis: Option<Direction>,
+        /// How the surfaces push each other apart.
+        impact: Impact,
+        /// By default none.
+        friction: Option<Friction>,
+    }
+
+    /// A controlled drive.
+    Servo is "a servo" {
+        /// A revolute, prismatic, cylindrical or screw joint.
+        on: String,
+        /// Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+        coordinate: Option<JointCoordinateName>,
+        /// What the coordinate should be, rad or m; may depend on t.
+        target: Number,
+        /// N*m/rad or N/m
+        proportional: Number,
+        /// N*m*s/rad or N*s/m; by default 0.
+        derivative: Option<Number>,
+        /// Largest torque or force, N*m or N; by default none.
+        limit: Option<Number>,
+    }
+
+    /// Resistance of a fluid; either `quadratic`, or `density`, `drag_coefficient` and `area`.
+    Drag is "a drag" {
+        /// `body.point` or `body`.
+        on: String,
+        /// Force by the square of the speed, N*s^2/m^2.
+        quadratic: Option<Number>,
+        /// Of the fluid, kg/m^3.
+        density: Option<Number>,
+        /// c_d, a pure number.
+        drag_coefficient: Option<Number>,
+        /// That c_d refers to, m^2.
+        area: Option<Number>,
+        /// Force by the speed, N*s/m; by default 0.
+        linear: Option<Number>,
+        /// Velocity of the fluid in the ground's frame, m/s; by default 0.
+        wind: Option<Components>,
+    }
+
+    /// A cable.
+    Cable is "a cable" {
+        /// Two points, each `body.point` or `body`.
+        between: [String; 2],
+        /// Length without tension, m.
+        free_length: Number,
+        /// N/m
+        stiffness: Number,
+        /// While taut, N*s/m; by default 0.
+        damping: Option<Number>,
+        /// Stretch over which it becomes taut, m; by default a ten-thousandth of `free_length`.
+        transition: Option<Number>,
+    }
+
+    /// A gear pair whose teeth have play.
+    Backlash is "a backlash" {
+        /// Two bodies (their angles about z) or two joints.
+        between: [String; 2],
+        /// Angle of the second per angle of the first; negative for external gears.
+        ratio: Number,
+        /// rad; by default 0.
+        offset: Option<Number>,
+        /// Angle by which the second can turn while the first is held, rad.
+        backlash: Number,
+        /// Of the teeth at the second, N*m/rad.
+        stiffness: Number,
+        /// N*m*s/rad; by default 0.
+        damping: Option<Number>,
+        /// Angle over which teeth come to bear, rad; by default a hundredth of `backlash`.
+        transition: Option<Number>,
+    }
+
+    /// A constant force.
+    Preload is "a preload" {
+        /// Two points, each `body.point` or `body`, that it pulls together.
+        between: Option<[String; 2]>,
+        /// Instead of `between`: a joint whose coordinate it pushes up.
+        on: Option<String>,
+        /// Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+        coordinate: Option<JointCoordinateName>,
+        /// N, or N*m about a joint's axis; may depend on t and the motion.
+        value: Number,
+    }
+
+    /// A beam.
+    Beam is "a beam" {
+        /// Two points, each `body.point` or `body`, of bodies that turn about z only.
+        between: [String; 2],
+        /// Direction of the straight beam in both bodies' frames; by default x.
+        axis: Option<Direction>,
+        /// Without tension, m.
+        length: Number,
+        /// EA, N
+        axial_stiffness: Number,
+        /// EI, N*m^2
+        bending_stiffness: Number,
+        /// Stiffness-proportional: force by rate over force by displacement, s; by default 0.
+        damping: Option<Number>,
     }
 
     /// How time is stepped.
@@ -523,12 +848,14 @@ grammar! {
         duration: Number,
         /// Length of every step, s; by default 1e-3.
         step: Option<Number>,
-        /// Instead of `step`: local position error allowed, relative to |q| or, where that is larger, to the model's size.
+        /// Instead of `step`: what the steps' position errors may add up to over the run, relative to |q| or, where that is larger, to the model's size.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,
         /// s between rows of output; by default about a 200th of the duration.
         output_step: Option<Number>,
+        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions.
+        formulation: Option<FormulationName>,
     }
 
     /// Which bounds to compute; a method that is not named is not run.
@@ -644,6 +971,9 @@ mod tests {
         same_keys::<Bushing>();
         same_keys::<Effect>();
         same_keys::<SpringDamper>();
+        same_keys::<JointFriction>();
+        same_keys::<Contact>();
+        same_keys::<Impact>();
         same_keys::<Simulation>();
         same_keys::<Bounds>();
         same_keys::<Budget>();

@@ -21,7 +21,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
 }
 
 /// Kinds that speak of other joints.
-const COUPLINGS: [&str; 3] = ["gear", "rack", "equation"];
+const COUPLINGS: [&str; 4] = ["gear", "rack", "motor", "equation"];
 
 /// Reads the joints that were declared; what couples joints comes after the joints.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {
@@ -176,6 +176,7 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
             let offset = number(reader, &details, "offset", Dimension::LENGTH);
             Some(JointKind::Rack { pinion: pinion?, rack: rack?, radius: radius?, offset: offset? })
         }
+        "motor" => super::motors::read(reader, &kind.value, kind.key_span.clone()),
         // `only` lets through the kinds of the grammar; this is the last.
         _ => equation(reader, &kind.value),
     }
@@ -233,7 +234,7 @@ fn pitch(reader: &mut Reader, details: &Details) -> Option<Formula> {
 }
 
 /// Two bodies by their angles, or two joints by theirs.
-fn turning(reader: &mut Reader, node: &Node) -> Option<[Turning; 2]> {
+pub fn turning(reader: &mut Reader, node: &Node) -> Option<[Turning; 2]> {
     let pair = reader.two(node, "a list of two bodies or joints")?;
     if !pair.iter().any(|node| reader.names_joint(node)) {
         let bodies = reader.between_bodies(node)?;

@@ -1,4 +1,4 @@
-//! The kinds of joints and effects of a [`Description`](super::Description), with their details.
+//! The kinds of joints of a [`Description`](super::Description), with their details.
 
 use symdiff::Formula;
 
@@ -117,6 +117,15 @@ pub enum JointKind {
         /// m
         offset: Formula,
     },
+    /// A joint's coordinate moves as is prescribed.
+    Motor {
+        /// Joint index.
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        #[allow(missing_docs)]
+        motion: Prescribed,
+    },
     /// left = right, a formula of coordinates, points, parameters and t.
     Equation {
         #[allow(missing_docs)]
@@ -142,7 +151,7 @@ impl JointKind {
             | Self::PointOnLine { between, .. }
             | Self::PointOnPlane { between, .. }
             | Self::Distance { between, .. } => Some(*between),
-            Self::Gear { .. } | Self::Rack { .. } | Self::Equation { .. } => None,
+            Self::Gear { .. } | Self::Rack { .. } | Self::Motor { .. } | Self::Equation { .. } => None,
         }
     }
 
@@ -155,6 +164,78 @@ impl JointKind {
             _ => None,
         }
     }
+}
+
+/// How a motor moves a joint's coordinate.
+#[derive(Clone, Debug)]
+pub enum Prescribed {
+    /// A formula of parameters and t.
+    Position(Formula),
+    /// At a speed, from a coordinate at t = 0.
+    Speed {
+        #[allow(missing_docs)]
+        from: Formula,
+        #[allow(missing_docs)]
+        speed: Formula,
+    },
+    /// From rest to rest.
+    Move {
+        #[allow(missing_docs)]
+        profile: Profile,
+        #[allow(missing_docs)]
+        from: Formula,
+        #[allow(missing_docs)]
+        to: Formula,
+        /// s
+        start: Formula,
+        /// s
+        duration: Formula,
+    },
+    /// From rest to a speed, which it then keeps.
+    RunUp {
+        #[allow(missing_docs)]
+        profile: Profile,
+        #[allow(missing_docs)]
+        from: Formula,
+        #[allow(missing_docs)]
+        speed: Formula,
+        /// s
+        start: Formula,
+        /// s
+        duration: Formula,
+    },
+}
+
+impl Prescribed {
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        match self {
+            Self::Position(position) => vec![position],
+            Self::Speed { from, speed } => vec![from, speed],
+            Self::Move { profile, from, to: end, start, duration }
+            | Self::RunUp { profile, from, speed: end, start, duration } => {
+                let ramp = match profile {
+                    Profile::Trapezoidal { ramp } => Some(ramp),
+                    Profile::Cycloidal | Profile::Quintic => None,
+                };
+                [from, end, start, duration].into_iter().chain(ramp).collect()
+            }
+        }
+    }
+}
+
+/// The way from one value to another; formulas stand in `mechanics::joints::motor`.
+#[derive(Clone, Debug)]
+pub enum Profile {
+    /// An acceleration that is a sine.
+    Cycloidal,
+    /// A polynomial with rates and accelerations zero at the ends.
+    Quintic,
+    /// A constant rate between constant accelerations.
+    Trapezoidal {
+        /// Part of the duration that each acceleration takes, at most ½.
+        ramp: Formula,
+    },
 }
 
 /// A coordinate of a joint.
@@ -173,102 +254,4 @@ pub enum Turning {
     Body(usize),
     /// The angle of a joint.
     Joint(usize),
-}
-
-/// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
-/// velocities.
-#[derive(Clone, Debug)]
-pub enum EffectKind {
-    /// The same acceleration on every body, m/s².
-    Gravity {
-        #[allow(missing_docs)]
-        acceleration: [Formula; 3],
-    },
-    /// A force at a point, N.
-    Force {
-        #[allow(missing_docs)]
-        on: PointRef,
-        #[allow(missing_docs)]
-        value: [Formula; 3],
-        /// Components in the body's frame instead of the ground's.
-        in_body: bool,
-    },
-    /// A torque on a body, N m; its reaction acts on `from` (0: the ground).
-    Torque {
-        /// Body index.
-        on: usize,
-        /// Body index.
-        from: usize,
-        #[allow(missing_docs)]
-        value: [Formula; 3],
-        /// Components in the frame of `on` instead of the ground's.
-        in_body: bool,
-    },
-    /// A torque on a joint's second body about the joint's axis, N m; its reaction acts on the first body.
-    JointTorque {
-        /// Joint index.
-        joint: usize,
-        #[allow(missing_docs)]
-        value: Formula,
-    },
-    /// Between two points: along their connecting line, or along an axis of the ground.
-    SpringDamper {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// Direction in the ground's frame; absent: along the connecting line.
-        along: Option<[Formula; 3]>,
-        /// N/m
-        stiffness: Formula,
-        /// N s/m
-        damping: Formula,
-        /// m
-        free_length: Formula,
-    },
-    /// Between two bodies' angles, or on the angle of a joint.
-    TorsionalSpringDamper {
-        #[allow(missing_docs)]
-        on: Twisted,
-        /// N m/rad
-        stiffness: Formula,
-        /// N m s/rad
-        damping: Formula,
-        /// rad
-        free_angle: Formula,
-    },
-    /// Springs and dampers between two frames, along and about the axes of the first.
-    Bushing {
-        #[allow(missing_docs)]
-        between: [PointRef; 2],
-        /// N/m
-        stiffness: [Formula; 3],
-        /// N s/m
-        damping: [Formula; 3],
-        /// N m/rad
-        torsional_stiffness: [Formula; 3],
-        /// N m s/rad
-        torsional_damping: [Formula; 3],
-    },
-}
-
-/// Whose angle a torsional spring twists.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Twisted {
-    /// angle₂ − angle₁ of two bodies, by index.
-    Bodies([usize; 2]),
-    /// The angle of a joint, by index.
-    Joint(usize),
-}
-
-impl EffectKind {
-    /// The word for it in a model file.
-    pub fn keyword(&self) -> &'static str {
-        match self {
-            Self::Gravity { .. } => "gravity",
-            Self::Force { .. } => "force",
-            Self::Torque { .. } | Self::JointTorque { .. } => "torque",
-            Self::SpringDamper { .. } => "spring_damper",
-            Self::TorsionalSpringDamper { .. } => "torsional_spring_damper",
-            Self::Bushing { .. } => "bushing",
-        }
-    }
 }

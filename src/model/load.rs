@@ -4,18 +4,19 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use super::description::{BoundsRequest, Description, Simulation, Space, Stepping};
+use super::description::{BoundsRequest, Description, Formulation, Simulation, Space, Stepping};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::file;
 use super::overrides::Override;
 use super::reader::Reader;
 use super::source::Span;
 use super::suggest::clip;
+use super::urdf::{self, Urdf};
 use super::yaml::{self, Entry, Node};
-use super::{bodies, bounds, effects, joints, parameters, requests, space};
+use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
 
 /// Largest file that is read.
-const MAX_BYTES: u64 = 10_000_000;
+pub(super) const MAX_BYTES: u64 = 10_000_000;
 
 /// What reading a model gave: both may be there when there are only warnings.
 #[derive(Clone, Debug)]
@@ -44,10 +45,19 @@ pub fn load_str(name: &str, text: &str, overrides: &[Override]) -> Result<Descri
     description.ok_or(diagnostics)
 }
 
+/// A path as it is shown: on one line, and saying nothing to the terminal.
+pub fn shown(path: &Path) -> String {
+    path.display().to_string().replace(char::is_control, "\u{fffd}")
+}
+
 /// Like [`load`], with the warnings of a model that can be used.
 pub fn read(path: &Path, overrides: &[Override]) -> Reading {
-    let name = path.display().to_string();
-    match read_text(path) {
+    let name = shown(path);
+    if urdf::is_urdf(path) {
+        // A model of nothing but the robot; what is wrong is wrong in the robot's file.
+        return read_str(&name, &urdf::model_of(path), overrides);
+    }
+    match read_text(path, MAX_BYTES) {
         Ok(text) => read_str(&name, &text, overrides),
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");
@@ -57,7 +67,8 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
     }
 }
 
-fn read_text(path: &Path) -> Result<String, Box<Diagnostic>> {
+/// The text of a file of at most so many bytes.
+pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let cannot = |error: std::io::Error| {
         let reason = match error.kind() {
             std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
@@ -68,20 +79,20 @@ fn read_text(path: &Path) -> Result<String, Box<Diagnostic>> {
     };
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
-        return Err(Box::new(Diagnostic::of_file("this is a directory, not a model file")));
+        return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));
     }
     let too_large = |length: u64| {
         let megabytes = length as f64 / 1e6;
-        let limit = MAX_BYTES / 1_000_000;
+        let limit = most / 1_000_000;
         Err(Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB"))))
     };
-    if metadata.len() > MAX_BYTES {
+    if metadata.len() > most {
         return too_large(metadata.len());
     }
     // What is not a regular file (a pipe) says no length: never read more than allowed.
     let mut bytes = Vec::new();
-    fs::File::open(path).map_err(cannot)?.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
-    if bytes.len() as u64 > MAX_BYTES {
+    fs::File::open(path).map_err(cannot)?.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    if bytes.len() as u64 > most {
         return too_large(bytes.len() as u64);
     }
     String::from_utf8(bytes).map_err(|error| {
@@ -123,6 +134,7 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         name: Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned()),
         description: None,
         space: Space { spatial: false, why: String::new() },
+        robot: None,
         parameters: Vec::new(),
         bodies: Vec::new(),
         joints: Vec::new(),
@@ -130,7 +142,13 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         initial: Vec::new(),
         guess: Vec::new(),
         outputs: Vec::new(),
-        simulation: Simulation { duration: 1.0, stepping: Stepping::Fixed(1e-3), alpha: -0.1, output_step: 0.01 },
+        simulation: Simulation {
+            duration: 1.0,
+            stepping: Stepping::Fixed(1e-3),
+            alpha: -0.1,
+            output_step: 0.01,
+            formulation: Formulation::Auto,
+        },
         bounds: BoundsRequest::default(),
     };
     let mut reader = Reader {
@@ -141,6 +159,8 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         varies: Vec::new(),
         broken: false,
         used: Vec::new(),
+        tables: Vec::new(),
+        folder: Path::new(name).parent().unwrap_or(Path::new("")).to_owned(),
     };
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return reader.model };
@@ -151,7 +171,19 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
         reader.model.description = text;
     }
-    reader.model.space = space::read(&mut reader, &fields);
+    let robot = match fields.get("urdf") {
+        None => None,
+        Some(node) => {
+            let Some(robot) = Urdf::read(&mut reader, node, &fields, Path::new(name), root, overrides) else {
+                return reader.model;
+            };
+            Some(robot)
+        }
+    };
+    reader.model.space = match &robot {
+        Some(_) => Space { spatial: true, why: "the robot is in space".to_owned() },
+        None => space::read(&mut reader, &fields),
+    };
     let body_entries = section(&mut reader, fields.get("bodies"), "bodies");
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
@@ -159,15 +191,25 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
     let initial_entries = section(&mut reader, fields.get("initial"), "start values");
     let guess_entries = section(&mut reader, fields.get("guess"), "start values");
 
+    let table_entries = section(&mut reader, fields.get("tables"), "tables");
+    tables::read(&mut reader, table_entries);
+    let parameter_entries = section(&mut reader, fields.get("parameters"), "parameters");
+    let with_robot = robot.as_ref().map(|robot| robot.parameters(&mut reader, parameter_entries));
+    let parameter_entries = with_robot.as_deref().unwrap_or(parameter_entries);
+
     bodies::declare(&mut reader, body_entries);
     joints::declare(&mut reader, joint_entries);
-    parameters::read(&mut reader, fields.get("parameters"), overrides);
+    let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
+    parameters::read(&mut reader, parameter_entries, overrides);
     bodies::read(&mut reader, body_entries);
     joints::read(&mut reader, joint_entries);
     effects::read(&mut reader, effect_entries);
     reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
     reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
     requests::outputs(&mut reader, output_entries);
+    if let Some(robot) = &robot {
+        robot.finish(&mut reader, output_entries.is_empty());
+    }
     if let Some(node) = reader.required(&fields, "simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
@@ -175,16 +217,16 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
-    if body_entries.iter().all(|entry| entry.key == super::names::GROUND) {
+    if robot.is_none() && body_entries.iter().all(|entry| entry.key == super::names::GROUND) {
         let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
         reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
     }
-    if output_entries.is_empty() {
+    if robot.is_none() && output_entries.is_empty() {
         let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
         reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
     }
     if !reader.diagnostics.has_errors() {
-        parameters::warn_unused(&mut reader, fields.get("parameters"));
+        parameters::warn_unused(&mut reader, parameter_entries);
     }
     reader.model
 }

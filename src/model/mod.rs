@@ -3,8 +3,10 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
+mod catalog;
 mod description;
 mod diagnostic;
+mod effect_kinds;
 mod kinds;
 mod render;
 mod source;
@@ -25,18 +27,23 @@ mod bounds;
 mod effects;
 mod joints;
 mod load;
+mod motors;
 mod overrides;
 mod parameters;
 mod requests;
 mod space;
+mod tables;
 #[cfg(test)]
 mod tests;
+mod urdf;
 mod vectors;
 
+pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
+pub use effect_kinds::*;
 pub use file::schema;
 pub use kinds::*;
-pub use load::{Reading, load, load_str, read, read_str};
+pub use load::{Reading, load, load_str, read, read_str, shown};
 pub use overrides::Override;
 pub use source::{Place, Source, Sources, Span};

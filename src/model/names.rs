@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::description::{Coordinate, Description, EnergyKind, ReactionComponent, Referent, TimeOrder};
+use super::description::{Coordinate, Description, EnergyKind, PointRef, ReactionComponent, Referent, TimeOrder};
 use super::dimension::Kind;
 use super::kinds::JointCoordinate;
 use super::motions::{
@@ -26,6 +26,8 @@ const ENERGIES: [(&str, EnergyKind); 3] = [
 pub enum Context {
     /// Parameters only.
     Constant,
+    /// Parameters and time.
+    Time,
     /// Parameters, time, positions and velocities.
     Effect,
     /// Parameters, time and positions.
@@ -55,6 +57,9 @@ pub fn is_reserved(name: &str) -> bool {
 impl Description {
     /// What a name in a formula stands for; `None` where it stands for nothing.
     pub fn referent(&self, name: &str) -> Option<Referent> {
+        if let Some(found) = self.of_robot(name) {
+            return Some(found);
+        }
         let mut parts = name.split('.');
         match (parts.next()?, parts.next(), parts.next(), parts.next()) {
             (word, None, ..) => self.word(word),
@@ -62,13 +67,49 @@ impl Description {
                 .body_motion(owner, member)
                 .or_else(|| self.attitude(owner, member))
                 .or_else(|| self.joint_motion(owner, member))
-                .or_else(|| self.reaction(owner, member, None)),
+                .or_else(|| self.reaction(owner, member, None))
+                .or_else(|| self.measure(owner, member)),
             (owner, Some(member), Some(part), None) => self
                 .point_motion(owner, member, part)
                 .or_else(|| self.turning(owner, member, part))
                 .or_else(|| self.reaction(owner, member, Some(part))),
             _ => None,
         }
+    }
+
+    /// A number of the URDF that is a parameter; `link.NAME.x` and `joint.NAME.angle`; or a part of the motion of a link
+    /// that is welded to another, and so a point.
+    fn of_robot(&self, name: &str) -> Option<Referent> {
+        self.robot.as_ref()?;
+        if let Some(index) = self.parameters.iter().position(|parameter| parameter.name == name) {
+            return Some(Referent::Parameter(index));
+        }
+        if let Some(rest) = name.strip_prefix("joint.") {
+            let (joint, member) = rest.split_once('.')?;
+            return match member.split_once('.') {
+                None => self.joint_motion(joint, member).or_else(|| self.reaction(joint, member, None)),
+                Some((member, part)) => self.reaction(joint, member, Some(part)),
+            };
+        }
+        let rest = name.strip_prefix("link.").unwrap_or(name);
+        let (link, member) = rest.split_once('.')?;
+        let place = self.link(link)?;
+        let Some(point) = place.point else {
+            // A body of that name: the usual way.
+            return if rest.len() < name.len() { self.referent(rest) } else { None };
+        };
+        let (_, coordinate, order) = self.motions(place.body).find(|(motion, ..)| *motion == member)?;
+        coordinate.is_length().then_some(Referent::Point {
+            body: place.body,
+            point,
+            coordinate: *coordinate,
+            order: *order,
+        })
+    }
+
+    /// Where a link of the URDF is.
+    pub(super) fn link(&self, name: &str) -> Option<PointRef> {
+        self.robot.as_ref()?.links.iter().find(|link| link.name == name)?.place
     }
 
     /// Whether a joint has a coordinate.
@@ -146,6 +187,13 @@ impl Description {
         Some(Referent::Reaction { joint, component })
     }
 
+    fn measure(&self, effect: &str, member: &str) -> Option<Referent> {
+        let effect = self.effects.iter().position(|known| known.name == effect)?;
+        let measures = self.effects[effect].kind.measures();
+        let (measure, _) = measures.into_iter().find(|(measure, _)| measure.name() == member)?;
+        Some(Referent::Measure { effect, measure })
+    }
+
     /// What a name stands for where it may stand for that.
     pub(super) fn resolve(&self, name: &str, context: Context) -> Result<Referent, NameError> {
         let Some(referent) = self.referent(name) else { return Err(self.unknown(name, context)) };
@@ -156,10 +204,15 @@ impl Description {
             }
             (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
             (_, Referent::Time) => None,
+            (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
             (_, Referent::Reaction { .. }) => {
                 Some("reactions are known only when the motion is; only outputs may use them")
             }
             (_, Referent::Energy(_)) => Some("only outputs may use energies"),
+            (Context::Effect, Referent::Measure { measure, .. }) if measure.is_motion() => None,
+            (_, Referent::Measure { .. }) => {
+                Some("what an effect does is known only when the motion is; only outputs may use it")
+            }
             (_, Referent::RollPitchYaw { .. }) => {
                 Some("these angles jump by a turn, so only outputs may use them; a joint's `angle` does not")
             }
@@ -190,6 +243,13 @@ impl Description {
     /// Why a name stands for nothing.
     pub(super) fn unknown(&self, name: &str, context: Context) -> NameError {
         let shown = suggest::clip(name);
+        for (prefix, what) in [("link.", "link"), ("joint.", "joint")].into_iter().filter(|_| self.robot.is_some()) {
+            if name.starts_with(prefix) {
+                let message = format!("the URDF has nothing called `{shown}`");
+                let help = format!("a {what} has numbers and a motion: `mbint check` shows the tree");
+                return NameError { message, part: 0..name.len(), help: Some(help) };
+            }
+        }
         match name.split_once('.') {
             None => self.unknown_word(name, &shown, context),
             Some((owner, rest)) => self.unknown_member(name, owner, rest, context),
@@ -286,6 +346,16 @@ impl Description {
                 part: after..name.len(),
                 help: Some(self.parts_of_joint(owner)),
             },
+            (None, false) if self.effects.iter().any(|effect| effect.name == owner) => {
+                let measures = self.effects.iter().filter(|effect| effect.name == owner);
+                let measures: Vec<&str> =
+                    measures.flat_map(|effect| effect.kind.measures()).map(|(measure, _)| measure.name()).collect();
+                NameError {
+                    message: format!("effect `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+                    part: after..name.len(),
+                    help: (!measures.is_empty()).then(|| format!("it has {}", suggest::list(&measures))),
+                }
+            }
             (None, false) => {
                 let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
                 let joints = self.joints.iter().map(|joint| joint.name.as_str());
@@ -319,7 +389,8 @@ impl Description {
     }
 }
 
-/// The dimension of what a name stands for; `parameters` has those of the parameters.
+/// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations and of
+/// what effects measure are the reader's.
 pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
     Kind::motion(match referent {
         Referent::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
@@ -333,5 +404,6 @@ pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
         Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
         | Referent::Energy(_) => Dimension::TORQUE,
         Referent::Reaction { .. } => Dimension::FORCE,
+        Referent::Measure { .. } => return Kind::Any,
     })
 }

@@ -14,10 +14,17 @@ use super::quantity::{Unit, number_and_unit};
 use super::reader::{Corner, Reader, Written, evaluate};
 use super::source::Span;
 use super::suggest;
+use super::urdf;
 use super::yaml::{Entry, Node};
 
 /// Uncertain parameters up to which every corner is checked; beyond, one parameter at a time.
 const MOST_FOR_CORNERS: usize = 5;
+
+/// Most parameters: every name of a formula is looked for among them.
+const MOST: usize = 20_000;
+
+/// Most uncertain ones: every formula is checked at the ends of each.
+const MOST_UNCERTAIN: usize = 1000;
 
 /// A parameter as it was written.
 #[derive(Default)]
@@ -47,11 +54,18 @@ impl Spec<'_> {
 }
 
 /// Reads the parameters; after this, formulas of them can be checked and evaluated.
-pub fn read(reader: &mut Reader, node: Option<&Node>, overrides: &[(Override, Span)]) {
-    let entries = node.map_or(&[][..], |node| reader.entries(node, "parameters"));
+pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span)]) {
+    let mut entries = entries;
+    let mut own = entries.iter().enumerate().filter(|(_, entry)| !urdf::is_number(&entry.key));
+    if let Some((first, entry)) = own.nth(MOST) {
+        reader.error(entry.key_span.clone(), format!("the model has more than {MOST} parameters"), None);
+        entries = &entries[..first];
+    }
     let replaced = find_overrides(reader, entries, overrides);
     for entry in entries {
-        reader.name(entry, "a parameter");
+        if !urdf::is_number(&entry.key) {
+            reader.name(entry, "a parameter");
+        }
         // Not a number until it is known: no file can write that.
         let value = ParameterValue::Formula(Formula::number(f64::NAN));
         reader.model.parameters.push(Parameter { name: entry.key.clone(), unit: String::new(), value });
@@ -437,7 +451,10 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
         })
         .collect();
     let mut choices: Vec<Vec<(usize, f64)>> = vec![Vec::new()];
-    if uncertain.len() <= MOST_FOR_CORNERS {
+    let beyond = uncertain.get(MOST_UNCERTAIN).map(|&(index, ..)| index);
+    if beyond.is_some() {
+        // That is an error: nothing else has to be found at so many corners.
+    } else if uncertain.len() <= MOST_FOR_CORNERS {
         choices.extend((0..1_usize << uncertain.len()).filter(|_| !uncertain.is_empty()).map(|corner| {
             let end = |(bit, &(index, lower, upper)): (usize, &(usize, f64, f64))| {
                 (index, if corner >> bit & 1 == 0 { lower } else { upper })
@@ -494,6 +511,10 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
             (!blames_another).then(|| (index, corner.label.clone()))
         })
         .collect();
+    if let Some(index) = beyond {
+        let message = format!("the model has more than {MOST_UNCERTAIN} uncertain parameters");
+        reader.error(name_spans[index].clone(), message, None);
+    }
     for (index, label) in infinite {
         let message = format!("`{}` is not a finite number{label}", reader.model.parameters[index].name);
         reader.error(name_spans[index].clone(), message, None);
@@ -504,16 +525,13 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
 }
 
 /// Warns of parameters that nothing uses.
-pub fn warn_unused(reader: &mut Reader, node: Option<&Node>) {
-    let entries = node.map_or(&[][..], |node| match &node.value {
-        super::yaml::Value::Mapping(entries) => entries,
-        _ => &[],
-    });
-    for entry in entries {
-        let index = reader.model.parameters.iter().position(|parameter| parameter.name == entry.key);
-        if index.is_some_and(|index| !reader.used[index]) {
-            let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
-            reader.diagnostics.push(Diagnostic::warning(entry.key_span.clone(), message));
-        }
+pub fn warn_unused(reader: &mut Reader, entries: &[Entry]) {
+    let named = reader.model.parameters.iter().map(|parameter| parameter.name.as_str()).zip(&reader.used);
+    let used: HashMap<&str, bool> = named.map(|(name, used)| (name, *used)).collect();
+    let unused = |entry: &&Entry| used.get(entry.key.as_str()) == Some(&false);
+    // What a robot's numbers do is in its bodies.
+    for entry in entries.iter().filter(|entry| !urdf::is_number(&entry.key)).filter(unused) {
+        let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
+        reader.diagnostics.push(Diagnostic::warning(entry.key_span.clone(), message));
     }
 }

@@ -4,8 +4,9 @@
 //! has reported why.
 
 use std::collections::HashMap;
+use std::path::PathBuf;
 
-use symdiff::{Formula, Graph};
+use symdiff::{Formula, Graph, Spline};
 
 use super::description::{Description, ReactionComponent, Referent};
 use super::diagnostic::{Diagnostic, Diagnostics};
@@ -36,6 +37,19 @@ pub struct Reader<'d> {
     pub broken: bool,
     /// Names that formulas used, for the warning about the others.
     pub used: Vec<bool>,
+    /// Functions that the file gives by their values.
+    pub tables: Vec<Table>,
+    /// Where files are that the model names.
+    pub folder: PathBuf,
+}
+
+/// A function that is given by its values.
+#[derive(Clone, Debug)]
+pub struct Table {
+    pub name: String,
+    pub spline: Spline,
+    /// Of argument and value, where the file says so.
+    pub dimensions: [Option<Dimension>; 2],
 }
 
 /// Values of all parameters at once.
@@ -257,7 +271,8 @@ impl Reader<'_> {
             self.error(node.span.clone(), format!("`{}` is not a finite number", text.trim()), None);
             return None;
         }
-        match Formula::parse(text) {
+        let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
+        match Formula::parse_with(text, &tables) {
             Ok(formula) if formula.terms().len() > MAX_TERMS => {
                 let message = format!("the formula has more than {MAX_TERMS} operations");
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
@@ -300,13 +315,19 @@ impl Reader<'_> {
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
         let name = |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent));
-        let kind = dimension::analyse(formula, name, &mut mismatches);
+        let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
             let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
             self.error(place, mismatch.message, None);
         }
         kind
+    }
+
+    /// Dimensions of a table's argument and value.
+    fn table(&self, spline: Spline) -> [Option<Dimension>; 2] {
+        let found = self.tables.iter().find(|table| table.spline == spline);
+        found.map_or([None; 2], |table| table.dimensions)
     }
 
     /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
@@ -316,8 +337,13 @@ impl Reader<'_> {
         {
             let name =
                 |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
-            let equated = dimension::analyse(left, name, &mut Vec::new()).dimension();
+            let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
+        }
+        if let Referent::Measure { effect, measure } = referent {
+            let measures = self.model.effects[effect].kind.measures();
+            let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
+            return dimension.map_or(Kind::Any, Kind::motion);
         }
         names::kind(referent, &self.kinds)
     }

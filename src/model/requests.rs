@@ -1,7 +1,7 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{
-    Coordinate, Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder,
+    Coordinate, Formulation, Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder,
 };
 use super::diagnostic::Diagnostic;
 use super::dimension::Kind;
@@ -164,6 +164,9 @@ impl Reader<'_> {
     }
 }
 
+const FORMULATIONS: [(&str, Formulation); 3] =
+    [("auto", Formulation::Auto), ("absolute", Formulation::Absolute), ("joint", Formulation::Joint)];
+
 /// Reads `simulation:`.
 pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
     let positive = |reader: &mut Reader, key: &str| {
@@ -184,6 +187,10 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
     let alpha = match fields.get("alpha") {
         Some(node) => alpha(reader, node),
         None => Some(-0.1),
+    };
+    let formulation = match fields.get("formulation") {
+        Some(node) => reader.choice(node, &FORMULATIONS),
+        None => Some(Formulation::Auto),
     };
     if fields.get("step").is_some() && fields.get("tolerance").is_some() {
         let place = fields.key_span("tolerance");
@@ -216,7 +223,7 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
             Stepping::Tolerance(_) => duration / 200.0,
         },
     };
-    Some(Simulation { duration, stepping, alpha: alpha?, output_step })
+    Some(Simulation { duration, stepping, alpha: alpha?, output_step, formulation: formulation? })
 }
 
 fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {

@@ -17,6 +17,8 @@ pub struct Source {
     pub text: String,
     /// Offset of its first byte.
     pub start: usize,
+    /// Where its lines begin, counted from its own start.
+    lines: Vec<usize>,
 }
 
 /// A place as people count it, both from 1; columns are characters.
@@ -30,12 +32,9 @@ pub struct Place {
 impl Source {
     /// The place of a byte of this source; `offset` counts from the source's own start.
     pub fn place(&self, offset: usize) -> Place {
-        let before = &self.text[..floor_char_boundary(&self.text, offset)];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Place {
-            line: before.bytes().filter(|byte| *byte == b'\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-        }
+        let offset = floor_char_boundary(&self.text, offset);
+        let line = self.lines.partition_point(|&start| start <= offset);
+        Place { line, column: self.text[self.lines[line - 1]..offset].chars().count() + 1 }
     }
 }
 
@@ -50,7 +49,9 @@ impl Sources {
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
         // One offset lies between two texts, so that the end of one is not the start of the next.
         let start = self.all.last().map_or(0, |last| last.start + last.text.len() + 1);
-        self.all.push(Source { name: name.into(), text: text.into(), start });
+        let text: String = text.into();
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(newline, _)| newline + 1)).collect();
+        self.all.push(Source { name: name.into(), text, start, lines });
         start
     }
 

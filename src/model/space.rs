@@ -116,7 +116,10 @@ fn effect_leaves(effect: &Node) -> Option<String> {
     if kind.key == "torque" && get(&kind.value, "value").is_some_and(leaves_plane_about) {
         return Some("`value`".to_owned());
     }
-    let components = ["acceleration", "value", "along"].into_iter().find(|key| {
+    if get(&kind.value, "axis").is_some_and(turns_out) {
+        return Some("`axis`".to_owned());
+    }
+    let components = ["acceleration", "value", "along", "plane", "wind"].into_iter().find(|key| {
         let value = get(&kind.value, key);
         kind.key != "torque" && value.is_some_and(points_out)
     });

@@ -266,3 +266,22 @@ fn what_leaves_the_plane_makes_a_model_spatial() {
         assert_eq!(space.why, why.unwrap_or("nothing leaves the plane"), "{text}");
     }
 }
+
+/// Names are looked for among all, and formulas checked at the ends of every interval: neither is to take minutes.
+#[test]
+fn more_parameters_than_anyone_has_are_refused() {
+    let with = |count: usize, value: &str| {
+        let lines: String = (0..count).map(|index| format!("  p{index}: {value}\n")).collect();
+        let text = BAR.replace("parameters:\n", &format!("parameters:\n{lines}"));
+        read_str("x.yaml", &text, &[]).diagnostics.records()
+    };
+    let errors = |records: Vec<Record>| -> Vec<String> {
+        records.into_iter().filter(|record| record.severity == Severity::Error).map(|record| record.message).collect()
+    };
+    // `l`, which the bar needs, comes last.
+    let found = errors(with(20_000, "1"));
+    assert_eq!(found[0], "the model has more than 20000 parameters");
+    assert_eq!(errors(with(19_999, "1")), [] as [&str; 0]);
+    let found = errors(with(1000, "{ value: 1, tolerance: 1% }"));
+    assert_eq!(found, ["the model has more than 1000 uncertain parameters"]);
+}

@@ -15,7 +15,7 @@ use super::suggest::clip;
 const MAX_DEPTH: usize = 40;
 
 /// How many scalars, beginnings and ends a file may have.
-const MAX_EVENTS: usize = 200_000;
+const MAX_EVENTS: usize = 1_000_000;
 
 /// A node of the tree.
 #[derive(Clone, Debug)]
@@ -339,6 +339,6 @@ mod tests {
         }
         let nested: String = (0..100_000).map(|depth| format!("{}a:\n", " ".repeat(depth % 3000))).collect();
         assert!(!errors(&nested[..10_000_000.min(nested.len())]).is_empty());
-        assert!(errors(&"- a\n".repeat(300_000))[0].0.contains("more than 200000"));
+        assert!(errors(&"- a\n".repeat(1_100_000))[0].0.contains("more than 1000000"));
     }
 }

@@ -1,0 +1,128 @@
+//! What acts on a joint's coordinate: which one it is, and motors that prescribe it.
+
+use symdiff::Formula;
+
+use super::effect_kinds::OnJoint;
+use super::file;
+use super::kinds::{JointCoordinate, JointKind, Prescribed, Profile};
+use super::names::Context;
+use super::quantity::Dimension;
+use super::reader::{Fields, Reader};
+use super::source::Span;
+use super::yaml::Node;
+
+/// Part of a trapezoidal profile's duration that each acceleration takes.
+const RAMP: f64 = 0.25;
+
+/// The joint of `on`, and its coordinate.
+pub fn on_joint(reader: &mut Reader, fields: &Fields) -> Option<OnJoint> {
+    let coordinate = fields.get("coordinate").map(|node| {
+        let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];
+        reader.choice(node, &names)
+    });
+    let node = reader.required(fields, "on");
+    let coordinate = match coordinate {
+        Some(coordinate) => coordinate?,
+        None => {
+            let slides = node.and_then(Node::scalar).is_some_and(|name| {
+                let joint = reader.model.joints.iter().position(|joint| joint.name == name.text);
+                joint.is_some_and(|joint| {
+                    let kind = &reader.model.joints[joint].kind;
+                    kind.axis_of(JointCoordinate::Angle).is_none()
+                        && kind.axis_of(JointCoordinate::Displacement).is_some()
+                })
+            });
+            if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle }
+        }
+    };
+    let joint = reader.joint_ref(node?, coordinate)?;
+    Some(OnJoint { joint, coordinate })
+}
+
+/// Of a joint's coordinate, of its rate, and of what pushes it.
+pub fn dimensions_of(coordinate: JointCoordinate) -> [Dimension; 3] {
+    match coordinate {
+        JointCoordinate::Angle => [Dimension::ANGLE, Dimension::ANGULAR_VELOCITY, Dimension::TORQUE],
+        JointCoordinate::Displacement => [Dimension::LENGTH, Dimension::VELOCITY, Dimension::FORCE],
+    }
+}
+
+/// A motor.
+pub fn read(reader: &mut Reader, node: &Node, at: Span) -> Option<JointKind> {
+    let fields = reader.fields::<file::Motor>(node, at)?;
+    let on = on_joint(reader, &fields);
+    let [place, speed, _] = dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
+    let motion = prescribed(reader, &fields, place, speed);
+    let on = on?;
+    Some(JointKind::Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? })
+}
+
+fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dimension) -> Option<Prescribed> {
+    let given: Vec<&str> = ["position", "speed", "to"].into_iter().filter(|key| fields.get(key).is_some()).collect();
+    let [wanted] = given.as_slice() else {
+        let help = "e.g. `speed: 60 rpm`, `position: 0.1*sin(3*t)` or `to: 90 deg` with a `profile`".to_owned();
+        let message = "a motor has one of `position`, `speed` and `to`";
+        reader.error(fields.at.clone(), message, help);
+        return None;
+    };
+    if *wanted == "position" {
+        for key in ["from", "profile", "start", "duration", "ramp"] {
+            if fields.get(key).is_some() {
+                reader.error(fields.key_span(key), format!("`{key}` does not go with `position`"), None);
+            }
+        }
+        return reader.formula(fields.get("position")?, Context::Time, place).map(Prescribed::Position);
+    }
+    let constant = |reader: &mut Reader, key: &str, dimension: Dimension| match fields.get(key) {
+        Some(node) => reader.formula(node, Context::Constant, dimension),
+        None => Some(Formula::number(0.0)),
+    };
+    let from = constant(reader, "from", place);
+    let end = constant(reader, wanted, if *wanted == "speed" { speed } else { place });
+    let Some(profile) = fields.get("profile") else {
+        for key in ["start", "duration", "ramp"] {
+            if fields.get(key).is_some() {
+                reader.error(fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
+            }
+        }
+        if *wanted == "to" {
+            let help = "cycloidal, quintic or trapezoidal".to_owned();
+            reader.error(fields.key_span("to"), "`to` needs a `profile` and a `duration`", help);
+            return None;
+        }
+        return Some(Prescribed::Speed { from: from?, speed: end? });
+    };
+    let profile = read_profile(reader, fields, profile);
+    let start = constant(reader, "start", Dimension::TIME);
+    let duration = reader.required(fields, "duration").and_then(|node| {
+        reader.formula_that(node, Context::Constant, Dimension::TIME, |value| value > 0.0, "must be positive")
+    });
+    let (profile, from, end, start, duration) = (profile?, from?, end?, start?, duration?);
+    Some(match *wanted {
+        "speed" => Prescribed::RunUp { profile, from, speed: end, start, duration },
+        _ => Prescribed::Move { profile, from, to: end, start, duration },
+    })
+}
+
+fn read_profile(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Profile> {
+    let names = [("cycloidal", 0), ("quintic", 1), ("trapezoidal", 2)];
+    let chosen = reader.choice(node, &names)?;
+    if chosen != 2 && fields.get("ramp").is_some() {
+        reader.error(fields.key_span("ramp"), "`ramp` goes with the trapezoidal profile", None);
+    }
+    Some(match chosen {
+        0 => Profile::Cycloidal,
+        1 => Profile::Quintic,
+        _ => {
+            let ramp = match fields.get("ramp") {
+                Some(node) => {
+                    let holds = |value| value > 0.0 && value <= 0.5;
+                    let requirement = "must be above 0 and at most 0.5";
+                    reader.formula_that(node, Context::Constant, Dimension::NUMBER, holds, requirement)?
+                }
+                None => Formula::number(RAMP),
+            };
+            Profile::Trapezoidal { ramp }
+        }
+    })
+}

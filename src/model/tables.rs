@@ -1,0 +1,189 @@
+//! `tables:`: functions given by their values, here or in a CSV file.
+
+use symdiff::{Spline, SplineError};
+
+use super::diagnostic::Diagnostic;
+use super::file;
+use super::load::{MAX_BYTES, read_text};
+use super::quantity::Unit;
+use super::reader::{Fields, Reader, Table};
+use super::source::Span;
+use super::suggest::{self, clip};
+use super::yaml::{Entry, Node, Value};
+
+/// A value of a table and its place.
+type Number = (f64, Span);
+
+/// Reads the tables.
+pub fn read(reader: &mut Reader, entries: &[Entry]) {
+    for entry in entries {
+        let named = reader.name(entry, "a table");
+        let table = table(reader, entry);
+        reader.tables.extend(table.filter(|_| named));
+    }
+}
+
+fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
+    let fields = reader.fields::<file::Table>(&entry.value, entry.key_span.clone())?;
+    let units = units(reader, &fields)?;
+    let points = match (fields.get("file"), fields.get("points")) {
+        (Some(file), None) => from_file(reader, &fields, file)?,
+        (None, Some(points)) => listed(reader, points)?,
+        (Some(_), Some(_)) => {
+            reader.error(fields.key_span("points"), "`file` and `points` exclude each other", None);
+            return None;
+        }
+        (None, None) => {
+            let help = "e.g. `{ file: road.csv }` or `{ points: [[0, 0], [1, 2]] }`".to_owned();
+            reader.error(fields.at.clone(), "a table needs `file` or `points`", help);
+            return None;
+        }
+    };
+    let to_si = |unit: Option<Unit>, value: f64| unit.map_or(value, |unit| unit.to_si(value));
+    let values: Vec<(f64, f64)> = points.iter().map(|[x, y]| (to_si(units[0], x.0), to_si(units[1], y.0))).collect();
+    match Spline::through(&values) {
+        Ok(spline) => {
+            let dimensions = units.map(|unit| unit.map(|unit| unit.dimension));
+            Some(Table { name: entry.key.clone(), spline, dimensions })
+        }
+        Err(error) => {
+            let (message, place) = match error {
+                SplineError::TooFew => ("a table has at least two points", entry.key_span.clone()),
+                SplineError::NotFinite(point) => ("this point is not finite", points[point][0].1.clone()),
+                SplineError::NotAscending(point) => {
+                    ("arguments ascend, but this one does not come after the one before", points[point][0].1.clone())
+                }
+            };
+            reader.error(place, message, None);
+            None
+        }
+    }
+}
+
+fn units(reader: &mut Reader, fields: &Fields) -> Option<[Option<Unit>; 2]> {
+    let Some(node) = fields.get("units") else { return Some([None; 2]) };
+    let pair = reader.two(node, "a list of two units")?;
+    let [x, y] = pair.map(|node| {
+        let scalar = reader.scalar(node, "a unit")?;
+        match Unit::parse(&scalar.text) {
+            Ok(unit) => Some(unit),
+            Err(error) => {
+                reader.error(scalar.place(&node.span, error.span), error.message, error.help);
+                None
+            }
+        }
+    });
+    Some([Some(x?), Some(y?)])
+}
+
+/// Pairs in the model itself.
+fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
+    let Value::Sequence(items) = &node.value else {
+        let message = format!("a list of pairs belongs here, but here is {}", node.kind());
+        reader.error(node.span.clone(), message, "e.g. `[[0, 0], [1, 2]]`".to_owned());
+        return None;
+    };
+    let number = |reader: &mut Reader, node: &Node| {
+        let scalar = reader.scalar(node, "a number")?;
+        let value = scalar.text.parse::<f64>().ok().filter(|value| value.is_finite());
+        if value.is_none() {
+            reader.error(node.span.clone(), format!("`{}` is not a number", clip(&scalar.text)), None);
+        }
+        Some((value?, node.span.clone()))
+    };
+    items
+        .iter()
+        .map(|item| {
+            let [x, y] = reader.two(item, "a pair of numbers")?;
+            Some([number(reader, x)?, number(reader, y)?])
+        })
+        .collect()
+}
+
+/// Two columns of a CSV file. Its own errors are told at their places in it.
+fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[Number; 2]>> {
+    let scalar = reader.scalar(node, "the name of a file")?;
+    let path = reader.folder.join(&scalar.text);
+    let text = match read_text(&path, MAX_BYTES) {
+        Ok(text) => text,
+        Err(error) => {
+            let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
+            reader.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
+            return None;
+        }
+    };
+    let start = reader.diagnostics.sources.add(path.display().to_string(), text.clone());
+    let delimiter = separator(&text);
+    let mut csv = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .delimiter(delimiter)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut columns: Option<[usize; 2]> = None;
+    let mut points = Vec::new();
+    for record in csv.records() {
+        let record = match record {
+            Ok(record) => record,
+            Err(error) => {
+                reader.error(node.span.clone(), format!("the file is no CSV: {error}"), None);
+                return None;
+            }
+        };
+        let line = record.position().map_or(0, |position| position.byte() as usize);
+        let end = line + text[line..].find('\n').unwrap_or(text.len() - line);
+        let place = start + line..start + end;
+        let [x, y] = match columns {
+            Some(columns) => columns,
+            None => {
+                let header = record.iter().any(|field| field.parse::<f64>().is_err());
+                let chosen = chosen_columns(reader, fields, header.then_some(&record))?;
+                columns = Some(chosen);
+                if header {
+                    continue;
+                }
+                chosen
+            }
+        };
+        let number = |column: usize| record.get(column).and_then(|field| field.parse::<f64>().ok());
+        let (Some(a), Some(b)) = (number(x), number(y)) else {
+            let (column, field) = if number(x).is_none() { (x, record.get(x)) } else { (y, record.get(y)) };
+            let message = match field {
+                Some(field) => format!("`{}` is not a number", clip(field)),
+                None => format!("this line has no column {}", column + 1),
+            };
+            reader.error(place, message, None);
+            return None;
+        };
+        points.push([(a, place.clone()), (b, place)]);
+    }
+    Some(points)
+}
+
+/// What separates the columns: the first of tab, semicolon and comma that the first line with numbers has.
+fn separator(text: &str) -> u8 {
+    let line = text.lines().find(|line| !line.starts_with('#') && !line.trim().is_empty()).unwrap_or("");
+    [b'\t', b';'].into_iter().find(|mark| line.as_bytes().contains(mark)).unwrap_or(b',')
+}
+
+/// Places of the columns that `columns` names, with the file's first line where that is a header.
+fn chosen_columns(reader: &mut Reader, fields: &Fields, header: Option<&csv::StringRecord>) -> Option<[usize; 2]> {
+    let Some(node) = fields.get("columns") else { return Some([0, 1]) };
+    let [x, y] = reader.two(node, "a list of two columns")?.map(|node| {
+        let scalar = reader.scalar(node, "the name of a column")?;
+        if let Some(place) = header.and_then(|header| header.iter().position(|name| name == scalar.text)) {
+            return Some(place);
+        }
+        if let Some(number) = scalar.text.parse::<usize>().ok().filter(|number| *number > 0) {
+            return Some(number - 1);
+        }
+        let help = match header {
+            Some(header) => suggest::help(&scalar.text, "columns", header.iter()),
+            None => Some("the file has no header: give the columns' numbers".to_owned()),
+        };
+        reader.error(node.span.clone(), format!("the file has no column `{}`", clip(&scalar.text)), help);
+        None
+    });
+    Some([x?, y?])
+}

@@ -1,0 +1,147 @@
+//! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
+//!
+//! XML (`read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`uncertain`) → bodies, joints and effects
+//! (`build`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
+//! all others stay numbers.
+
+mod algebra;
+mod build;
+mod read;
+mod robot;
+mod tree;
+mod uncertain;
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use self::build::{Built, Source};
+use self::robot::Robot;
+pub use self::uncertain::is_number;
+use super::diagnostic::Diagnostic;
+use super::load;
+use super::overrides::Override;
+use super::reader::{Fields, Reader};
+use super::source::Span;
+use super::yaml::{Entry, Node, Scalar, Value};
+
+/// Largest URDF that is read.
+const MAX_BYTES: u64 = 50_000_000;
+
+/// Whether a path is that of a URDF and not of a model.
+pub fn is_urdf(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
+}
+
+/// The model that a URDF is by itself: gravity, a second, at rest in the zero configuration.
+pub fn model_of(path: &Path) -> String {
+    let file = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().replace('\'', "''"));
+    format!(
+        "urdf: '{file}'\neffects: {{ gravity: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}\n\
+         simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}\n"
+    )
+}
+
+/// A robot's file, read.
+pub struct Urdf {
+    robot: Robot,
+    floating: bool,
+    words: HashSet<String>,
+}
+
+/// With its bodies and joints in the model.
+pub struct Declared {
+    urdf: Urdf,
+    named: HashSet<String>,
+    built: Built,
+    /// Place of the key in the model.
+    at: Span,
+}
+
+impl Urdf {
+    /// Reads the file that the node names, beside the model's.
+    pub fn read(
+        reader: &mut Reader,
+        node: &Node,
+        fields: &Fields,
+        model: &Path,
+        root: &Node,
+        overrides: &[(Override, Span)],
+    ) -> Option<Self> {
+        let floating = match fields.get("base") {
+            Some(node) => reader.choice(node, &[("fixed", false), ("floating", true)])?,
+            None => false,
+        };
+        let file = reader.scalar(node, "the path of a URDF")?.text.clone();
+        let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
+        let text = match load::read_text(&path, MAX_BYTES) {
+            Ok(text) => text,
+            Err(error) => {
+                let alone = is_urdf(model);
+                let span = if alone { None } else { Some(node.span.clone()) };
+                let message = if alone { error.message } else { error.message.replacen("the file", "the URDF", 1) };
+                reader.diagnostics.push(Diagnostic { span, message, help: error.help, ..Diagnostic::of_file("") });
+                return None;
+            }
+        };
+        let start = reader.diagnostics.sources.add(path.display().to_string(), text.clone());
+        let robot = read::read(&text, start, reader.diagnostics)?;
+        Some(Self { robot, floating, words: uncertain::words(root, overrides) })
+    }
+
+    /// The model's parameters, with those of the robot.
+    pub fn parameters(&self, reader: &mut Reader, written: &[Entry]) -> Vec<Entry> {
+        uncertain::entries(reader, &self.robot, &self.words, written)
+    }
+
+    /// Adds the robot's bodies and joints to the model, behind those that it has.
+    pub fn declare(self, reader: &mut Reader, parameters: &[Entry]) -> Declared {
+        let named: HashSet<String> =
+            parameters.iter().filter(|entry| is_number(&entry.key)).map(|entry| entry.key.clone()).collect();
+        let links = self.robot.links.iter().map(|link| (&link.name, &link.span));
+        for (name, span) in links {
+            if reader.model.bodies.iter().any(|body| body.name == *name) {
+                let message = format!("the model has a body that is called like the link `{name}`");
+                reader.diagnostics.push(Diagnostic::error(span.clone(), message));
+            }
+        }
+        for joint in &self.robot.joints {
+            if reader.model.joints.iter().any(|known| known.name == joint.name) {
+                let message = format!("the model has a joint that is called like the URDF's `{}`", joint.name);
+                reader.diagnostics.push(Diagnostic::error(joint.span.clone(), message));
+            }
+        }
+        let source = Source { robot: &self.robot, floating: self.floating, words: &self.words, named: &named };
+        let built = build::declare(reader, &source);
+        let at = self.robot.links[self.robot.root].span.clone();
+        Declared { urdf: self, named, built, at }
+    }
+}
+
+impl Declared {
+    /// Effects, start values and, where the model has none, outputs; and whether masses stay positive.
+    pub fn finish(&self, reader: &mut Reader, observe: bool) {
+        let Urdf { robot, floating, words } = &self.urdf;
+        let source = Source { robot, floating: *floating, words, named: &self.named };
+        build::effects(reader, &source, &self.built);
+        build::start(reader, &source, &self.built);
+        for number in robot.numbers().filter(|number| self.named.contains(&number.name)) {
+            let last = number.name.rsplit('.').next().unwrap_or_default();
+            let (holds, requirement): (fn(f64) -> bool, &str) = match last {
+                "mass" if number.value > 0.0 => (|value| value > 0.0, "must be positive"),
+                "mass" | "damping" | "friction" => (|value| value >= 0.0, "must not be negative"),
+                _ => continue,
+            };
+            let Ok(formula) = symdiff::Formula::parse(&number.name) else { continue };
+            let text = Scalar { text: number.name.clone(), plain: true, start: None };
+            let node = Node { span: number.span.clone(), value: Value::Scalar(text) };
+            reader.require(&node, &formula, holds, requirement);
+        }
+        if observe {
+            build::outputs(reader, &source, &self.built);
+            if reader.model.outputs.is_empty() {
+                let help = "with `base: floating` in a model that names the file, the whole moves".to_owned();
+                reader.error(self.at.clone(), "nothing of this robot can move", help);
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a URDF says, typed: links, joints, and every number with its place and the name it has as a parameter.
+
+use crate::model::source::Span;
+
+/// A number of the file.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// As a parameter, e.g. `link.forearm.mass`.
+    pub name: String,
+    /// SI.
+    pub value: f64,
+    pub unit: &'static str,
+    /// Where it stands, or where it would.
+    pub span: Span,
+    /// What an attribute of mbint's own says of it, and where.
+    pub uncertain: Option<(String, Span)>,
+}
+
+/// Where a frame is in the frame around it: m, rad about the fixed x, y, z.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    pub xyz: [Number; 3],
+    pub rpy: [Number; 3],
+}
+
+#[derive(Clone, Debug)]
+pub struct Inertial {
+    pub origin: Origin,
+    pub mass: Number,
+    /// xx, yy, zz, xy, xz, yz about the centre of mass, along the origin's axes.
+    pub inertia: [Number; 6],
+}
+
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// A name in formulas: what the file says, with `_` for what cannot stand there.
+    pub name: String,
+    pub span: Span,
+    pub inertial: Option<Inertial>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Revolute,
+    Continuous,
+    Prismatic,
+    Fixed,
+    Planar,
+    Floating,
+}
+
+impl Kind {
+    pub const ALL: [(&str, Self); 6] = [
+        ("revolute", Self::Revolute),
+        ("continuous", Self::Continuous),
+        ("prismatic", Self::Prismatic),
+        ("fixed", Self::Fixed),
+        ("planar", Self::Planar),
+        ("floating", Self::Floating),
+    ];
+
+    pub fn turns(self) -> bool {
+        matches!(self, Self::Revolute | Self::Continuous)
+    }
+}
+
+/// Positions in m or rad, effort in N or N m, velocity in m/s or rad/s.
+#[derive(Clone, Debug)]
+pub struct Limits {
+    pub lower: Number,
+    pub upper: Number,
+    pub effort: Number,
+    pub velocity: Number,
+}
+
+/// position = multiplier · position of `joint` + offset.
+#[derive(Clone, Debug)]
+pub struct Mimic {
+    pub joint: usize,
+    pub multiplier: f64,
+    pub offset: f64,
+}
+
+#[derive(Clone, Debug)]
+pub struct Joint {
+    pub name: String,
+    pub span: Span,
+    pub kind: Kind,
+    pub parent: usize,
+    pub child: usize,
+    pub origin: Origin,
+    /// In the child's frame; of any length but zero.
+    pub axis: [f64; 3],
+    pub damping: Number,
+    pub friction: Number,
+    pub limits: Option<Limits>,
+    pub mimic: Option<Mimic>,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct Robot {
+    pub name: String,
+    pub links: Vec<Link>,
+    pub joints: Vec<Joint>,
+    pub root: usize,
+    /// Joints, each behind the one that moves its parent.
+    pub order: Vec<usize>,
+}
+
+impl Robot {
+    /// Every number that can be a parameter, in the file's order.
+    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
+        let links = self.links.iter().filter_map(|link| link.inertial.as_ref()).flat_map(|inertial| {
+            let origin = inertial.origin.xyz.iter().chain(&inertial.origin.rpy);
+            std::iter::once(&inertial.mass).chain(&inertial.inertia).chain(origin)
+        });
+        let joints = self.joints.iter().flat_map(|joint| {
+            let limits = joint.limits.iter().flat_map(|l| [&l.lower, &l.upper, &l.effort, &l.velocity]);
+            joint.origin.xyz.iter().chain(&joint.origin.rpy).chain([&joint.damping, &joint.friction]).chain(limits)
+        });
+        links.chain(joints)
+    }
+}

@@ -1,0 +1,150 @@
+//! Numbers of the URDF as parameters: those that something names, with what a model or the file's own attributes say.
+
+use std::collections::{HashMap, HashSet};
+
+use super::robot::{Number, Robot};
+use crate::model::overrides::Override;
+use crate::model::reader::Reader;
+use crate::model::source::Span;
+use crate::model::suggest::{self, clip};
+use crate::model::yaml::{Entry, Node, Scalar, Value};
+
+/// Whether a name is that of a number of a URDF.
+pub fn is_number(name: &str) -> bool {
+    name.starts_with("link.") || name.starts_with("joint.")
+}
+
+/// Every word of the model, and the parts of names with dots.
+pub fn words(root: &Node, overrides: &[(Override, Span)]) -> HashSet<String> {
+    let mut words = HashSet::new();
+    let mut take = |text: &str| {
+        for word in text.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')) {
+            words.insert(word.to_owned());
+            words.extend(word.split('.').map(str::to_owned));
+        }
+    };
+    let mut open = vec![root];
+    while let Some(node) = open.pop() {
+        match &node.value {
+            Value::Scalar(scalar) => take(&scalar.text),
+            Value::Sequence(items) => open.extend(items),
+            Value::Mapping(entries) => {
+                for entry in entries {
+                    take(&entry.key);
+                    open.push(&entry.value);
+                }
+            }
+        }
+    }
+    overrides.iter().for_each(|(wanted, _)| take(&wanted.name));
+    words
+}
+
+/// The model's parameters, those of the URDF first that are named or have an attribute.
+pub fn entries(reader: &mut Reader, robot: &Robot, words: &HashSet<String>, written: &[Entry]) -> Vec<Entry> {
+    let by_key: HashMap<&str, &Entry> = written.iter().map(|entry| (entry.key.as_str(), entry)).collect();
+    let mut entries = Vec::new();
+    let mut known = HashSet::new();
+    for number in robot.numbers() {
+        known.insert(number.name.as_str());
+        let entry = by_key.get(number.name.as_str()).copied();
+        if entry.is_some() || number.uncertain.is_some() || words.contains(&number.name) {
+            entries.push(parameter(reader, number, entry));
+        }
+    }
+    for entry in written {
+        if !is_number(&entry.key) {
+            entries.push(entry.clone());
+        } else if !known.contains(entry.key.as_str()) {
+            let message = format!("the URDF has no number `{}`", clip(&entry.key));
+            let help = suggest::nearest(&entry.key, known.iter().copied());
+            let help = help.map_or_else(|| FORMS.to_owned(), |near| format!("did you mean `{near}`?"));
+            reader.error(entry.key_span.clone(), message, help);
+        }
+    }
+    entries
+}
+
+const FORMS: &str = "e.g. `link.NAME.mass`, `.com.x`, `.inertia.xx`, `joint.NAME.damping`, `.friction`, `.origin.z`, \
+                     `.origin.yaw`";
+
+fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> Entry {
+    let mut fields = match (written, &number.uncertain) {
+        (Some(entry), _) => match &entry.value.value {
+            Value::Mapping(fields) => fields.clone(),
+            Value::Sequence(_) => vec![field("interval", entry.value.clone())],
+            Value::Scalar(scalar) => deviation(&scalar.text, &entry.value.span, scalar.start),
+        },
+        (None, Some((text, span))) => {
+            let fields = deviation(text, span, Some(span.start));
+            if fields.iter().any(|field| field.key == "value") {
+                let message = format!("`{}` says no deviation", clip(text));
+                reader.error(span.clone(), message, "write `5%`, `± 0.1` or `[lower, upper]`".to_owned());
+            }
+            fields
+        }
+        (None, None) => Vec::new(),
+    };
+    let (key_span, value_span) = match written {
+        Some(entry) => (entry.key_span.clone(), entry.value.span.clone()),
+        None => (number.span.clone(), number.span.clone()),
+    };
+    let has = |key: &str| fields.iter().any(|field| field.key == key);
+    let outside = fields.iter().find(|field| field.key == "interval").is_some_and(|field| !holds(&field.value, number));
+    let (value, unit) = (!has("value") && !outside, !has("unit"));
+    if value {
+        fields.push(field("value", scalar(format!("{:?}", number.value), value_span.clone(), None)));
+    }
+    if unit {
+        fields.push(field("unit", scalar(number.unit.to_owned(), value_span.clone(), None)));
+    }
+    Entry { key: number.name.clone(), key_span, value: Node { span: value_span, value: Value::Mapping(fields) } }
+}
+
+/// Whether an interval of bare numbers has the file's number in it, which is then the nominal one.
+fn holds(interval: &Node, number: &Number) -> bool {
+    let Value::Sequence(ends) = &interval.value else { return false };
+    let ends: Vec<f64> = ends.iter().filter_map(|end| end.scalar()?.text.trim().parse().ok()).collect();
+    matches!(ends.as_slice(), [lower, upper] if (*lower..=*upper).contains(&number.value))
+}
+
+/// `5%`, `± 0.5 mm`, `[0.1, 0.2]`, `3 ± 5%`, or a value that replaces the file's.
+fn deviation(text: &str, span: &Span, start: Option<usize>) -> Vec<Entry> {
+    let part = |range: Span| {
+        let piece = &text[range.clone()];
+        let from = range.start + piece.len() - piece.trim_start().len();
+        let start = start.map(|start| start + from);
+        let place = start.map_or_else(|| span.clone(), |start| start..start + piece.trim().len());
+        scalar(piece.trim().to_owned(), place, start)
+    };
+    let whole = 0..text.len();
+    let trimmed = text.trim();
+    if trimmed.starts_with('[') && trimmed.ends_with(']') {
+        let open = text.find('[').unwrap_or(0) + 1;
+        let close = text.rfind(']').unwrap_or(text.len());
+        let mut at = open;
+        let ends = text[open..close].split(',').map(|piece| {
+            let range = at..at + piece.len();
+            at += piece.len() + 1;
+            part(range)
+        });
+        return vec![field("interval", Node { span: span.clone(), value: Value::Sequence(ends.collect()) })];
+    }
+    let sign = ["±", "+-", "+/-"].into_iter().find_map(|sign| Some((text.find(sign)?, sign.len())));
+    if let Some((at, length)) = sign {
+        let mut fields = vec![field("tolerance", part(at + length..text.len()))];
+        if !text[..at].trim().is_empty() {
+            fields.push(field("value", part(0..at)));
+        }
+        return fields;
+    }
+    vec![field(if trimmed.ends_with('%') { "tolerance" } else { "value" }, part(whole))]
+}
+
+fn field(key: &str, value: Node) -> Entry {
+    Entry { key: key.to_owned(), key_span: value.span.clone(), value }
+}
+
+fn scalar(text: String, span: Span, start: Option<usize>) -> Node {
+    Node { span, value: Value::Scalar(Scalar { text, plain: true, start }) }
+}
