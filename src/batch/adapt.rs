@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 use super::apportion::Apportion;
 use super::compose::{Composer, Known, Row, Seeker};
 use super::finding::{Finder, Finding};
-use super::methods::{FleetRun, Run};
+use super::methods::{FleetRun, Run, Until};
 use super::probe::{Probes, Table};
 use crate::bounds::{ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGrid, Surrogate, largest};
 use crate::integrate::{Observed, SimulationError};
@@ -142,6 +142,7 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     fn is_spent(&self) -> bool {
         let Budget { solves, seconds } = self.goal.budget;
         self.exhausted
+            || (self.run.study.interrupted)()
             || self.goal.spent >= solves
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
@@ -167,7 +168,8 @@ impl<'a, 'r> Adaptation<'a, 'r> {
     fn simulate(&mut self, domain: &ParameterBox, nodes: &[Vec<f64>]) -> Result<(usize, Vec<f64>), SimulationError> {
         let samples = domain.points(nodes);
         let mut motions = Vec::new();
-        let done = self.run.fleet(&samples, Observed::Motion, |_, values| motions.extend_from_slice(values))?;
+        let done =
+            self.run.fleet(&samples, Observed::Motion, Until::First, |_, values| motions.extend_from_slice(values))?;
         self.done.add(self.goal.spent, done);
         self.goal.spent += samples.len();
         Ok((samples.len(), motions))
@@ -357,10 +359,10 @@ impl Part<'_> {
 }
 
 /// Of no part yet.
-const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+pub(super) const EMPTY: Range = Range { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 
 /// The range of two parts together. Its error is how far its ends may lie from the true ones, given those of the parts'.
-fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
+pub(super) fn union((a, of_a): (Range, f64), (b, of_b): (Range, f64)) -> (Range, f64) {
     if a == EMPTY || b.lower.is_nan() {
         return (b, of_b);
     }

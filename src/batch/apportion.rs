@@ -23,6 +23,8 @@ pub(super) struct Apportion {
     nominal: Vec<f64>,
     fine: Option<(Surrogate, VarianceShares)>,
     own: VarianceShares,
+    /// Whether any interval is wider than its rounding: else all that varies is rounding.
+    varies: bool,
 }
 
 impl Apportion {
@@ -34,11 +36,9 @@ impl Apportion {
             let shares = VarianceShares::new(fine.basis());
             (fine, shares)
         });
-        let xi = |axis: usize| match domain.half_width(axis) {
-            half if half > 0.0 => ((domain.nominal[axis] - domain.midpoint(axis)) / half).clamp(-1.0, 1.0),
-            _ => 0.0,
-        };
-        Self { nominal: (0..k).map(xi).collect(), fine, own: VarianceShares::new(surrogate.basis()) }
+        let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
+        let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
+        Self { nominal, fine, own: VarianceShares::new(surrogate.basis()), varies }
     }
 
     /// The parts of every output's spread, whose ranges are known.
@@ -51,7 +51,7 @@ impl Apportion {
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
-            let (main, total) = match shares.shares(coefficients) {
+            let (main, total) = match shares.shares(coefficients).filter(|_| self.varies) {
                 Some(shares) => (shares.main, shares.total),
                 // Nothing varies: nobody has a part in it.
                 None => (vec![0.0; k], vec![0.0; k]),

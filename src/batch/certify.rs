@@ -32,6 +32,10 @@ impl Run<'_> {
     pub(super) fn certified(&self) -> Outcome {
         let begun = Instant::now();
         let domain = &self.study.domain;
+        if let Some(effect) = self.study.simulator.system.effects.iter().find(|effect| !effect.enclosed) {
+            let note = format!("not supported with --certify: effect {} ({})", effect.name, effect.kind);
+            return Outcome { note: Some(note), ..self.join(Vec::new(), 0, begun) };
+        }
         let certifier = Certifier::new(&self.study.simulator);
         let space = ModelSpace::new(domain.dimension(), ORDER[domain.dimension()]);
         let mut open = vec![domain.clone()];
@@ -43,7 +47,7 @@ impl Run<'_> {
                 .into_par_iter()
                 .map(|piece| self.enclose(&certifier, &space, piece))
                 .collect();
-            let room = MOST_PIECES.saturating_sub(closed.len() + found.len());
+            let room = if self.is_interrupted() { 0 } else { MOST_PIECES.saturating_sub(closed.len() + found.len()) };
             // Those that came least far are cut first; the order of the rest does not matter.
             let mut by_reach: Vec<usize> = (0..found.len()).collect();
             by_reach.sort_by_key(|&index| (found[index].ranges.len(), index));
@@ -77,6 +81,9 @@ impl Run<'_> {
             Err(lost) => return Enclosed { piece, ranges, lost: Some((0.0, lost)) },
         };
         for row in 0..schedule.rows {
+            if self.is_interrupted() {
+                break;
+            }
             if let Err(lost) = enclosure.advance(schedule, row) {
                 return Enclosed { piece, ranges, lost: Some(lost) };
             }
@@ -102,7 +109,8 @@ impl Run<'_> {
             format!("{lost} for the step to t = {time} s (in one of {pieces} pieces of the box): certified bounds are unknown from there on")
         });
         let summary = self.method_summary(Method::Certified.name(), solves, Counters::default(), None, begun);
-        Outcome { note, ..lines.outcome(FleetRun::default(), summary) }
+        let done = FleetRun { missing: self.schedule.rows - rows, ..FleetRun::default() };
+        Outcome { note, ..lines.outcome(done, summary) }
     }
 }
 

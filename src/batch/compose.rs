@@ -165,7 +165,7 @@ impl<'r> Row<'r> {
         let moved = self.closure.independent().iter().map(|&i| (self.extent[i].1 - self.extent[i].0) / scale[i]);
         let (least, most) = POINTS[self.domain.dimension().clamp(1, MOST_PARAMETERS) - 1];
         let wanted = moved.fold(0.0, f64::max) / RESOLUTION;
-        if wanted.is_finite() { (least + wanted as usize).min(most) } else { least }
+        if wanted.is_finite() { least.saturating_add(wanted as usize).min(most) } else { least }
     }
 
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
@@ -293,7 +293,9 @@ impl<'r> Row<'r> {
     }
 
     fn evaluate_shifted(&self, points: &[Vec<f64>], shift: &[(usize, f64)]) -> Vec<f64> {
-        let mut motion = self.expanded(points);
+        let mut motion = vec![0.0; self.extent.len() * points.len()];
+        let lines = if self.closure.needs_velocities() { self.extent.len() } else { self.extent.len() / 2 };
+        self.expand(points, &mut motion[..lines * points.len()]);
         for &(line, shift) in shift {
             motion[line * points.len()..][..points.len()].iter_mut().for_each(|value| *value += shift);
         }
@@ -311,8 +313,15 @@ impl<'r> Row<'r> {
     /// The polynomials' values: 2n lines of points.
     fn expanded(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let mut motion = vec![0.0; self.extent.len() * points.len()];
-        self.surrogate.basis().values(points, &self.coefficients, &mut motion, &mut SparseWork::default());
+        self.expand(points, &mut motion);
         motion
+    }
+
+    /// The first of them, as many lines as there is room for.
+    fn expand(&self, points: &[Vec<f64>], motion: &mut [f64]) {
+        let lines = motion.len() / points.len().max(1);
+        let coefficients = &self.coefficients[..lines * self.surrogate.basis().len()];
+        self.surrogate.basis().values(points, coefficients, motion, &mut SparseWork::default());
     }
 
     fn close(&self, points: &[Vec<f64>], motion: Vec<f64>) -> Vec<f64> {

@@ -17,7 +17,7 @@ use crate::bounds::{
     Method, PolynomialRange, Range, ScanBounds, SparseWork, Surrogate, SurrogateWork, TaylorRange, TensorGrid, largest,
     surrogate_error,
 };
-use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, Stop};
+use crate::integrate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, SingularPass, Stop};
 use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Expand, ScanRequest, TaylorRequest};
 use crate::report::MethodSummary;
 
@@ -43,11 +43,15 @@ pub(super) struct Outcome {
     /// Who has which part in the spread of every output in every row, where it is known.
     pub(super) parts: Vec<Vec<Option<Parts>>>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
+    /// Rows in which something is known.
+    pub(super) reached: usize,
     /// What is to be told of bounds that do not go on to the end.
     pub(super) note: Option<String>,
     pub(super) summary: MethodSummary,
-    /// The sample whose local error was largest against the tolerance, and how large.
+    /// The sample whose local errors add up to most, and to how much over the tolerance.
     pub(super) strained: Option<(Vec<f64>, f64)>,
+    /// Singular configurations that the nominal sample passes.
+    pub(super) singular: Vec<SingularPass>,
 }
 
 /// One pass over all methods with one schedule.
@@ -57,6 +61,17 @@ pub(super) struct Run<'a> {
     pub(super) schedule: &'a Schedule,
     pub(super) tolerance: Option<f64>,
     pub(super) progress: &'a Progress,
+    /// Whether samples are run to their end even where the user does not want to wait: half of them would be of no use.
+    pub(super) finish: bool,
+}
+
+/// How long samples are run together of which one stops before the schedule ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Until {
+    /// To that one's end: without it the others say nothing.
+    First,
+    /// To the schedule's: the others are of use without it.
+    End,
 }
 
 /// How far a run has come.
@@ -76,32 +91,60 @@ impl Run<'_> {
         (self.study.progress)((done as f64 / *total as f64).min(1.0));
     }
 
-    /// Runs samples block by block; `reduce` gets the rows and their values (row, output, sample). Ends at the first block
-    /// in which a sample stops.
+    /// Runs samples block by block; `reduce` gets the rows and their values (row, output, sample). Ends at a block in which
+    /// samples stop, as `until` says, or where the user does not want to wait any more.
     pub(super) fn fleet(
         &self,
         samples: &[Vec<f64>],
         observed: Observed,
-        mut reduce: impl FnMut(Rows<usize>, &[f64]),
+        until: Until,
+        reduce: impl FnMut(Rows<usize>, &[f64]),
     ) -> Result<FleetRun, SimulationError> {
-        let mut fleet = Fleet::start(&self.study.simulator, samples, self.schedule.first_step())?;
+        let fleet = Fleet::start(&self.study.simulator, samples, self.schedule.first_step())?;
+        Ok(self.steer(fleet, samples, observed, until, reduce))
+    }
+
+    fn steer(
+        &self,
+        mut fleet: Fleet,
+        samples: &[Vec<f64>],
+        observed: Observed,
+        until: Until,
+        mut reduce: impl FnMut(Rows<usize>, &[f64]),
+    ) -> FleetRun {
         let rows_a_block = (BLOCK / (observed.count(&self.study.simulator) * samples.len()).max(1)).clamp(1, 64);
         let mut values = Vec::new();
         let mut stop: Option<Stop> = None;
+        let mut stopped = Vec::new();
         let mut next = 0;
-        while next < self.schedule.rows && stop.is_none() {
+        let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
+        while next < self.schedule.rows && goes_on(&stop) && !self.is_interrupted() {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
             let stops = fleet.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
-            stop = stops.into_iter().min_by_key(|stop| (stop.row, stop.sample));
+            stopped.extend(stops.iter().map(|stop| stop.sample));
+            stop = stop.into_iter().chain(stops).min_by_key(|stop| (stop.row, stop.sample));
             reduce(rows.clone(), &values);
             self.advance_progress(samples.len() * rows.len());
             next = rows.end;
         }
-        Ok(FleetRun {
+        let reached = match &stop {
+            Some(stop) if until == Until::First => stop.row,
+            _ => next,
+        };
+        let stop = stop.map(|stop| Stop { open: fleet.stays_open(&stop, self.schedule), ..stop });
+        FleetRun {
             counters: fleet.counters(),
             strained: fleet.most_strained().map(|(sample, strain)| (samples[sample].clone(), strain)),
             stop: stop.map(|stop| (stop, samples[stop.sample].clone())),
-        })
+            singular: fleet.singular_passes(),
+            stopped,
+            missing: self.schedule.rows - reached,
+        }
+    }
+
+    /// Whether the user does not want to wait any more.
+    pub(super) fn is_interrupted(&self) -> bool {
+        !self.finish && (self.study.interrupted)()
     }
 
     pub(super) fn method_summary(
@@ -129,14 +172,15 @@ impl Run<'_> {
         let begun = Instant::now();
         let mut lines = Lines::new(self);
         let outputs = self.outputs();
-        let done =
-            self.fleet(std::slice::from_ref(&self.study.domain.nominal), Observed::Outputs, |rows, values| {
-                for (row, values) in rows.zip(values.chunks_exact(outputs)) {
-                    for (output, &value) in values.iter().enumerate() {
-                        lines.set(row, output, Range { lower: value, upper: value }, 0.0);
-                    }
+        let sample = std::slice::from_ref(&self.study.domain.nominal);
+        let fleet = Fleet::start(&self.study.simulator, sample, self.schedule.first_step())?.watching();
+        let done = self.steer(fleet, sample, Observed::Outputs, Until::First, |rows, values| {
+            for (row, values) in rows.zip(values.chunks_exact(outputs)) {
+                for (output, &value) in values.iter().enumerate() {
+                    lines.set(row, output, Range { lower: value, upper: value }, 0.0);
                 }
-            })?;
+            }
+        });
         let summary = self.method_summary("nominal", 1, done.counters, done.stop_place(), begun);
         Ok(lines.outcome(done, summary))
     }
@@ -178,7 +222,7 @@ impl Run<'_> {
             let time = largest(time[..resolved].iter().copied());
             goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
         }
-        let search = Adaptation::new(self, goal, probes).search()?;
+        let search = Adaptation::new(&Run { finish: true, ..*self }, goal, probes).search()?;
         let mut lines = Lines::new(self);
         for (place, found) in search.found.into_iter().enumerate() {
             lines.set_found(place / self.outputs(), place % self.outputs(), found);
@@ -209,7 +253,7 @@ impl Run<'_> {
         };
         let stride = Observed::Motion.count(&self.study.simulator) * samples.len();
         let mut failure = None;
-        let done = self.fleet(samples, Observed::Motion, |rows, values| {
+        let done = self.fleet(samples, Observed::Motion, Until::First, |rows, values| {
             let times: Vec<f64> = rows.clone().map(|row| self.schedule.time(row)).collect();
             let first = rows.start;
             let look = |place: usize, row: &Row, known: &mut Known| finder.find(row, first + place, known);
@@ -234,7 +278,7 @@ impl Run<'_> {
         probes: &Probes,
     ) -> Result<(Lines, FleetRun), SimulationError> {
         let mut lines = Lines::new(self);
-        let done = self.fleet(samples, Observed::Outputs, |rows, values| {
+        let done = self.fleet(samples, Observed::Outputs, Until::First, |rows, values| {
             let found: Vec<Found> = values
                 .par_chunks_exact(samples.len())
                 .map_init(
@@ -263,9 +307,14 @@ impl Run<'_> {
         let slab = grid.len() / request.points.first().copied().unwrap_or(1);
         let shard_size = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
         for first in (0..grid.len()).step_by(shard_size) {
+            if self.is_interrupted() {
+                // What some of the samples say is no bound.
+                total.missing = self.schedule.rows;
+                break;
+            }
             let shard: Vec<Vec<f64>> =
                 (first..(first + shard_size).min(grid.len())).map(|index| self.sample(&grid, index)).collect();
-            let done = self.fleet(&shard, Observed::Outputs, |rows, values| {
+            let done = self.fleet(&shard, Observed::Outputs, Until::End, |rows, values| {
                 for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
                     for (output, values) in values.chunks_exact(shard.len()).enumerate() {
                         bounds.observe(row, output, first, values);
@@ -278,7 +327,7 @@ impl Run<'_> {
         for (row, output) in (0..self.schedule.rows).flat_map(|row| (0..outputs).map(move |output| (row, output))) {
             let range = bounds.range(row, output);
             let outside = probes.direct.at(row, output).into_iter().map(|value| range.distance(value));
-            lines.set(row, output, range, outside.fold(bounds.error(row, output), f64::max));
+            lines.set(row, output, range, largest(outside.chain([bounds.error(row, output)])));
         }
         let summary = self.method_summary(Method::Scan.name(), grid.len(), total.counters, total.stop_place(), begun);
         Ok(lines.outcome(total, summary))
@@ -297,7 +346,7 @@ impl Run<'_> {
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
-        while next < self.schedule.rows && stop.is_none() {
+        while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
             let rows = next..(next + 64).min(self.schedule.rows);
             stop = jet.advance(self.schedule, rows.clone(), &mut values);
             let found: Vec<Found> = values
@@ -317,7 +366,13 @@ impl Run<'_> {
             next = rows.end;
         }
         let summary = self.method_summary(Method::Taylor.name(), 1, jet.counters(), stop.as_ref(), begun);
-        let done = FleetRun { counters: jet.counters(), stop: stop.map(|stop| (stop, center)), strained: None };
+        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
+        let done = FleetRun {
+            counters: jet.counters(),
+            stop: stop.map(|stop| (stop, center)),
+            missing,
+            ..FleetRun::default()
+        };
         Ok(lines.outcome(done, summary))
     }
 
@@ -332,6 +387,11 @@ pub(super) struct FleetRun {
     pub(super) counters: Counters,
     pub(super) strained: Option<(Vec<f64>, f64)>,
     pub(super) stop: Option<(Stop, Vec<f64>)>,
+    pub(super) singular: Vec<SingularPass>,
+    /// All that stopped.
+    pub(super) stopped: Vec<usize>,
+    /// Rows at the end in which too little is known.
+    pub(super) missing: usize,
 }
 
 impl FleetRun {
@@ -345,6 +405,8 @@ impl FleetRun {
         self.counters.rank_revealing += shard.counters.rank_revealing;
         let stop = shard.stop.map(|(stop, sample)| (Stop { sample: first + stop.sample, ..stop }, sample));
         self.stop = self.stop.take().into_iter().chain(stop).min_by_key(|(stop, _)| (stop.row, stop.sample));
+        self.stopped.extend(shard.stopped.into_iter().map(|sample| first + sample));
+        self.missing = self.missing.max(shard.missing);
         let strained = self.strained.take().into_iter().chain(shard.strained);
         self.strained = strained.reduce(|a, b| if b.1 > a.1 { b } else { a });
     }
@@ -398,16 +460,24 @@ impl Lines {
         }
     }
 
-    pub(super) fn outcome(self, done: FleetRun, summary: MethodSummary) -> Outcome {
+    /// All rows but those that are missing.
+    pub(super) fn outcome(mut self, done: FleetRun, summary: MethodSummary) -> Outcome {
+        let rows = self.bands.first().map_or(0, Vec::len);
+        let reached = rows - done.missing.min(rows);
+        self.bands.iter_mut().for_each(|ranges| ranges[reached..].fill(Range::UNKNOWN));
+        self.surrogate.iter_mut().chain(&mut self.steps).for_each(|errors| errors[reached..].fill(f64::NAN));
+        self.parts.iter_mut().for_each(|parts| parts[reached..].fill(None));
         Outcome {
             bands: self.bands,
             surrogate: self.surrogate,
             steps: self.steps,
             parts: self.parts,
             stop: done.stop,
+            reached,
             note: None,
             summary,
             strained: done.strained,
+            singular: done.singular,
         }
     }
 }

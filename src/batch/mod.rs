@@ -3,14 +3,16 @@
 //! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
 //! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
-//! `adapt` expands them as far as a tolerance asks for. `cost` runs one model with many settings, to tell what accuracy costs.
+//! `adapt` expands them as far as a tolerance asks for; `feasible` bounds the part of a box in which there is a motion. `cost` runs one model with many settings, to tell what accuracy costs.
 
 mod adapt;
 mod apportion;
 mod certify;
 mod compose;
 mod cost;
+mod feasible;
 mod finding;
+mod formulation;
 mod methods;
 mod probe;
 mod step_search;
@@ -18,7 +20,7 @@ mod study;
 
 use crate::bounds::{Bounds, Method};
 use crate::integrate::{SimulationError, Simulator};
-use crate::mechanics::{self, BuildError};
+use crate::mechanics::BuildError;
 use crate::model::{Description, Stepping};
 use crate::program::Scheme;
 use crate::report::Summary;
@@ -26,6 +28,7 @@ use crate::report::Summary;
 use study::Study;
 
 pub use cost::{CostError, CostOptions, cost};
+pub use feasible::{Place, Survey};
 
 /// How to run.
 pub struct Options<'a> {
@@ -35,14 +38,25 @@ pub struct Options<'a> {
     pub threads: Option<usize>,
     /// Whether the time steps' error is found by simulating every sample with halved steps too, instead of a few.
     pub certify_time: bool,
+    /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
+    pub skip_infeasible: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Default for Options<'_> {
     /// What the model asks for, on all cores.
     fn default() -> Self {
-        Self { methods: None, threads: None, certify_time: false, progress: &|_| () }
+        Self {
+            methods: None,
+            threads: None,
+            certify_time: false,
+            skip_infeasible: false,
+            progress: &|_| (),
+            interrupted: &|| false,
+        }
     }
 }
 
@@ -64,21 +78,28 @@ pub enum RunError {
         "certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed"
     )]
     CertifiedSteps,
+    #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
+    Infeasible(Box<Survey>),
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs every method asked for. A sample that stops early ends the bounds there: what was reached is returned, and the
-/// summary's `failure` says what happened.
+/// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
+/// the summary's `failure` says what happened.
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     pool.install(|| {
-        let system = mechanics::build(description)?;
-        let study = Study::new(description, system, &options)?;
-        study.run()
+        let study = Study::new(description, &options)?;
+        if options.skip_infeasible {
+            return feasible::run(&study);
+        }
+        match study.run() {
+            Ok(ran) => Ok((ran.bounds, ran.summary)),
+            Err(error) => Err(feasible::explained(&study, error)),
+        }
     })
 }
 
@@ -87,8 +108,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 /// # Errors
 /// As for [`run`].
 pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
-    let system = mechanics::build(description)?;
-    Ok(Simulator::new(system, scheme(description), first_step(description))?)
+    formulation::compiled(description)
 }
 
 /// The model's scheme.

@@ -1,6 +1,6 @@
 //! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
 
-use super::methods::{FleetRun, Run};
+use super::methods::{FleetRun, Run, Until};
 use crate::bounds::{BandError, Range, probes, time_error, validation};
 use crate::integrate::{Counters, Observed, Schedule, SimulationError};
 use crate::report::MethodSummary;
@@ -20,7 +20,7 @@ impl Table {
     /// Simulates samples with a run's schedule.
     pub fn of(run: &Run, samples: &[Vec<f64>], observed: Observed) -> Result<(Self, FleetRun), SimulationError> {
         let mut values = Vec::new();
-        let done = run.fleet(samples, observed, |_, block| values.extend_from_slice(block))?;
+        let done = run.fleet(samples, observed, Until::End, |_, block| values.extend_from_slice(block))?;
         let outputs = run.outputs();
         let motions = observed.count(&run.study.simulator) - outputs;
         Ok((Self { motions, outputs, samples: samples.len(), values }, done))

@@ -8,21 +8,25 @@ use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
 use super::step_search::StepSearch;
-use super::{Options, RunError, first_step, scheme};
+use super::{Options, RunError, formulation};
 use crate::bounds::{
     Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, largest, probes, time_error,
     time_error_certified, validation,
 };
 use crate::integrate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
-use crate::mechanics::{self, System};
+use crate::mechanics;
 use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, Expand, MOST_SOLVES, ScanRequest, Stepping};
-use crate::report::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, Summary};
+use crate::report::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, SingularSummary, Summary};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
 const PILOT_CORNERS: usize = 16;
 
 /// How often samples that turn out to need smaller steps may be added to the pilots.
 const PILOT_ROUNDS: usize = 8;
+
+/// Said of results that the user did not wait for.
+const INTERRUPTED: &str =
+    "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
 
 /// A model compiled, with what is asked of it.
 pub(super) struct Study<'a> {
@@ -33,6 +37,8 @@ pub(super) struct Study<'a> {
     /// Whether all samples are simulated with halved steps too.
     certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    /// Asked whether what is finished is enough.
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// What one schedule yields.
@@ -57,7 +63,15 @@ impl Results {
         self.outcomes().filter_map(|outcome| outcome.stop.as_ref()).chain(probes)
     }
 
-    /// The sample whose local error was largest against the tolerance, where it was larger.
+    /// Rows that every sample of every method has reached, and every one of the probes.
+    fn whole(&self) -> usize {
+        let stops = self.stops().filter(|(stop, _)| {
+            !stop.singular && self.nominal.stop.as_ref().is_none_or(|(nominal, _)| nominal != stop)
+        });
+        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
+    }
+
+    /// The sample whose local errors add up to most, where that is more than the tolerance.
     fn overstrained(&self) -> Option<(Vec<f64>, f64)> {
         let probes = self.probes.iter().filter_map(|probes| probes.done.strained.as_ref());
         let strained = self.outcomes().filter_map(|outcome| outcome.strained.as_ref()).chain(probes);
@@ -65,9 +79,29 @@ impl Results {
     }
 }
 
+/// What a study found.
+pub(super) struct Ran {
+    pub bounds: Bounds,
+    pub summary: Summary,
+    /// Rows that every sample of every method has reached.
+    pub whole: usize,
+}
+
+/// How far held-out samples of a box came.
+pub(super) struct Tried {
+    /// Rows that all have reached.
+    pub reached: usize,
+    /// ξ of those that did not reach the end.
+    pub stopped: Vec<Vec<f64>>,
+    /// Whether any did.
+    pub any: bool,
+}
+
 impl<'a> Study<'a> {
     /// Builds, assembles and compiles.
-    pub(super) fn new(description: &'a Description, system: System, options: &Options<'a>) -> Result<Self, RunError> {
+    pub(super) fn new(description: &'a Description, options: &Options<'a>) -> Result<Self, RunError> {
+        let simulator = formulation::compiled(description)?;
+        let system = &simulator.system;
         let collect = |pick: fn(&mechanics::UncertainParameter) -> f64| system.parameters.iter().map(pick).collect();
         let domain = ParameterBox {
             nominal: collect(|parameter| parameter.nominal),
@@ -76,13 +110,59 @@ impl<'a> Study<'a> {
         };
         let composes = compose::fits(domain.dimension(), system.q.len());
         let request = requested(&description.bounds, options.methods.as_deref(), domain.dimension(), composes)?;
-        let simulator = Simulator::new(system, scheme(description), first_step(description))?;
-        let Options { certify_time, progress, .. } = *options;
-        Ok(Self { description, simulator, domain, request, certify_time, progress })
+        let Options { certify_time, progress, interrupted, .. } = *options;
+        Ok(Self { description, simulator, domain, request, certify_time, progress, interrupted })
+    }
+
+    /// The same of a part of the box; a scan's points lie as close as in the whole.
+    pub(super) fn over<'b>(&'b self, part: &ParameterBox, progress: &'b (dyn Fn(f64) + Sync)) -> Study<'b> {
+        let mut request = self.request.clone();
+        for (axis, points) in request.scan.iter_mut().flat_map(|scan| scan.points.iter_mut().enumerate()) {
+            let share = part.half_width(axis) / self.domain.half_width(axis);
+            let scaled = (*points as f64 * share).ceil() as usize;
+            *points = if share < 1.0 { scaled.max(2) } else { *points };
+        }
+        Study { domain: part.clone(), request, progress, simulator: self.simulator.clone(), ..*self }
+    }
+
+    /// Rows of output that are asked for.
+    pub(super) fn rows(&self) -> usize {
+        Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
+    }
+
+    /// Tries whether held-out samples come to the end: the probes, or with a tolerance the pilots.
+    pub(super) fn try_samples(&self) -> Result<Tried, RunError> {
+        let simulation = &self.description.simulation;
+        let (duration, output_step) = (simulation.duration, simulation.output_step);
+        match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let schedule = Schedule::fixed(duration, step, output_step);
+                let progress = Progress { done: AtomicUsize::new(0), total: usize::MAX };
+                let run = Run { study: self, schedule: &schedule, tolerance: None, progress: &progress, finish: false };
+                let Probes { points, done, .. } = Probes::run(&run, Observed::Outputs)?;
+                Ok(Tried {
+                    reached: done.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
+                    any: done.stopped.len() < points.len(),
+                    stopped: done.stopped.iter().map(|&sample| points[sample].clone()).collect(),
+                })
+            }
+            Stepping::Tolerance(tolerance) => {
+                let pilots = self.pilots();
+                let piloted = schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
+                // The nominal pilot may be of another part of the box.
+                let inside = |pilot: &Vec<f64>| pilots[0] != *pilot || self.domain.contains(pilot);
+                let going = (0..pilots.len()).filter(|pilot| !piloted.left_behind.contains(pilot));
+                Ok(Tried {
+                    reached: piloted.whole.min(piloted.schedule.rows),
+                    any: going.into_iter().any(|pilot| inside(&pilots[pilot])),
+                    stopped: piloted.left_behind.iter().map(|&pilot| self.domain.xi(&pilots[pilot])).collect(),
+                })
+            }
+        }
     }
 
     /// Runs every method.
-    pub(super) fn run(&self) -> Result<(Bounds, Summary), RunError> {
+    pub(super) fn run(&self) -> Result<Ran, RunError> {
         let simulation = &self.description.simulation;
         match simulation.stepping {
             Stepping::Fixed(step) => {
@@ -96,20 +176,21 @@ impl<'a> Study<'a> {
     }
 
     /// The pilots' schedule is tried on all samples; one that needs smaller steps becomes a pilot, and all run again.
-    fn run_controlled(&self, tolerance: f64) -> Result<(Bounds, Summary), SimulationError> {
+    fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
         let simulation = &self.description.simulation;
         let mut pilots = self.pilots();
         let mut round = 1;
         loop {
             let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let Piloted { schedule, failure } =
+            let Piloted { schedule, failure, .. } =
                 schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
-            let failure = failure.map(|failure| format!("{failure}; results up to that time are kept"));
+            let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
             let results = self.methods(&schedule, Some(tolerance))?;
             match results.overstrained() {
                 None => return Ok(self.conclude(results, failure)),
                 Some((_, strain)) if round == PILOT_ROUNDS => {
-                    let note = format!("a sample's local error is {strain:.2} times the tolerance in the worst step");
+                    let note =
+                        format!("the local errors of a sample's steps add up to {strain:.2} times the tolerance");
                     return Ok(self.conclude(results, Some(note)));
                 }
                 Some((sample, _)) => pilots.push(sample),
@@ -139,15 +220,15 @@ impl<'a> Study<'a> {
             let (schedule, probes) = self.balance(schedule, tolerance, &progress)?;
             (schedule, Some(probes))
         };
-        let run = Run { study: self, schedule: &schedule, tolerance, progress: &progress };
-        let nominal = run.nominal()?;
+        let run = Run { study: self, schedule: &schedule, tolerance, progress: &progress, finish: false };
+        let nominal = Run { finish: true, ..run }.nominal()?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some(probes) = &probes {
             methods = self.requested(&run, probes)?;
-            if self.request.certified {
+            if self.request.certified && !run.is_interrupted() {
                 methods.push((Method::Certified, run.certified()));
             }
-            if self.certify_time {
+            if self.certify_time && !run.is_interrupted() {
                 let schedule = schedule.refined(2);
                 halved = self.requested(&Run { schedule: &schedule, tolerance: None, ..run }, probes)?;
             }
@@ -176,7 +257,10 @@ impl<'a> Study<'a> {
         let mut steps = StepSearch::new(schedule);
         loop {
             let schedule = steps.schedule();
-            let probes = Probes::run(&Run { study: self, schedule: &schedule, tolerance, progress }, self.observed())?;
+            let probes = Probes::run(
+                &Run { study: self, schedule: &schedule, tolerance, progress, finish: false },
+                self.observed(),
+            )?;
             let Some(allowed) = self.request.tolerance else { return Ok((schedule, probes)) };
             let outputs = 0..self.simulator.program.outputs.len();
             let share = |output: usize| {
@@ -191,14 +275,22 @@ impl<'a> Study<'a> {
     }
 
     fn requested(&self, run: &Run, probes: &Probes) -> Result<Vec<(Method, Outcome)>, SimulationError> {
+        // Those that were not begun when the user would not wait any more are left out.
+        let goes_on = || !run.is_interrupted();
         let mut outcomes = Vec::new();
-        if let Some(request) = &self.request.chebyshev {
+        if let Some(request) = &self.request.chebyshev
+            && goes_on()
+        {
             outcomes.push((Method::Chebyshev, run.chebyshev(request, probes)?));
         }
-        if let Some(request) = &self.request.taylor {
+        if let Some(request) = &self.request.taylor
+            && goes_on()
+        {
             outcomes.push((Method::Taylor, run.taylor(request, probes)?));
         }
-        if let Some(request) = &self.request.scan {
+        if let Some(request) = &self.request.scan
+            && goes_on()
+        {
             outcomes.push((Method::Scan, run.scan(request, probes)?));
         }
         Ok(outcomes)
@@ -218,12 +310,11 @@ impl<'a> Study<'a> {
         (1 + probes + methods) * schedule.rows
     }
 
-    /// Bounds up to the first row that a sample did not reach, and the summary.
-    fn conclude(&self, results: Results, note: Option<String>) -> (Bounds, Summary) {
+    /// Bounds up to the last row of which something is known, and the summary.
+    fn conclude(&self, results: Results, note: Option<String>) -> Ran {
         let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
-        // Where only the jet cannot go on, its bounds are unknown from there on, and the others' are kept.
-        let end = results.stops().filter(|(stop, _)| !stop.singular).map(|(stop, _)| stop.row).min();
-        let rows = end.unwrap_or(results.schedule.rows);
+        // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
+        let rows = results.outcomes().map(|outcome| outcome.reached).max().unwrap_or(0);
         let outputs = self.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
             name: output.name.clone(),
             unit: output.unit.clone(),
@@ -235,11 +326,15 @@ impl<'a> Study<'a> {
             contributions,
             times: (0..rows).map(|row| results.schedule.time(row)).collect(),
             outputs: outputs.collect(),
+            covered: Vec::new(),
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.note.clone());
-        let failure = stop.map(|(stop, sample)| self.failure(&stop, &sample)).or(note).or_else(notes);
+        let interrupted = || (self.interrupted)().then(|| INTERRUPTED.to_owned());
+        let stuck = stop.map(|(stop, sample)| self.failure(&stop, &sample));
+        let failure = stuck.or(note).or_else(interrupted).or_else(notes);
+        let whole = results.whole().min(rows);
         let summary = self.summary(results, &bounds, failure);
-        (bounds, summary)
+        Ran { bounds, summary, whole }
     }
 
     /// Every parameter's part in every output's spread, as Chebyshev's surrogate knows it.
@@ -290,32 +385,46 @@ impl<'a> Study<'a> {
     }
 
     fn failure(&self, stop: &Stop, sample: &[f64]) -> String {
-        let names = self.simulator.system.parameters.iter().map(|parameter| parameter.name.clone());
+        let parameters = self.simulator.with_names(sample);
         if stop.singular {
             let singular = SimulationError::SingularJet { time: stop.time };
             return format!("{singular}: Taylor bounds are unknown from there on");
+        }
+        if let Some((constraint, amount)) = stop.open {
+            let constraint = self.simulator.system.constraints[constraint].name.clone();
+            let locked = SimulationError::Locked { time: stop.time, constraint, amount, parameters };
+            return format!("{locked}; results up to that time are kept");
         }
         let stuck = SimulationError::Stuck {
             sample: stop.sample,
             time: stop.time,
             equation: self.simulator.equation_name(stop.equation),
-            parameters: names.zip(sample.iter().copied()).collect(),
+            parameters,
         };
         format!(
-            "{stuck}; results up to that time are kept. Try a smaller step, or see whether the mechanism locks there"
+            "{stuck}; bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step"
         )
     }
 
     fn summary(&self, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
         let system = &self.simulator.system;
         let mobility = &self.simulator.mobility;
+        let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
+        let singular = results
+            .nominal
+            .singular
+            .iter()
+            .map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
         Summary {
             model: self.description.name.clone(),
             mbint: env!("CARGO_PKG_VERSION").to_owned(),
             coordinates: system.q.len(),
             constraints: system.lambda.len(),
             degrees_of_freedom: mobility.degrees_of_freedom,
-            redundant_constraints: mobility.redundant.iter().map(|&k| system.constraints[k].name.clone()).collect(),
+            redundant_constraints: names(&mobility.redundant),
+            undetermined_outputs: self.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+            singular_at_start: names(&mobility.singular_at_start),
+            singular_configurations: singular.collect(),
             alpha: self.description.simulation.alpha,
             duration: self.description.simulation.duration,
             parameters: system
@@ -337,8 +446,9 @@ impl<'a> Study<'a> {
                     ..outcome.summary
                 }))
                 .collect(),
-            errors: errors(bounds),
+            errors: summarised_errors(bounds),
             contributions: contributions(bounds),
+            pieces: Vec::new(),
             failure,
         }
     }
@@ -367,7 +477,7 @@ fn contributions(bounds: &Bounds) -> Vec<ContributionSummary> {
 }
 
 /// The largest errors of every band.
-fn errors(bounds: &Bounds) -> Vec<ErrorSummary> {
+pub(super) fn summarised_errors(bounds: &Bounds) -> Vec<ErrorSummary> {
     let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
         output: output.name.clone(),
         method: band.method.name().to_owned(),

@@ -59,7 +59,22 @@ impl ParameterBox {
         point
     }
 
-    /// The same of many.
+    /// ξ of a point; 0 along what has no width.
+    pub fn xi(&self, point: &[f64]) -> Vec<f64> {
+        let along = |axis: usize| match self.half_width(axis) {
+            half if half > 0.0 => (point[axis] - self.midpoint(axis)) / half,
+            _ => 0.0,
+        };
+        (0..point.len()).map(along).collect()
+    }
+
+    /// Whether a point lies in the box.
+    pub fn contains(&self, point: &[f64]) -> bool {
+        let ends = self.lower.iter().zip(&self.upper);
+        point.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
+    }
+
+    /// The points at many ξ.
     pub fn points(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
         xi.iter().map(|xi| self.point(xi)).collect()
     }
@@ -97,6 +112,9 @@ mod tests {
             prop_assert_eq!(domain.value(0, -1.0), lower);
             prop_assert_eq!(domain.value(0, 1.0), upper);
             prop_assert!((lower..=upper).contains(&domain.value(0, xi)));
+            prop_assert!(domain.contains(&domain.point(&[xi])) && !domain.contains(&[upper.next_up()]));
+            let back = domain.xi(&domain.point(&[xi]))[0];
+            prop_assert!((back - xi).abs() * domain.half_width(0) <= 1e-12 * (1.0 + a.abs().max(b.abs())));
             let certain = ParameterBox { nominal: vec![a], lower: vec![a], upper: vec![a] };
             prop_assert_eq!(certain.value(0, xi), a);
             prop_assert_eq!(certain.half_width(0), 0.0);

@@ -33,7 +33,7 @@ const LOST: f64 = 0.5;
 /// The same of the whole error, as a share of the output's span.
 const FAR_OFF: f64 = 0.25;
 
-/// An error below this share of the output's span is none to speak of, however narrow the band is there.
+/// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is there.
 const SMALL: f64 = 1e-3;
 
 /// A band's errors over the output times.
@@ -90,11 +90,12 @@ impl BandError {
         let mut unresolved = Vec::with_capacity(total.len());
         for (row, range) in ranges.iter().enumerate() {
             // Written so that not a number is not resolved.
-            let small = |share: f64| total[row] <= share * span || span == 0.0;
+            let small = |share: f64| total[row] <= share * span || (span == 0.0 && !total[row].is_nan());
             unresolved.push(match tolerance {
                 Some(tolerance) => !small(tolerance),
                 None => {
-                    let follows = surrogate[row] <= LOST * range.width() || small(SMALL);
+                    // However narrow the band is: of what nothing varies, rounding is all that there is.
+                    let follows = surrogate[row] <= (LOST * range.width()).max(SMALL * span);
                     lost |= !(follows && small(FAR_OFF));
                     lost
                 }
@@ -160,6 +161,15 @@ mod tests {
         let unknown = BandError::new(&ranges, &[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0], &[0.0; 6], 1.0, None);
         assert_eq!(unknown.unresolved_from(), Some(3));
         assert!(unknown.surrogate.is_nan());
+    }
+
+    #[test]
+    fn a_band_without_width_is_not_lost_by_rounding_or_by_the_steps() {
+        let ranges = vec![Range { lower: 0.3, upper: 0.3 }; 2];
+        assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[2e-3; 2], 1.0, None).unresolved, [false; 2]);
+        assert_eq!(BandError::new(&ranges, &[1e-2; 2], &[2e-3; 2], 1.0, None).unresolved, [true; 2]);
+        // What was never seen has no span, and no error either.
+        assert_eq!(BandError::new(&ranges, &[0.0; 2], &[f64::NAN; 2], 0.0, None).unresolved, [true; 2]);
     }
 
     #[test]

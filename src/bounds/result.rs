@@ -11,6 +11,8 @@ pub struct Bounds {
     pub outputs: Vec<OutputBounds>,
     /// Which tolerance matters, output by output; empty where it is not known.
     pub contributions: Vec<Vec<Contribution>>,
+    /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
+    pub covered: Vec<f64>,
 }
 
 /// A parameter's part in the spread of an output over the times; not a number where it is not known.

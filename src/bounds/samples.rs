@@ -100,15 +100,13 @@ pub fn corners(k: usize, most: usize) -> Vec<Vec<f64>> {
 /// Points inside the box at which a surrogate is held against simulations that it was not made from.
 const HELD_OUT: usize = 8;
 
-/// Points spread evenly over the inside of the box (the additive recurrence of Kronecker), for a surrogate to be held
-/// against simulations that it was not made from.
-fn held_out(k: usize) -> Vec<Vec<f64>> {
+/// So many points spread evenly over the inside of the box (the additive recurrence of Kronecker).
+pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     // Roberts' generalisation of the golden ratio: the root of x^(k+1) = x + 1.
     let mut ratio = 1.5_f64;
     for _ in 0..100 {
         ratio -= (ratio.powi(k as i32 + 1) - ratio - 1.0) / ((k + 1) as f64 * ratio.powi(k as i32) - 1.0);
     }
-    let count = if k == 0 { 0 } else { HELD_OUT.max(k) };
     let at = |index: usize, axis: usize| (0.5 + (index + 1) as f64 * ratio.powi(-(axis as i32 + 1))).fract();
     (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
 }
@@ -116,7 +114,7 @@ fn held_out(k: usize) -> Vec<Vec<f64>> {
 /// All points at which a surrogate is held against the simulation: [`probes`], then those held out.
 pub fn validation(k: usize) -> Vec<Vec<f64>> {
     let mut points = probes(k);
-    points.extend(held_out(k));
+    points.extend(spread(k, if k == 0 { 0 } else { HELD_OUT.max(k) }));
     points
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Between two samples a smooth response can go beyond both: past an extreme of the grid that is not at the box's edge by at
 //! most an eighth of the second difference along each axis (that of the parabola through it and its neighbours). That is the
-//! error stated of a scan.
+//! error stated of a scan. Where a sample is not a number, the others are bounded, and the error is not a number.
 
 use super::range::Range;
 
@@ -13,8 +13,10 @@ pub struct ScanBounds {
     outputs: usize,
     /// Points along each axis, the last fastest.
     points: Vec<usize>,
-    /// By time, then by output: least and largest. Empty while least > largest; not a number once any sample was.
+    /// By time, then by output: least and largest. Empty while least > largest.
     extremes: Vec<[Extreme; 2]>,
+    /// Whether a sample was not a number.
+    gaps: Vec<bool>,
 }
 
 /// A value, and how far the response may go beyond it beside its sample.
@@ -27,15 +29,12 @@ struct Extreme {
 const EMPTY: [Extreme; 2] =
     [Extreme { value: f64::INFINITY, beyond: 0.0 }, Extreme { value: f64::NEG_INFINITY, beyond: 0.0 }];
 
-/// Widens `extremes`; not a number wins over everything, and of equals the one with the larger error.
+/// Widens `extremes`; of equals the one with the larger error is taken.
 fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
-    if low.value < least.value || low.value.is_nan() || (low.value == least.value && low.beyond > least.beyond) {
+    if low.value < least.value || (low.value == least.value && low.beyond > least.beyond) {
         *least = low;
     }
-    if high.value > largest.value
-        || high.value.is_nan()
-        || (high.value == largest.value && high.beyond > largest.beyond)
-    {
+    if high.value > largest.value || (high.value == largest.value && high.beyond > largest.beyond) {
         *largest = high;
     }
 }
@@ -43,21 +42,25 @@ fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
 impl ScanBounds {
     /// Before the first sample of a grid with so many points along each axis.
     pub fn new(times: usize, outputs: usize, points: &[usize]) -> Self {
-        Self { outputs, points: points.to_vec(), extremes: vec![EMPTY; times * outputs] }
+        Self {
+            outputs,
+            points: points.to_vec(),
+            extremes: vec![EMPTY; times * outputs],
+            gaps: vec![false; times * outputs],
+        }
     }
 
     /// Values of an output at a time for the grid's samples from number `first` on.
     pub fn observe(&mut self, time: usize, output: usize, first: usize, values: &[f64]) {
-        let place = |better: fn(f64, f64) -> bool| {
-            (0..values.len()).reduce(|best, place| {
-                let (value, known) = (values[place], values[best]);
-                if better(value, known) || (value.is_nan() && !known.is_nan()) { place } else { best }
-            })
-        };
-        let (Some(least), Some(largest)) = (place(|a, b| a < b), place(|a, b| a > b)) else { return };
+        let line = time * self.outputs + output;
+        self.gaps[line] |= values.iter().any(|value| value.is_nan());
+        let known = || (0..values.len()).filter(|&place| !values[place].is_nan());
+        let least = known().reduce(|a, b| if values[b] < values[a] { b } else { a });
+        let largest = known().reduce(|a, b| if values[b] > values[a] { b } else { a });
+        let (Some(least), Some(largest)) = (least, largest) else { return };
         let extremes = [least, largest]
             .map(|place| Extreme { value: values[place], beyond: beyond(&self.points, first, values, place) });
-        include(&mut self.extremes[time * self.outputs + output], extremes);
+        include(&mut self.extremes[line], extremes);
     }
 
     /// All that another part of the same scan has seen.
@@ -66,16 +69,20 @@ impl ScanBounds {
         for (extremes, &other) in self.extremes.iter_mut().zip(&other.extremes) {
             include(extremes, other);
         }
+        self.gaps.iter_mut().zip(&other.gaps).for_each(|(gap, other)| *gap |= other);
     }
 
-    /// Bounds of an output at a time; unknown before the first sample and after one that was not a number.
+    /// Bounds of an output at a time, over the samples that are numbers; unknown where none is.
     pub fn range(&self, time: usize, output: usize) -> Range {
         let [least, largest] = self.extremes[time * self.outputs + output];
         if least.value <= largest.value { Range { lower: least.value, upper: largest.value } } else { Range::UNKNOWN }
     }
 
-    /// How far the response may go beyond those bounds between the samples.
+    /// How far the response may go beyond those bounds between the samples; not a number where a sample is none.
     pub fn error(&self, time: usize, output: usize) -> f64 {
+        if self.gaps[time * self.outputs + output] {
+            return f64::NAN;
+        }
         let [least, largest] = self.extremes[time * self.outputs + output];
         if least.beyond <= largest.beyond { largest.beyond } else { least.beyond }
     }
@@ -114,17 +121,20 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn not_a_number_stays() {
-        let mut scan = ScanBounds::new(1, 2, &[6]);
+    fn what_is_not_a_number_leaves_the_others_and_no_error() {
+        let mut scan = ScanBounds::new(1, 3, &[6]);
         assert!(scan.range(0, 0).lower.is_nan());
         scan.observe(0, 0, 0, &[1.0, f64::NAN, 2.0]);
         scan.observe(0, 1, 0, &[3.0]);
-        let mut whole = ScanBounds::new(1, 2, &[6]);
+        scan.observe(0, 2, 0, &[f64::NAN; 3]);
+        let mut whole = ScanBounds::new(1, 3, &[6]);
         whole.observe(0, 0, 3, &[-1.0, 5.0]);
         whole.merge(&scan);
         whole.observe(0, 0, 5, &[9.0]);
-        assert!(whole.range(0, 0).lower.is_nan() && whole.range(0, 0).upper.is_nan());
+        assert_eq!(whole.range(0, 0), Range { lower: -1.0, upper: 9.0 });
+        assert!(whole.error(0, 0).is_nan() && whole.error(0, 1) == 0.0);
         assert_eq!(whole.range(0, 1), Range { lower: 3.0, upper: 3.0 });
+        assert!(whole.range(0, 2).lower.is_nan() && whole.error(0, 2).is_nan());
     }
 
     /// The peak of a parabola lies wherever it likes between the samples.

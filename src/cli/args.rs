@@ -27,6 +27,7 @@ Exit status:
   1  a run failed; what was finished is kept
   2  the command or a model is wrong; nothing was run
   3  done, but at some time no method resolves an output: the errors are too large
+  130  interrupted by Ctrl-C; what was finished is kept, and a second Ctrl-C does not wait for it
 
 Begin with `mbint new NAME`, which writes a small model to change.";
 
@@ -75,6 +76,11 @@ pub(super) struct RunArgs {
     /// Threads; results do not depend on it [default: one a core].
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
+
+    /// Leave out the part of the parameters' box in which the mechanism cannot be assembled, or does not move to the end,
+    /// and say in each row how much is left.
+    #[arg(long)]
+    pub skip_infeasible: bool,
 
     /// Print nothing but errors.
     #[arg(short, long)]
@@ -148,8 +154,12 @@ pub(super) struct CheckArgs {
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
     /// Model file.
-    #[arg(value_name = "MODEL")]
-    pub model: PathBuf,
+    #[arg(value_name = "MODEL", required_unless_present = "effects")]
+    pub model: Option<PathBuf>,
+
+    /// Instead of a model: every effect that there is, with its keys, units, formula and source.
+    #[arg(long, conflicts_with = "model")]
+    pub effects: bool,
 
     /// Text for people, or a JSON object.
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, count};
 use super::explain::explain_model;
-use super::{Failure, Status};
+use super::{Failure, Status, tree};
 use crate::model;
 use crate::report::Explanation;
 
@@ -26,6 +26,9 @@ struct Checked {
     /// `diagnostics` for people.
     #[serde(skip)]
     rendered: String,
+    /// Of a robot's links, for people.
+    #[serde(skip)]
+    tree: String,
 }
 
 #[derive(Serialize)]
@@ -36,6 +39,8 @@ struct Counts {
     degrees_of_freedom: usize,
     uncertain_parameters: Vec<String>,
     redundant_constraints: Vec<String>,
+    singular_at_start: Vec<String>,
+    undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
 }
 
@@ -51,6 +56,7 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
                 if let Some(counts) = &model.counts {
                     console.print(&counts.line())?;
                 }
+                console.print(&model.tree)?;
             }
         }
         Format::Json => console.print(&to_json(&checked)?)?,
@@ -60,13 +66,21 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
 }
 
 fn check_one(path: &Path, color: bool) -> Checked {
-    let file = path.display().to_string();
-    let nothing =
-        Checked { file, ok: false, counts: None, diagnostics: Vec::new(), error: None, rendered: String::new() };
+    let file = model::shown(path);
+    let nothing = Checked {
+        file,
+        ok: false,
+        counts: None,
+        diagnostics: Vec::new(),
+        error: None,
+        rendered: String::new(),
+        tree: String::new(),
+    };
     let reading = model::read(path, &[]);
     let told = &reading.diagnostics;
     let rendered = if told.is_empty() { String::new() } else { told.render(color) };
     let read = Checked { diagnostics: told.records(), rendered, ..nothing };
+    let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
     match reading.description.as_ref().map(explain_model) {
         None => read,
         Some(Err(error)) => Checked { error: Some(error.to_string()), ..read },
@@ -83,6 +97,8 @@ impl From<Explanation> for Counts {
             degrees_of_freedom: explanation.degrees_of_freedom,
             uncertain_parameters: explanation.parameters,
             redundant_constraints: explanation.redundant_constraints,
+            singular_at_start: explanation.singular_at_start,
+            undetermined_outputs: explanation.undetermined_outputs,
             outputs: explanation.outputs,
         }
     }
@@ -100,8 +116,14 @@ impl Counts {
                 )
             }
         };
+        let others = |names: &[String], what: &str| match names {
+            [] => String::new(),
+            names => format!(", {what} {}", names.join(", ")),
+        };
+        let singular = others(&self.singular_at_start, "a singular start, at which others imply");
+        let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}\n",
             self.model,
             count(self.coordinates, "coordinate", "coordinates"),
             count(self.constraints, "constraint", "constraints"),
@@ -130,6 +152,8 @@ mod tests {
             degrees_of_freedom: 1,
             uncertain_parameters: vec!["l1".into(), "tau".into()],
             redundant_constraints: vec![],
+            singular_at_start: vec![],
+            undetermined_outputs: vec![],
             outputs: vec![],
         };
         let plain = |counts: &Counts| anstream::adapter::strip_str(&counts.line()).to_string();

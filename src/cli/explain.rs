@@ -1,20 +1,26 @@
-//! `mbint explain`: what a model is compiled to.
+//! `mbint explain`: what a model is compiled to, or which effects there are.
 
 use super::args::{ExplainArgs, Format};
 use super::check::to_json;
 use super::console::{BOLD, Console, count};
 use super::table::{Align, Table};
-use super::{Failure, Status, load};
+use super::{Failure, Status, effects, load};
 use crate::batch::{self, RunError};
 use crate::model::Description;
 use crate::report::Explanation;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(model) = load::load(&args.model, &[], console) else {
+    let Some(path) = &args.model else {
+        console.print(&match args.format {
+            Format::Text => effects::text(),
+            Format::Json => to_json(&effects::all())?,
+        })?;
+        return Ok(Status::Done);
+    };
+    let Some(model) = load::load(path, &[], console) else {
         return Ok(Status::Wrong);
     };
-    let explanation =
-        explain_model(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", args.model.display())))?;
+    let explanation = explain_model(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,
@@ -33,7 +39,7 @@ pub(super) fn explain_model(model: &Description) -> Result<Explanation, RunError
 /// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
-    let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n", e.model, e.space);
+    let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n{}\n", e.model, e.space, e.formulation);
     let mut section = |heading: String, body: String| text += &format!("\n{BOLD}{heading}{BOLD:#}\n{body}");
 
     section(count(e.coordinates.len(), "coordinate", "coordinates"), list(&e.coordinates));
@@ -44,6 +50,9 @@ fn text(explanation: &Explanation) -> String {
         let n = e.redundant_constraints.len();
         let heading = format!("{}, implied by others", count(n, "redundant constraint", "redundant constraints"));
         section(heading, list(&e.redundant_constraints));
+    }
+    if !e.undetermined_outputs.is_empty() {
+        section("outputs of reactions that are not unique".into(), list(&e.undetermined_outputs));
     }
     if !e.singular_at_start.is_empty() {
         section("constraints that lose their independence at the start only".into(), list(&e.singular_at_start));
@@ -120,11 +129,13 @@ mod tests {
         let explanation = Explanation {
             model: "slider_crank".into(),
             space: "planar: nothing leaves the plane".into(),
+            formulation: "absolute coordinates: no joint can carry a body".into(),
             coordinates: names("crank.x crank.y crank.angle rod.x rod.y rod.angle slider.x"),
             constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),
             degrees_of_freedom: 1,
             redundant_constraints: vec![],
             singular_at_start: vec![],
+            undetermined_outputs: vec![],
             parameters: names("l1 tau"),
             effects: vec![
                 EffectExplanation { name: "drive".into(), kind: "torque".into(), forces: 1, expressions: 1 },
@@ -147,6 +158,7 @@ mod tests {
         insta::assert_snapshot!(plain, @r"
         slider_crank
         planar: nothing leaves the plane
+        absolute coordinates: no joint can carry a body
 
         7 coordinates
           crank.x, crank.y, crank.angle, rod.x, rod.y, rod.angle, slider.x

@@ -2,18 +2,21 @@
 //! by one file a command.
 //!
 //! Exit status: 0 done; 1 the run failed; 2 the command or the model is wrong; 3 done, but
-//! at some time no method resolves an output.
+//! at some time no method resolves an output; 130 interrupted.
 
 mod args;
 mod check;
 mod console;
 mod cost;
+mod effects;
 mod explain;
+mod interrupt;
 mod load;
 mod new;
 mod progress;
 mod run;
 mod table;
+mod tree;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -29,6 +32,7 @@ enum Status {
     Done,
     Unresolved,
     Failed,
+    Interrupted,
     Wrong,
 }
 
@@ -39,6 +43,8 @@ impl From<Status> for ExitCode {
             Status::Failed => 1,
             Status::Wrong => 2,
             Status::Unresolved => 3,
+            // A shell's number for what SIGINT ends.
+            Status::Interrupted => interrupt::STATUS,
         })
     }
 }

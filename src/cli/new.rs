@@ -31,7 +31,11 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
             return wrong(format!("{path} exists; it was left as it is"));
         }
-        Err(error) => return wrong(format!("cannot write {path}: {error}")),
+        Err(error) => {
+            // Half a model would be in the way of the next try.
+            let _ = std::fs::remove_file(&path);
+            return wrong(format!("cannot write {path}: {error}"));
+        }
     }
     let editor = "for completion in an editor, beside the model: mbint schema > mbint.schema.json";
     console.print(&format!("{path}\nnext: mbint run {path}\n{editor}\n"))?;

@@ -7,13 +7,15 @@ use super::args::RunArgs;
 use super::console::{BOLD, Console, count};
 use super::progress::Progress;
 use super::table::{Align, Table};
-use super::{Failure, Status, load};
+use super::{Failure, Status, interrupt, load};
 use crate::batch;
-use crate::bounds::{Method, OutputBounds};
+use crate::bounds::{Bounds, Method, OutputBounds};
 use crate::mechanics;
 use crate::model::Description;
-use crate::model::Override;
-use crate::report::{ContributionSummary, ErrorSummary, Summary, file_stem, prepare_folder, write_results};
+use crate::model::{Override, shown};
+use crate::report::{
+    ContributionSummary, ErrorSummary, ParameterSummary, Summary, file_stem, prepare_folder, write_results,
+};
 
 /// What a run needs, checked.
 struct Request {
@@ -27,6 +29,7 @@ struct Request {
     quiet: bool,
     timings: bool,
     certify_time: bool,
+    skip_infeasible: bool,
 }
 
 /// A model with the folder for its results.
@@ -42,13 +45,14 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
     };
     // All that can be wrong is found before the first run, which may take hours.
     for (model, path) in models.iter().zip(&request.models) {
-        mechanics::build(model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+        mechanics::build(model).map_err(|error| Failure::Wrong(format!("{}: {error}", shown(path))))?;
     }
     let jobs = jobs(models, &request)?;
     for job in &jobs {
         prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     }
 
+    interrupt::listen();
     let mut status = Status::Done;
     for (i, job) in jobs.iter().enumerate() {
         if i > 0 && !request.quiet {
@@ -63,6 +67,9 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
             }
             Err(wrong) => return Err(wrong),
         }
+        if interrupt::asked() {
+            return Ok(Status::Interrupted);
+        }
     }
     Ok(status)
 }
@@ -76,7 +83,9 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
         methods: request.methods.clone(),
         threads: request.threads,
         certify_time: request.certify_time,
+        skip_infeasible: request.skip_infeasible,
         progress: &report,
+        interrupted: &interrupt::asked,
     };
     let (bounds, summary) = batch::run(&job.model, options).map_err(|error| failed(&error))?;
     drop(progress);
@@ -90,6 +99,9 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
         return Err(failed(failure));
     }
     if let Some(message) = unresolved(&summary) {
+        console.warning(&format!("{name}: {message}"));
+    }
+    if let Some(message) = left_out(&bounds, &summary) {
         console.warning(&format!("{name}: {message}"));
     }
     // A method that is lost where another is not leaves an answer.
@@ -116,6 +128,7 @@ impl Request {
             quiet: args.quiet,
             timings: args.timings,
             certify_time: args.certify_time,
+            skip_infeasible: args.skip_infeasible,
         })
     }
 }
@@ -211,6 +224,62 @@ fn unresolved(summary: &Summary) -> Option<String> {
     (total > 0).then(|| format!("bounds are not resolved: {}{more}; {help}", named.join(", ")))
 }
 
+/// Singular configurations, and outputs that no equilibrium determines.
+fn singular(summary: &Summary) -> String {
+    const MOST: usize = 4;
+    let mut text = String::new();
+    let passes = &summary.singular_configurations;
+    if !passes.is_empty() {
+        let times: Vec<String> = passes.iter().take(MOST).map(|pass| format!("{:.6}", pass.time)).collect();
+        let more = if passes.len() > MOST { ", …" } else { "" };
+        let passed = count(passes.len(), "singular configuration", "singular configurations");
+        text += &format!(
+            "  passes {passed}, at t = {}{more} s: others imply {} there\n",
+            times.join(", "),
+            named(&passes[0].constraints)
+        );
+    }
+    if !summary.undetermined_outputs.is_empty() {
+        text += &format!(
+            "  not unique: {}. Equilibrium does not determine these reactions, since others imply {}, whose own are taken as 0\n",
+            named(&summary.undetermined_outputs),
+            named(&summary.redundant_constraints)
+        );
+    }
+    text
+}
+
+/// Some names, and how many there are more.
+fn named(names: &[String]) -> String {
+    const MOST: usize = 6;
+    let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
+    format!("{}{more}", names[..names.len().min(MOST)].join(", "))
+}
+
+/// Which part of the box is bounded, where it is not all of it.
+fn left_out(bounds: &Bounds, summary: &Summary) -> Option<String> {
+    let least = bounds.covered.iter().copied().fold(1.0, f64::min);
+    if least == 1.0 {
+        return None;
+    }
+    let hull = |(place, parameter): (usize, &ParameterSummary)| {
+        let ends = summary.pieces.iter().map(|piece| (piece.lower[place], piece.upper[place]));
+        let (lower, upper) = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let narrower = lower > parameter.lower || upper < parameter.upper;
+        narrower.then(|| format!(", with {} from {lower} to {upper}", parameter.name))
+    };
+    let hulls: String = summary.parameters.iter().enumerate().filter_map(hull).collect();
+    let pieces = count(summary.pieces.len(), "piece", "pieces");
+    let times = bounds.times.iter().zip(&bounds.covered);
+    let ended: Vec<&f64> =
+        times.filter(|(_, share)| **share < bounds.covered[0]).map(|(time, _)| time).take(1).collect();
+    let first = 100.0 * bounds.covered[0];
+    let later = ended
+        .first()
+        .map_or(String::new(), |time| format!(", and of less from {time} s, {:.3} % at last", 100.0 * least));
+    Some(format!("the bounds are of {first:.3} % of the box ({pieces}{hulls}){later}: see the column `covered`"))
+}
+
 /// What was done, and where it is, for people.
 fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     let mut table = Table::new([
@@ -243,6 +312,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
         let steps = count(method.rank_revealing_solves as usize, "step", "steps");
         text += &format!("  {}: {steps} through a singular matrix, by the rank-revealing solve\n", method.method);
     }
+    text += &singular(summary);
     let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
     text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
     text
@@ -272,6 +342,9 @@ mod tests {
             constraints: 6,
             degrees_of_freedom: 1,
             redundant_constraints: vec![],
+            undetermined_outputs: vec![],
+            singular_at_start: vec![],
+            singular_configurations: vec![],
             alpha: -0.1,
             duration: 2.0,
             parameters: vec![],
@@ -286,6 +359,7 @@ mod tests {
                 unresolved_from: None,
             }],
             contributions: vec![],
+            pieces: vec![],
             failure: None,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));

@@ -168,6 +168,7 @@ mod tests {
             times: vec![0.0, 0.5, 1.0],
             outputs: vec![output],
             contributions: vec![vec![contribution("l1", 0.25), contribution("tau", 0.5)]],
+            ..Bounds::default()
         };
         let text = String::from_utf8(contributions_csv(&bounds).unwrap()).unwrap();
         assert_eq!(

@@ -8,7 +8,7 @@ use crate::bounds::{Band, Bounds};
 ///
 /// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower`, `.upper` and `.error`;
 /// last `unresolved`, which names the bands that cannot be relied on in that row (`x3.chebyshev x3.taylor`), where there are
-/// bands. Numbers are the shortest decimals that read back as the same `f64`; what is unknown is `NaN`.
+/// bands, and `covered`, the share of the box that the row is of, where that may be less than all. Numbers are the shortest decimals that read back as the same `f64`; what is unknown is `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -16,11 +16,15 @@ pub fn bounds_csv(bounds: &Bounds) -> Result<Vec<u8>, csv::Error> {
     let columns = columns(bounds);
     let mut writer = WriterBuilder::new().from_writer(Vec::new());
     let bands = bands(bounds);
-    let heading = (!bands.is_empty()).then(|| "unresolved".to_owned());
-    writer.write_record(columns.iter().map(|column| column.name.clone()).chain(heading))?;
+    let unresolved_heading = (!bands.is_empty()).then(|| "unresolved".to_owned());
+    let covered_heading = (!bounds.covered.is_empty()).then(|| "covered".to_owned());
+    let headings = columns.iter().map(|column| column.name.clone());
+    writer.write_record(headings.chain(unresolved_heading).chain(covered_heading))?;
     for row in 0..bounds.times.len() {
         let unresolved = (!bands.is_empty()).then(|| unresolved(&bands, row));
-        writer.write_record(columns.iter().map(|column| number(column.values[row])).chain(unresolved))?;
+        let covered = bounds.covered.get(row).map(|&share| number(share));
+        let numbers = columns.iter().map(|column| number(column.values[row]));
+        writer.write_record(numbers.chain(unresolved).chain(covered))?;
     }
     writer.into_inner().map_err(|e| e.into_error().into())
 }

@@ -11,6 +11,8 @@ pub struct Explanation {
     pub model: String,
     /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
     pub space: String,
+    /// By which coordinates, and why: `joint coordinates: 148 instructions a step instead of 187`.
+    pub formulation: String,
     /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.
     pub coordinates: Vec<String>,
     /// Constraint equations by name, e.g. `pin.x`.
@@ -21,6 +23,8 @@ pub struct Explanation {
     pub redundant_constraints: Vec<String>,
     /// Names of constraints that depend on others at the start only: it is a singular configuration.
     pub singular_at_start: Vec<String>,
+    /// Outputs that hang on reactions which equilibrium does not determine.
+    pub undetermined_outputs: Vec<String>,
     /// Uncertain parameters; the others were folded into the instructions as numbers.
     pub parameters: Vec<String>,
     /// Forces and torques, in file order.
@@ -43,11 +47,17 @@ impl Explanation {
         Self {
             model: model.to_owned(),
             space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
+            formulation: format!(
+                "{} coordinates: {}",
+                if system.formulation.joint { "joint" } else { "absolute" },
+                system.formulation.why
+            ),
             coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
             constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
             degrees_of_freedom: simulator.mobility.degrees_of_freedom,
             redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
             singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
+            undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
             parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             effects: system
                 .effects

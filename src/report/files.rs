@@ -1,11 +1,11 @@
 //! Results on disk, each file whole or not there.
 
 use std::collections::HashSet;
-use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::bounds::Bounds;
+use crate::report::folder::Together;
 use crate::report::{Summary, bounds_csv, contributions_csv, contributions_svg, plot_svg};
 
 /// Why results could not be written.
@@ -26,82 +26,33 @@ pub enum ReportError {
 
 /// Writes `bounds.csv`, an SVG for each output, who has which part in it where that is known, and `summary.json` into `dir`, which is made if it is not there.
 ///
-/// Every file is written under a temporary name beside its place and renamed, so that neither a failure nor a killed run
-/// leaves half a file, or half a new file in place of an old one. `summary.json` comes last: where it is, the others
-/// are. Returns the files written, in that order.
+/// They get their names when all could be written, `summary.json` last: where it is, the others are. Returns the files
+/// written, in that order.
 ///
 /// # Errors
-/// At the first file that cannot be written; those before it are kept.
+/// At the first file that cannot be written; then older results are left as they were.
 pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ReportError> {
-    prepare_folder(dir)?;
-    let mut written = Vec::new();
-    let mut write = |name: &str, contents: &[u8]| {
-        let path = dir.join(name);
-        match write_whole(&path, contents) {
-            Ok(()) => written.push(path),
-            Err(source) => return Err(ReportError::Write { path, source }),
-        }
-        Ok(())
-    };
-
-    write("bounds.csv", &bounds_csv(bounds)?)?;
+    let mut files = Together::in_folder(dir)?;
+    files.add("bounds.csv", &bounds_csv(bounds)?)?;
     if !bounds.contributions.is_empty() {
-        write("contributions.csv", &contributions_csv(bounds)?)?;
+        files.add("contributions.csv", &contributions_csv(bounds)?)?;
     }
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
     for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
         let svg = plot_svg(&bounds.times, output)
             .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
-        write(&format!("{name}.svg"), svg.as_bytes())?;
+        files.add(&format!("{name}.svg"), svg.as_bytes())?;
         if let Some(contributions) = contributions {
             let svg = contributions_svg(&bounds.times, &output.name, contributions)
                 .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
-            write(&format!("{name}.contributions.svg"), svg.as_bytes())?;
+            files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
     let mut json = serde_json::to_vec_pretty(summary)?;
     json.push(b'\n');
-    write("summary.json", &json)?;
-    Ok(written)
-}
-
-/// Makes `dir` if it is not there, and tries whether a file can be made in it: better known before a long run than after.
-///
-/// # Errors
-/// If it cannot.
-pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
-    let folder = |source| ReportError::Folder { path: dir.to_owned(), source };
-    if dir.exists() && !dir.is_dir() {
-        // The system would say "File exists".
-        return Err(folder(io::ErrorKind::NotADirectory.into()));
-    }
-    fs::create_dir_all(dir).map_err(folder)?;
-    tempfile::Builder::new().prefix(".mbint-").suffix(".tmp").tempfile_in(dir).map_err(|e| folder(plain(e)))?;
-    Ok(())
-}
-
-/// Writes a file under a temporary name in the same folder, then renames it into place.
-pub(super) fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let dir = path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".mbint-").suffix(".tmp");
-    // Temporary files are private; results are to be as readable as the user's other files (less the umask).
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(dir).map_err(plain)?;
-    file.write_all(contents).map_err(plain)?;
-    file.persist(path).map_err(|e| plain(e.error))?;
-    Ok(())
-}
-
-/// tempfile adds the temporary path to its errors, which tells the user nothing: leave the system's own words.
-fn plain(error: io::Error) -> io::Error {
-    let system = std::error::Error::source(&error).and_then(|e| e.downcast_ref::<io::Error>());
-    match error.raw_os_error().or_else(|| system.and_then(io::Error::raw_os_error)) {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => error,
-    }
+    files.add("summary.json", &json)?;
+    files.put_in_place()
 }
 
 /// `name` as a file name without extension that every system takes: letters, digits, `_`, `-` and `.` stay, the rest
@@ -145,6 +96,8 @@ fn unique_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::bounds::OutputBounds;
 
@@ -163,12 +116,16 @@ mod tests {
             constraints: 6,
             degrees_of_freedom: 1,
             redundant_constraints: vec![],
+            undetermined_outputs: vec![],
+            singular_at_start: vec![],
+            singular_configurations: vec![],
             alpha: -0.1,
             duration: 1.0,
             parameters: vec![],
             methods: vec![],
             errors: vec![],
             contributions: vec![],
+            pieces: vec![],
             failure: None,
         };
         (bounds, summary)
@@ -196,17 +153,6 @@ mod tests {
         assert!(json.ends_with("}\n") && json.contains("\"model\": \"crank\""), "{json}");
     }
 
-    #[cfg(unix)]
-    #[test]
-    fn results_are_as_readable_as_other_files() {
-        use std::os::unix::fs::MetadataExt;
-        let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("plain"), "").unwrap();
-        write_whole(&dir.path().join("ours"), b"").unwrap();
-        let mode = |name| fs::metadata(dir.path().join(name)).unwrap().mode();
-        assert_eq!(mode("ours"), mode("plain"));
-    }
-
     #[test]
     fn a_file_in_the_way_is_named() {
         let dir = tempfile::tempdir().unwrap();
@@ -232,7 +178,7 @@ mod tests {
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
         assert!(!error.to_string().contains(".mbint-"), "{error}");
-        assert_eq!(names(dir.path()), ["bounds.csv", "x3.svg"]);
+        assert_eq!(names(dir.path()), ["bounds.csv", "x3.svg"], "of which one is the folder");
     }
 
     #[cfg(unix)]
@@ -246,7 +192,7 @@ mod tests {
         if fs::write(dir.path().join("probe"), "").is_err() {
             let error = write_results(dir.path(), &bounds, &summary).unwrap_err();
             let path = dir.path().display().to_string();
-            assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: Perm")), "{error}");
+            assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: perm")), "{error}");
         }
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o755)).unwrap();
     }

@@ -6,6 +6,7 @@ mod cost;
 mod csv;
 mod explanation;
 mod files;
+mod folder;
 mod plot;
 mod polyline;
 mod summary;
@@ -17,6 +18,9 @@ pub use cost::{
     CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
 };
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
-pub use files::{ReportError, file_stem, prepare_folder, write_results};
+pub use files::{ReportError, file_stem, write_results};
+pub use folder::prepare_folder;
 pub use plot::plot_svg;
-pub use summary::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, Summary};
+pub use summary::{
+    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
+};

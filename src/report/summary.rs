@@ -14,6 +14,15 @@ pub struct Summary {
     pub degrees_of_freedom: usize,
     /// Names of constraints that others imply.
     pub redundant_constraints: Vec<String>,
+    /// Outputs that hang on reactions which equilibrium does not determine, since constraints are redundant.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub undetermined_outputs: Vec<String>,
+    /// Names of constraints that others imply at the start only.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub singular_at_start: Vec<String>,
+    /// Singular configurations that the nominal motion passes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub singular_configurations: Vec<SingularSummary>,
     pub alpha: f64,
     pub duration: f64,
     pub parameters: Vec<ParameterSummary>,
@@ -23,6 +32,9 @@ pub struct Summary {
     /// Which tolerance matters: output by output, the parameters that contribute most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ContributionSummary>,
+    /// Where only a part of the box is bounded: the pieces that are, with how far in time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pieces: Vec<PieceSummary>,
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -38,6 +50,14 @@ impl Summary {
     }
 }
 
+/// A singular configuration: when, s, and which constraints others imply there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct SingularSummary {
+    pub time: f64,
+    pub constraints: Vec<String>,
+}
+
 /// An uncertain parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
@@ -47,6 +67,15 @@ pub struct ParameterSummary {
     pub nominal: f64,
     pub lower: f64,
     pub upper: f64,
+}
+
+/// A piece of the box that is bounded: the least and largest of every parameter, and the last time that it reached, s.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct PieceSummary {
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    pub until: f64,
 }
 
 /// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which time on it is

@@ -132,7 +132,13 @@ mod tests {
     use super::*;
 
     fn simulation(stepping: Stepping) -> Simulation {
-        Simulation { duration: 1.0, stepping, alpha: -0.1, output_step: 0.01 }
+        Simulation {
+            duration: 1.0,
+            stepping,
+            alpha: -0.1,
+            output_step: 0.01,
+            formulation: crate::model::Formulation::Auto,
+        }
     }
 
     #[test]

@@ -8,7 +8,8 @@ use super::plot::cost_svg;
 use super::study::{CostPoint, CostStudy, Deviation};
 use crate::model::Stepping;
 use crate::report::csv::number;
-use crate::report::files::{ReportError, prepare_folder, write_whole};
+use crate::report::files::ReportError;
+use crate::report::folder::Together;
 
 /// Headings of the table.
 const COLUMNS: [&str; 15] = [
@@ -79,15 +80,11 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
 /// # Errors
 /// At the first file that cannot be written.
 pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ReportError> {
-    prepare_folder(dir)?;
+    let mut files = Together::in_folder(dir)?;
     let plot = cost_svg(study).map_err(|message| ReportError::Plot { output: "cost".to_owned(), message })?;
-    let mut written = Vec::new();
-    for (name, contents) in [("cost.csv", cost_csv(study)?), ("cost.svg", plot.into_bytes())] {
-        let path = dir.join(name);
-        write_whole(&path, &contents).map_err(|source| ReportError::Write { path: path.clone(), source })?;
-        written.push(path);
-    }
-    Ok(written)
+    files.add("cost.csv", &cost_csv(study)?)?;
+    files.add("cost.svg", plot.as_bytes())?;
+    files.put_in_place()
 }
 
 #[cfg(test)]

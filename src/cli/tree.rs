@@ -1,0 +1,54 @@
+//! The tree of a robot's links and joints, for `mbint check`.
+
+use std::fmt::Write as _;
+
+use crate::model::{Description, ParameterValue, TreeJoint, TreeLink};
+
+/// A line a link: the joint that leads to it, its mass, and what is uncertain of both. Empty where there is no robot.
+pub(super) fn of(model: &Description) -> String {
+    let Some(robot) = &model.robot else { return String::new() };
+    let mut text = String::new();
+    for link in &robot.links {
+        let indent = "  ".repeat(link.depth + 1);
+        let joint = link.joint.as_ref().map_or_else(String::new, joint);
+        let mass = link.mass.map_or_else(String::new, |mass| format!(", {mass} kg"));
+        let left_out = if link.place.is_none() { ", left out" } else { "" };
+        // A `String` takes all that is written.
+        let _ = writeln!(text, "{indent}{}{mass}{left_out}{joint}{}", link.name, uncertain(model, link));
+    }
+    text
+}
+
+fn joint(joint: &TreeJoint) -> String {
+    let mut text = format!(" ← {} ({}", joint.name, joint.kind);
+    if let Some([x, y, z]) = joint.axis {
+        let preposition = if joint.unit == "m" { "along" } else { "about" };
+        let _ = write!(text, " {preposition} {x} {y} {z}");
+    }
+    if let Some([lower, upper]) = joint.limits.filter(|_| joint.axis.is_some()) {
+        let _ = write!(text, ", {lower} to {upper} {}", joint.unit);
+    }
+    for (what, value) in [("damping", joint.damping), ("friction", joint.friction)] {
+        if value != 0.0 {
+            let _ = write!(text, ", {what} {value}");
+        }
+    }
+    if let Some(other) = &joint.mimics {
+        let _ = write!(text, ", mimics {other}");
+    }
+    text + ")"
+}
+
+/// Intervals of the link's numbers and of its joint's.
+fn uncertain(model: &Description, link: &TreeLink) -> String {
+    let owners =
+        [Some(format!("link.{}.", link.name)), link.joint.as_ref().map(|joint| format!("joint.{}.", joint.name))];
+    let mut text = String::new();
+    for parameter in &model.parameters {
+        let owned = owners.iter().flatten().any(|owner| parameter.name.starts_with(owner));
+        if let (true, ParameterValue::Interval { lower, upper, .. }) = (owned, &parameter.value) {
+            let _ = write!(text, "; {} in [{lower}, {upper}] {}", parameter.name, parameter.unit);
+        }
+    }
+    text
+}
