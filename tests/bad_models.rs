@@ -1,5 +1,5 @@
 //! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
-//! perhaps with `# help: …`. Message and place must both be found, and nothing else.
+//! perhaps with `# help: …`, in a URDF `<!-- error: … -->`. Message and place must both be found, and nothing else.
 //!
 //! `MBINT_UPDATE=1 cargo test --test bad_models` writes what is found; then read the difference.
 
@@ -19,7 +19,16 @@ fn slider_crank() -> String {
 }
 
 fn is_expectation(line: &str) -> bool {
-    ["# error: ", "# warning: ", "# help: "].iter().any(|start| line.starts_with(start))
+    let line = line.strip_prefix("<!-- ").or_else(|| line.strip_prefix("# "));
+    line.is_some_and(|line| ["error: ", "warning: ", "help: "].iter().any(|start| line.starts_with(start)))
+}
+
+/// As comments of the file's language.
+fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
+    if path.extension().is_some_and(|extension| extension == "yaml") {
+        return lines;
+    }
+    lines.iter().map(|line| format!("<!-- {} -->", line.trim_start_matches("# "))).collect()
 }
 
 fn found(diagnostics: &Diagnostics) -> Vec<String> {
@@ -40,7 +49,7 @@ fn bad_models() -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = fs::read_dir(root().join("tests/bad_models"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml" || extension == "urdf"))
         .collect();
     paths.sort();
     paths
@@ -55,7 +64,7 @@ fn bad_models_are_reported_in_their_places() {
     for path in paths {
         let text = fs::read_to_string(&path).unwrap();
         let expected: Vec<&str> = text.lines().take_while(|line| is_expectation(line)).collect();
-        let got = found(&model::read(&path, &[]).diagnostics);
+        let got = commented(&path, found(&model::read(&path, &[]).diagnostics));
         if got == expected {
             assert!(!expected.is_empty(), "{} is not bad", path.display());
             continue;
@@ -64,7 +73,8 @@ fn bad_models_are_reported_in_their_places() {
             let body: String = text.split_inclusive('\n').skip(expected.len()).collect();
             let with = |lines: &[String]| format!("{}\n{body}", lines.join("\n"));
             // The places move down by the lines that are written: once more gives them as they then are.
-            let moved = found(&model::read_str(&path.to_string_lossy(), &with(&got), &[]).diagnostics);
+            fs::write(&path, with(&got)).unwrap();
+            let moved = commented(&path, found(&model::read(&path, &[]).diagnostics));
             fs::write(&path, with(&moved)).unwrap();
         }
         failures +=
@@ -138,7 +148,7 @@ fn files_that_are_no_models_are_refused_quickly() {
         path
     };
     assert_eq!(error_of(&folder.path().join("missing.yaml")), "the file cannot be read: there is no such file");
-    assert_eq!(error_of(folder.path()), "this is a directory, not a model file");
+    assert_eq!(error_of(folder.path()), "this is a directory, not a file");
     assert_eq!(error_of(&file("empty.yaml", b"")), "the file is empty");
     assert_eq!(error_of(&file("comments.yaml", b"# nothing\n# here\n")), "the file is empty");
     assert_eq!(error_of(&file("latin1.yaml", b"a: 1\nb: \xff\n")), "the file is not UTF-8 text: byte 9 in line 2");

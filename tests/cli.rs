@@ -1,58 +1,11 @@
 //! The command as a user meets it: what it prints, what it writes, and its exit status.
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 
-use tempfile::TempDir;
+mod place;
 
-/// A folder of its own for each test, in which commands run.
-struct Place(TempDir);
-
-impl Place {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("mbint"));
-        command.args(arguments.split_whitespace()).current_dir(self.path());
-        for variable in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE"] {
-            command.env_remove(variable);
-        }
-        command
-    }
-
-    /// Runs `mbint` and checks its exit status.
-    #[track_caller]
-    fn run(&self, arguments: &str, status: i32) -> (String, String) {
-        let Output { status: ended, stdout, stderr } = self.command(arguments).output().unwrap();
-        let (stdout, stderr) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
-        assert_eq!(ended.code(), Some(status), "mbint {arguments}\n{stdout}\n{stderr}");
-        (stdout, stderr)
-    }
-
-    /// A short model of this name; the template, with less to compute.
-    fn model(&self, name: &str) {
-        self.run(&format!("new {name}"), 0);
-        let path = self.path().join(format!("{name}.yaml"));
-        let text = fs::read_to_string(&path).unwrap();
-        let short = text.replace("duration: 2,", "duration: 0.1,").replace("points: 9", "points: 3");
-        assert_ne!(text, short);
-        fs::write(path, short).unwrap();
-    }
-
-    fn files(&self, folder: &str) -> Vec<String> {
-        let entries = fs::read_dir(self.path().join(folder)).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
+use place::Place;
 
 #[test]
 fn help_tells_of_every_command_and_of_the_exit_status() {

@@ -120,3 +120,33 @@ fn what_cannot_be_certified_is_refused() {
     let controlled = model("pendulum").tolerance(1e-6);
     assert!(refused(&controlled).starts_with("certified bounds need a fixed `step`"));
 }
+
+/// An effect without an enclosure is named; one with friction proportional to its reaction has one.
+#[test]
+fn an_effect_that_has_no_enclosure_is_named() {
+    let text = |effect: &str| {
+        read(&format!(
+            "
+parameters: {{ l: {{ value: 0.3, unit: m, tolerance: 1% }} }}
+bodies: {{ rod: {{ mass: 1, inertia: 0.02, points: {{ pin: [-l, 0] }} }} }}
+joints: {{ hinge: {{ revolute: [ground, rod.pin] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  extra: {effect}
+initial: {{ rod.angle: -0.3, rod.angular_velocity: 1 }}
+outputs: {{ angle: rod.angle }}
+simulation: {{ duration: 0.02, step: 1e-3 }}
+"
+        ))
+    };
+    let (bounds, failure) = certify(text("{ stop: { on: hinge, upper: 1, impact: { stiffness: 1e4 } } }").scan(11));
+    assert_eq!(failure.as_deref(), Some("not supported with --certify: effect extra (stop)"));
+    assert!(band(&bounds.outputs[0], Method::Certified).upper.iter().all(|value| value.is_nan()));
+    let friction = "{ joint_friction: { on: hinge, coefficient: 0.2, radius: 0.01, transition_velocity: 0.5 } }";
+    let (bounds, failure) = certify(text(friction).scan(11));
+    assert_eq!(failure, None);
+    let [scan, certified] = [Method::Scan, Method::Certified].map(|method| band(&bounds.outputs[0], method));
+    for row in 0..bounds.times.len() {
+        assert!(certified.lower[row] <= scan.lower[row] && scan.upper[row] <= certified.upper[row], "row {row}");
+    }
+}

@@ -112,7 +112,7 @@ bodies: { rod: { mass: 2, inertia: 0.1, points: { hinge: [-0.4, 0] } } }
 joints: { hinge: { revolute: [ground, rod.hinge] } }
 initial: { rod.angle: 0, rod.angular_velocity: 6 }
 outputs: { y: hinge.force.y }
-simulation: { duration: 0.08, step: 1e-3, output_step: 1e-3 }
+simulation: { duration: 0.08, step: 1e-3, output_step: 1e-3, formulation: absolute }
 ",
     );
     let pull = |t: f64| -28.8 * (6.0 * t).sin();

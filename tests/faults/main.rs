@@ -1,0 +1,12 @@
+//! What can go wrong around a run, and uncertainty that a mechanism does not bear: nothing half is left, what is finished is
+//! kept, and what is told is true.
+
+mod disk;
+mod infeasible;
+mod interrupts;
+mod names;
+#[path = "../place/mod.rs"]
+#[allow(dead_code)] // shared with the tests of the command line
+mod place;
+mod sizes;
+mod uncertainty;

@@ -1,0 +1,77 @@
+//! What is fuzzed. Each takes any text and may say of it what it likes, but not panic, hang or take much memory.
+
+use mbint::batch::{self, Options};
+use mbint::model::{
+    self, BoundsRequest, ChebyshevRequest, Description, Override, ParameterValue, ScanRequest, Stepping, TaylorRequest,
+};
+
+/// Reads a model, and renders what is wrong with it.
+pub fn model(text: &str) {
+    told(&model::read_str("fuzz.yaml", text, &[]));
+}
+
+/// Reads a URDF by itself, and renders what is wrong with it.
+pub fn robot(text: &str) {
+    let path = std::env::temp_dir().join(format!("mbint-fuzz-{}.urdf", std::process::id()));
+    std::fs::write(&path, text).expect("the folder for temporary files can be written");
+    told(&model::read(&path, &[]));
+    // What cannot be removed is written over.
+    let _ = std::fs::remove_file(&path);
+}
+
+/// Whether errors are told where there is no model, and only there.
+fn told(reading: &model::Reading) {
+    if !reading.diagnostics.is_empty() {
+        assert!(!reading.diagnostics.render(false).is_empty());
+        assert!(reading.diagnostics.records().iter().all(|record| !record.message.is_empty()));
+    }
+    assert_eq!(reading.description.is_none(), reading.diagnostics.has_errors(), "errors are told, and nothing else");
+}
+
+/// Reads a formula, evaluates and differentiates it; and reads it as a setting of the command line.
+pub fn formula(text: &str) {
+    if let Ok(formula) = symdiff::Formula::parse(text)
+        && formula.terms().len() < 1000
+    {
+        let mut graph = symdiff::Graph::new();
+        let x = graph.symbol("x");
+        let built = formula.build(&mut graph, |_, _| Ok::<_, ()>(x)).expect("every name is known");
+        let slope = graph.derivative(built, x);
+        graph.evaluate(&[built, slope], |_| 0.3);
+    }
+    if let Ok(setting) = Override::parse(text) {
+        model::read_str("fuzz.yaml", "model: a", &[setting]);
+    }
+}
+
+/// Runs a model for a few steps, if it is one, by all methods.
+pub fn short_run(text: &str) {
+    if let Some(description) = model::read_str("fuzz.yaml", text, &[]).description
+        && let Some(description) = shortened(description)
+    {
+        // Whether it can be run is not asked.
+        let _ = batch::run(&description, Options { threads: Some(1), ..Options::default() });
+    }
+}
+
+/// The same mechanism with little to do; absent where there is much of it.
+fn shortened(mut description: Description) -> Option<Description> {
+    let uncertain = |parameter: &&model::Parameter| matches!(parameter.value, ParameterValue::Interval { .. });
+    let uncertain = description.parameters.iter().filter(uncertain).count();
+    if description.bodies.len() > 8 || description.joints.len() > 16 || uncertain > 3 {
+        return None;
+    }
+    let simulation = &mut description.simulation;
+    match &mut simulation.stepping {
+        Stepping::Fixed(step) => simulation.output_step = *step,
+        // A tolerance near rounding errors asks for as many steps as it pleases.
+        Stepping::Tolerance(tolerance) => *tolerance = tolerance.max(1e-6),
+    }
+    simulation.duration = 3.0 * simulation.output_step;
+    let BoundsRequest { chebyshev, taylor, scan, certified, .. } = std::mem::take(&mut description.bounds);
+    description.bounds.chebyshev = chebyshev.map(|_| ChebyshevRequest::of_order(1, uncertain));
+    description.bounds.taylor = taylor.map(|request| TaylorRequest { order: 1, ..request });
+    description.bounds.scan = scan.map(|_| ScanRequest::of_points(2, uncertain));
+    description.bounds.certified = certified && uncertain < 2;
+    Some(description)
+}

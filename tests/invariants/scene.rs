@@ -1,0 +1,195 @@
+//! A mechanism as a model: placed, turned, named and ordered at will.
+
+use std::fmt::Write as _;
+
+use mbint::batch::{self, Options};
+use mbint::bounds::Bounds;
+use mbint::model;
+
+use super::mechanism::Mechanism;
+use super::quaternion::{Quaternion, Vector, add};
+
+/// How a mechanism is put into the world and written down.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// All is turned, then shifted.
+    pub turn: Quaternion,
+    /// The turn in the plane.
+    pub angle: f64,
+    pub shift: Vector,
+    /// What bodies are called, before their number.
+    pub name: &'static str,
+    /// Bodies, joints and springs from the last to the first.
+    pub reversed: bool,
+    /// s
+    pub step: f64,
+    pub duration: f64,
+    /// Formulas to look at, in which `{i}` is body i.
+    pub outputs: Vec<String>,
+}
+
+impl Scene {
+    pub fn of(outputs: Vec<String>, step: f64, duration: f64) -> Self {
+        Self { turn: Quaternion::ONE, angle: 0.0, shift: [0.0; 3], name: "b", reversed: false, step, duration, outputs }
+    }
+
+    pub fn body(&self, place: usize) -> String {
+        format!("{}{place}", self.name)
+    }
+
+    fn section(&self, title: &str, mut lines: Vec<String>) -> String {
+        if self.reversed {
+            lines.reverse();
+        }
+        format!("{title}:\n{}", lines.iter().map(|line| format!("  {line}\n")).collect::<String>())
+    }
+
+    /// The model's text.
+    pub fn write(&self, mechanism: &Mechanism) -> String {
+        let kind = mechanism.kind;
+        let world = |point: Vector| add(self.shift, self.turn.turn(point));
+        let vector = |v: Vector| {
+            let components = if kind.spatial { &v[..] } else { &v[..2] };
+            format!("[{}]", components.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "))
+        };
+        let name = |place: usize| self.body(place);
+        let (mut bodies, mut joints, mut effects) = (Vec::new(), Vec::new(), Vec::new());
+        let tie = mechanism.tie.as_ref().map_or([0.0; 3], |tie| tie.point);
+        let (root, tie) = (vector(world([0.0; 3])), vector(world(tie)));
+        // A hinge's axis is given in the frames of both its points.
+        let root = match kind.spatial {
+            true => format!("{{ position: {root}, rotation: {{ quaternion: {:?} }} }}", self.turn.0),
+            false => root,
+        };
+        bodies.push(format!("ground: {{ points: {{ root: {root}, tie: {tie} }} }}"));
+        for (place, body) in mechanism.bodies.iter().enumerate() {
+            let mut points = format!("joint: {}, end: {}", vector(body.joint[1]), vector(body.end));
+            for (next, other) in mechanism.bodies.iter().enumerate().filter(|(_, other)| other.before == Some(place)) {
+                write!(points, ", to{next}: {}", vector(other.joint[0])).unwrap();
+            }
+            let inertia = if kind.spatial { vector(body.inertia) } else { format!("{:?}", body.inertia[2]) };
+            bodies.push(format!(
+                "{}: {{ mass: {:?}, inertia: {inertia}, points: {{ {points} }} }}",
+                name(place),
+                body.mass
+            ));
+            let joint = if body.hinged { "revolute" } else { "spherical" };
+            match body.before {
+                Some(before) => {
+                    joints.push(format!(
+                        "j{place}: {{ {joint}: [{}.to{place}, {}.joint] }}",
+                        name(before),
+                        name(place)
+                    ));
+                }
+                None if !kind.floating => {
+                    joints.push(format!("j{place}: {{ {joint}: [ground.root, {}.joint] }}", name(place)));
+                }
+                None => (),
+            }
+            if kind.driven {
+                let value = |omega: &str| format!("{:?} - {:?}*{}.{omega}", body.torque, body.drag, name(place));
+                // In space along the world's z, which is why such scenes are not turned.
+                let value =
+                    if kind.spatial { format!("[0, 0, {}]", value("omega.z")) } else { value("angular_velocity") };
+                effects.push(format!("motor{place}: {{ torque: {{ on: {}, value: {value} }} }}", name(place)));
+            }
+        }
+        if let Some(tie) = &mechanism.tie {
+            let last = name(mechanism.bodies.len() - 1);
+            joints.push(format!(
+                "tie: {{ distance: {{ between: [ground.tie, {last}.end], length: {:?} }} }}",
+                tie.length
+            ));
+        }
+        for (place, spring) in mechanism.springs.iter().enumerate() {
+            let [a, b] = spring.between.map(name);
+            effects.push(format!(
+                "spring{place}: {{ spring_damper: {{ between: [{a}.end, {b}.end], stiffness: {:?}, damping: {:?}, free_length: {:?} }} }}",
+                spring.stiffness, spring.damping, spring.free_length
+            ));
+        }
+        if mechanism.gravity != [0.0; 3] {
+            effects.push(format!(
+                "weight: {{ gravity: {{ acceleration: {} }} }}",
+                vector(self.turn.turn(mechanism.gravity))
+            ));
+        }
+        let outputs: Vec<String> = self
+            .outputs
+            .iter()
+            .enumerate()
+            .map(|(place, formula)| {
+                let bodies = (0..mechanism.bodies.len()).rev();
+                let formula = bodies.fold(formula.clone(), |text, i| text.replace(&format!("{{{i}}}"), &name(i)));
+                format!("o{place}: {formula}")
+            })
+            .collect();
+        let mut text = format!("model: drawn\nspace: {}\n", if kind.spatial { "spatial" } else { "planar" });
+        text += &self.section("bodies", bodies);
+        if !joints.is_empty() {
+            text += &self.section("joints", joints);
+        }
+        if !effects.is_empty() {
+            text += &self.section("effects", effects);
+        }
+        text += &self.section("initial", self.start(mechanism, false));
+        text += &self.section("guess", self.start(mechanism, true));
+        text += &format!("outputs:\n{}", outputs.iter().map(|line| format!("  {line}\n")).collect::<String>());
+        let Self { step, duration, .. } = self;
+        text + &format!("simulation: {{ duration: {duration:?}, step: {step:?}, output_step: {:?} }}\n", self.row())
+    }
+
+    /// Rows are as far apart as the longest step of a comparison.
+    fn row(&self) -> f64 {
+        ROW
+    }
+
+    /// What is given at the start, or where it is looked for.
+    fn start(&self, mechanism: &Mechanism, guessed: bool) -> Vec<String> {
+        let spatial = mechanism.kind.spatial;
+        let mut lines = Vec::new();
+        for (place, body) in mechanism.bodies.iter().enumerate() {
+            let name = self.body(place);
+            let [x, y, z] = add(self.shift, self.turn.turn(body.place));
+            let [vx, vy, vz] = self.turn.turn(body.velocity);
+            // The joints give the places of all bodies but a floating one.
+            if guessed != (mechanism.kind.floating && body.before.is_none()) {
+                lines.push(format!("{name}.x: {x:?}\n  {name}.y: {y:?}"));
+                lines.extend(spatial.then(|| format!("{name}.z: {z:?}")));
+                if !guessed {
+                    lines.push(format!("{name}.vx: {vx:?}\n  {name}.vy: {vy:?}"));
+                    lines.extend(spatial.then(|| format!("{name}.vz: {vz:?}")));
+                }
+            }
+            if guessed {
+                continue;
+            }
+            if spatial {
+                let q = self.turn.times(body.attitude).0;
+                lines.push(format!(
+                    "{name}.orientation: {{ quaternion: {q:?} }}\n  {name}.omega_body: {:?}",
+                    body.omega
+                ));
+            } else {
+                lines.push(format!("{name}.angle: {:?}", body.angle + self.angle));
+                lines.push(format!("{name}.angular_velocity: {:?}", body.omega[2]));
+            }
+        }
+        lines
+    }
+
+    /// The motion.
+    pub fn run(&self, mechanism: &Mechanism) -> Bounds {
+        let text = self.write(mechanism);
+        let description =
+            model::load_str("drawn", &text, &[]).unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics}"));
+        let options = Options { methods: Some(Vec::new()), threads: Some(1), ..Options::default() };
+        let (bounds, summary) = batch::run(&description, options).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        assert_eq!(summary.failure, None, "{text}");
+        bounds
+    }
+}
+
+/// s
+pub const ROW: f64 = 2e-3;

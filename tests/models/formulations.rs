@@ -1,0 +1,216 @@
+//! Joint and absolute coordinates are two ways to write down one motion: at the start they agree to rounding, in positions,
+//! velocities, accelerations and reactions, and later to the scheme's error.
+
+use mbint::batch;
+use mbint::mechanics;
+use mbint::model::{Description, Formulation};
+
+use super::common::{Vary, largest, load, model_files, nominal, read, richardson};
+
+fn within(mut description: Description, formulation: Formulation) -> Description {
+    description.simulation.formulation = formulation;
+    description
+}
+
+fn has_both(description: &Description) -> bool {
+    mechanics::in_joint_coordinates(description, None).unwrap().is_ok()
+}
+
+/// Every output's course.
+fn courses(description: Description) -> Vec<Vec<f64>> {
+    nominal(&description).outputs.into_iter().map(|output| output.nominal).collect()
+}
+
+/// Differences between the formulations of each output, relative to the largest value of it: at the start, and over all
+/// rows of what two step sizes extrapolate to.
+fn differences(description: &Description, h: f64) -> Vec<(String, f64, f64)> {
+    let [absolute, joint] = [Formulation::Absolute, Formulation::Joint].map(|formulation| {
+        let course = |h: f64| courses(within(description.clone(), formulation).step(h));
+        let (coarse, fine) = (course(h), course(0.5 * h));
+        let limit: Vec<Vec<f64>> = coarse.iter().zip(&fine).map(|(coarse, fine)| richardson(coarse, fine)).collect();
+        (fine, limit)
+    });
+    let names = description.outputs.iter().map(|output| output.name.clone());
+    let pairs = absolute.0.iter().zip(&joint.0).zip(absolute.1.iter().zip(&joint.1));
+    names
+        .zip(pairs)
+        .map(|(name, ((a, b), (a_limit, b_limit)))| {
+            let size = largest(a.iter().copied()).max(1e-3);
+            let apart = largest(a_limit.iter().zip(b_limit).map(|(a, b)| a - b));
+            (name, (a[0] - b[0]).abs() / size, apart / size)
+        })
+        .collect()
+}
+
+/// A tree of bodies with every joint that can carry one, frames that stand askew, and bodies that are a joint's first as
+/// well as its second; on the ground or floating.
+fn tree(floating: bool) -> String {
+    let base = if floating { "" } else { "  hold: { fixed: [ground.O, base] }\n" };
+    let thrown = if floating {
+        "  base.x: 0.1\n  base.y: 0\n  base.z: -0.3\n  base.orientation: { rpy: [0.1, 0.4, -0.2] }
+  base.vx: 1\n  base.vy: 0\n  base.vz: 0.5\n  base.omega: [0.4, -0.3, 1]\n"
+    } else {
+        ""
+    };
+    format!(
+        "
+parameters:
+  m: {{ value: 1.2, unit: kg, tolerance: 5% }}
+bodies:
+  ground: {{ points: {{ O: [0.1, -0.2, 0.3] }} }}
+  base:
+    mass: 2
+    inertia: {{ xx: 0.03, yy: 0.05, zz: 0.04, xy: 0.004, xz: -0.003, yz: 0.002 }}
+    center_of_mass: [0.02, 0.03, -0.01]
+    points: {{ A: {{ position: [0.2, 0.1, 0], rotation: {{ rpy: [0.3, -0.4, 0.5] }} }}, B: [-0.2, 0, 0.1] }}
+  upper:
+    mass: m
+    inertia: {{ xx: 0.02, yy: 0.03, zz: 0.025, xy: 0.002, xz: 0.001, yz: -0.001 }}
+    center_of_mass: [0.1, 0.02, 0]
+    points: {{ S: {{ position: [-0.1, 0, 0.05], rotation: {{ rpy: [0, 0.2, 0.1] }} }}, T: {{ position: [0.3, 0, 0], rotation: {{ rpy: [1, 0, 0.2] }} }} }}
+  slide:
+    mass: 0.7
+    inertia: [0.01, 0.012, 0.008]
+    center_of_mass: [0, 0.05, 0.01]
+    points: {{ S: [0.05, 0, 0], T: {{ position: [0, 0.1, 0], rotation: {{ rpy: [0, 0, 0.7] }} }} }}
+  tube:
+    mass: 0.5
+    inertia: [0.005, 0.006, 0.004]
+    points: {{ S: [0, 0, 0.1], T: [0.02, 0, -0.1] }}
+  nut:
+    mass: 0.4
+    inertia: [0.003, 0.002, 0.004]
+    points: {{ S: [0.05, 0, 0], E: [-0.1, 0.1, 0] }}
+  plate:
+    mass: 0.3
+    inertia: [0.002, 0.004, 0.003]
+    center_of_mass: [0.1, 0, 0]
+joints:
+{base}  shoulder: {{ revolute: {{ between: [base.A, upper.S], axis: [1, 2, -0.5] }} }}
+  rail: {{ prismatic: {{ between: [slide.S, upper.T], axis: [0.3, 1, 0.2], angle: 20 deg }} }}
+  barrel: {{ cylindrical: {{ between: [tube.S, slide.T], axis: z }} }}
+  thread: {{ screw: {{ between: [tube.T, nut.S], axis: [0, 1, 0.2], pitch: 0.3 }} }}
+  weld: {{ fixed: {{ between: [base.B, plate], angle: 35 deg }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [1, -2, -9.81] }} }}
+  spring: {{ spring_damper: {{ between: [ground.O, nut.E], stiffness: 30, damping: 0.3, free_length: 0.2 }} }}
+  twist: {{ torsional_spring_damper: {{ on: shoulder, stiffness: 2, damping: 0.1, free_angle: 0.2 }} }}
+  push: {{ force: {{ on: slide.T, value: [0.3, 0.2*sin(3*t), -0.5], frame: body }} }}
+initial:
+{thrown}  shoulder.angle: 0.3
+  shoulder.angular_velocity: 0.5
+  rail.displacement: 0.05
+  rail.velocity: -0.2
+  barrel.angle: 0.4
+  barrel.displacement: 0.02
+  barrel.angular_velocity: 0.3
+  barrel.velocity: 0.1
+  thread.angle: 0.1
+  thread.angular_velocity: 1
+outputs:
+  x: nut.E.x
+  vy: nut.E.vy
+  az: nut.E.az
+  p: slide.p2
+  p_rate: slide.omega.x
+  alpha: nut.alpha_body.y
+  slide_x: slide.x
+  angle: shoulder.angle
+  s: rail.displacement
+  shoulder_x: shoulder.force.x
+  shoulder_torque_y: shoulder.torque.y
+  rail_force: rail.force
+  rail_torque_z: rail.torque.z
+  barrel_force_y: barrel.force.y
+  barrel_torque_x: barrel.torque.x
+  thread_force_z: thread.force.z
+  thread_torque_y: thread.torque.y
+  weld_force: weld.force
+  weld_torque: weld.torque.x
+  energy: energy
+simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.05 }}
+"
+    )
+}
+
+#[track_caller]
+fn agree(description: &Description, h: f64, later: f64) {
+    assert!(
+        has_both(description),
+        "{}: {:?}",
+        description.name,
+        mechanics::in_joint_coordinates(description, None).unwrap().err()
+    );
+    for (name, at_start, apart) in differences(description, h) {
+        println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name);
+        assert!(at_start < 1e-9, "{} {name}: {at_start:.1e} at the start", description.name);
+        assert!(apart < later, "{} {name}: {apart:.1e} apart", description.name);
+    }
+}
+
+#[test]
+fn a_tree_of_every_joint_moves_alike() {
+    agree(&read(&tree(false)), 1e-3, 1e-5);
+}
+
+#[test]
+fn a_floating_tree_moves_alike() {
+    agree(&read(&tree(true)), 1e-3, 1e-5);
+}
+
+#[test]
+fn every_model_that_has_both_moves_alike() {
+    let models: Vec<Description> = model_files().iter().map(|path| load(path)).filter(has_both).collect();
+    let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+    println!("{names:?}");
+    for description in &models {
+        let duration = description.simulation.duration.min(0.5);
+        agree(&description.clone().duration(duration).rows_every(duration / 10.0), duration / 1000.0, 1e-4);
+    }
+}
+
+/// Bars of 0.3 m one hanging from the other, by pins about y and z in turn, or all about z in the plane.
+fn chain(links: usize, spatial: bool, formulation: &str) -> Description {
+    let mut bodies = String::new();
+    let mut joints = String::new();
+    for i in 0..links {
+        let (inertia, along) = if spatial { ("[0.001, 0.008, 0.008]", ", 0") } else { ("0.008", "") };
+        let points = format!("points: {{ a: [-0.15, 0{along}], e: [0.15, 0{along}] }}");
+        bodies += &format!("  b{i}: {{ mass: 1, inertia: {inertia}, {points} }}\n");
+        let before = if i == 0 { "ground".to_owned() } else { format!("b{}.e", i - 1) };
+        let axis = if spatial { ["axis: y", "axis: z"][i % 2] } else { "axis: z" };
+        joints += &format!("  j{i}: {{ revolute: {{ between: [{before}, b{i}.a], {axis} }} }}\n");
+    }
+    let down = if spatial { "[0, 0, -9.81]" } else { "[0, -9.81]" };
+    let last = links - 1;
+    read(&format!(
+        "bodies:\n{bodies}joints:\n{joints}effects: {{ weight: {{ gravity: {{ acceleration: {down} }} }} }}
+outputs: {{ y: b{last}.e.y }}
+simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: {formulation} }}\n"
+    ))
+}
+
+/// Instructions of a step with one correction.
+fn instructions(description: &Description) -> (bool, usize) {
+    let simulator = batch::prepare(description).unwrap();
+    let p = &simulator.program;
+    let count = p.step().len() + p.factor().len() + p.correct().len() + p.advance().len();
+    (simulator.system.formulation.joint, count)
+}
+
+#[test]
+fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_joint_ones() {
+    for spatial in [false, true] {
+        let [(_, short), (_, long)] = [20, 100].map(|links| instructions(&chain(links, spatial, "absolute")));
+        println!("spatial {spatial}: {short} instructions for 20 links, {long} for 100");
+        assert!(10 * long < 53 * short, "{short} instructions for 20 links, {long} for 100");
+        let (joint, few) = instructions(&chain(2, spatial, "auto"));
+        let (_, many) = instructions(&chain(2, spatial, "absolute"));
+        assert!(joint && few < many, "{few} against {many}");
+        let (joint, of_auto) = instructions(&chain(100, spatial, "auto"));
+        assert!(!joint && of_auto == long);
+    }
+    // A spatial chain of 20 is still shorter in joint coordinates.
+    let (joint, _) = instructions(&chain(20, true, "auto"));
+    assert!(joint);
+}

@@ -1,0 +1,376 @@
+//! Robots from URDF, against the dynamics of Pinocchio, closed forms, and the same mechanism said in other ways.
+
+use std::path::{Path, PathBuf};
+
+use mbint::batch::{self, Options};
+use mbint::bounds::Bounds;
+use mbint::model::{self, Description, EffectKind, Reading};
+use symdiff::{Formula, Graph};
+
+use super::common::{
+    Findings, Vary, curve, distance, distance_from, largest, load, nominal, order, reference, row, run,
+};
+
+/// A URDF, and perhaps a model, in a folder of their own.
+struct Files(tempfile::TempDir);
+
+impl Files {
+    fn new(urdf: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("robot.urdf"), urdf).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, file: &str) -> PathBuf {
+        self.0.path().join(file)
+    }
+
+    fn alone(&self) -> Description {
+        load(&self.path("robot.urdf"))
+    }
+
+    fn with(&self, yaml: &str) -> Reading {
+        let simulation = "\nsimulation: { duration: 0.5, step: 1e-3, output_step: 0.01 }\n";
+        let path = self.path("model.yaml");
+        std::fs::write(&path, format!("urdf: robot.urdf\n{yaml}{simulation}")).unwrap();
+        model::read(&path, &[])
+    }
+
+    #[track_caller]
+    fn model(&self, yaml: &str) -> Description {
+        let reading = self.with(yaml);
+        reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+    }
+}
+
+const GRAVITY: &str = "effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }\n";
+
+fn link(name: &str, mass: f64, xyz: &str, inertia: [f64; 3]) -> String {
+    let [x, y, z] = inertia;
+    format!(
+        "<link name='{name}'><inertial><origin xyz='{xyz}'/><mass value='{mass}'/>\
+         <inertia ixx='{x}' iyy='{y}' izz='{z}' ixy='0' ixz='0' iyz='0'/></inertial></link>\n"
+    )
+}
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str, details: &str) -> String {
+    format!("<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>{details}</joint>\n")
+}
+
+fn robot(parts: &[String]) -> Files {
+    Files::new(&format!("<robot name='r' xmlns:mbint='urn:mbint'><link name='base'/>\n{}</robot>", parts.concat()))
+}
+
+/// The robot of the reference at rest at q_i = 0.3 sin(1 + i), with a step.
+fn swinging(name: &str, joints: &[&str], h: f64) -> Option<Bounds> {
+    let folder = std::env::var_os("MBINT_REFERENCE")?;
+    let urdf = Path::new(&folder).join(format!("urdf/{name}.urdf"));
+    let starts = joints.iter().enumerate();
+    let starts = starts.map(|(i, joint)| format!("  {joint}.angle: {}\n", 0.3 * (1.0 + i as f64).sin()));
+    let text = format!(
+        "urdf: '{}'\n{GRAVITY}initial:\n{}simulation: {{ duration: 1, step: {h}, output_step: 0.01 }}",
+        urdf.display(),
+        starts.collect::<String>()
+    );
+    let description = model::load_str("swinging.yaml", &text, &[]).unwrap_or_else(|told| panic!("{told}"));
+    Some(nominal(&description))
+}
+
+#[test]
+fn robots_swing_as_those_of_pinocchio() {
+    let mut findings = Findings::default();
+    let ur5 =
+        ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint", "wrist_3_joint"];
+    for (name, joints) in [("double_pendulum_simple", &["joint1", "joint2"][..]), ("ur5_robot", &ur5[..])] {
+        let Some(rows) = reference(&format!("urdf/{name}.csv")) else { return };
+        let runs = [1e-3, 5e-4].map(|h| swinging(name, joints, h).unwrap());
+        let error = |bounds: &Bounds| {
+            largest(joints.iter().enumerate().map(|(i, joint)| {
+                let exact: Vec<f64> = rows.iter().map(|row| row[i + 1]).collect();
+                distance(curve(bounds, joint), &exact)
+            }))
+        };
+        let [coarse, fine] = runs.each_ref().map(error);
+        findings.check(coarse < 1e-4, format_args!("{name}: {coarse:e} rad at h = 1e-3"));
+        let observed = order(coarse, fine);
+        findings.check((observed - 2.0).abs() < 0.1, format_args!("{name}: order {observed}"));
+    }
+    findings.none();
+}
+
+/// A formula without names.
+fn number(formula: &Formula) -> f64 {
+    let mut graph = Graph::new();
+    let built = formula.build(&mut graph, |_, name| Err(name.to_owned())).unwrap();
+    graph.as_constant(built).unwrap()
+}
+
+/// Two point-like links welded with a quarter turn between them.
+fn welded(second: &str) -> Files {
+    robot(&[
+        joint("hinge", "revolute", "base", "a", "<axis xyz='0 1 0'/>"),
+        link("a", 2.0, "0 0 -0.5", [0.03, 0.02, 0.01]),
+        joint("weld", "fixed", "a", "b", "<origin xyz='0.1 0 -1' rpy='0 0 1.5707963267948966'/>"),
+        second.to_owned(),
+    ])
+}
+
+#[test]
+fn welded_links_are_one_body() {
+    let files = welded(&link("b", 3.0, "0.2 0 0", [0.05, 0.04, 0.03]));
+    let description = files.alone();
+    assert_eq!(description.bodies.len(), 2, "ground and a");
+    let body = &description.bodies[1];
+    // b's centre is at (0.1, 0, −1) + R_z(90°) (0.2, 0, 0) = (0.1, 0.2, −1) of a; its x and y change places.
+    let center = [0.3 / 5.0, 0.6 / 5.0, -4.0 / 5.0];
+    let found = body.center_of_mass.as_ref().unwrap().each_ref().map(number);
+    let reduced = 2.0 * 3.0 / 5.0;
+    let d = [0.1, 0.2, -0.5];
+    let inertia = body.inertia.as_ref().unwrap();
+    let expected = [
+        (number(body.mass.as_ref().unwrap()), 5.0),
+        (found[0], center[0]),
+        (found[1], center[1]),
+        (found[2], center[2]),
+        (number(&inertia.xx), 0.03 + 0.04 + reduced * (d[1] * d[1] + d[2] * d[2])),
+        (number(&inertia.yy), 0.02 + 0.05 + reduced * (d[0] * d[0] + d[2] * d[2])),
+        (number(&inertia.zz), 0.01 + 0.03 + reduced * (d[0] * d[0] + d[1] * d[1])),
+        (number(&inertia.xy), -reduced * d[0] * d[1]),
+        (number(&inertia.xz), -reduced * d[0] * d[2]),
+        (number(&inertia.yz), -reduced * d[1] * d[2]),
+    ];
+    for (found, expected) in expected {
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+}
+
+#[test]
+fn an_uncertain_mass_of_a_welded_link_is_that_of_a_file_with_it() {
+    let at = |mass: f64| {
+        let files = welded(&link("b", mass, "0.2 0 0", [0.05, 0.04, 0.03]));
+        nominal(&files.model(&format!("{GRAVITY}initial: {{ hinge.angle: 1 }}")))
+    };
+    let files = welded(&link("b", 3.0, "0.2 0 0", [0.05, 0.04, 0.03]));
+    let text = format!(
+        "parameters: {{ link.b.mass: 20% }}\n{GRAVITY}initial: {{ hinge.angle: 1 }}\nbounds: {{ scan: {{ points: 2 }} }}"
+    );
+    let bounds = run(&files.model(&text));
+    let band = &bounds.outputs[0].bands[0];
+    let ends = [at(2.4), at(3.6)].map(|bounds| bounds.outputs[0].nominal.clone());
+    let at_least =
+        |pick: fn(f64, f64) -> f64| -> Vec<f64> { ends[0].iter().zip(&ends[1]).map(|(a, b)| pick(*a, *b)).collect() };
+    assert!(distance(&band.lower, &at_least(f64::min)) < 1e-9);
+    assert!(distance(&band.upper, &at_least(f64::max)) < 1e-9);
+    assert!(largest(band.upper.iter().zip(&band.lower).map(|(a, b)| a - b)) > 1e-4, "the mass matters");
+}
+
+#[test]
+fn attributes_say_what_a_model_says() {
+    let hinge = |own: &str| {
+        joint("hinge", "revolute", "base", "a", &format!("<axis xyz='0 1 0'/><dynamics damping='0.1'{own}/>"))
+    };
+    let body = |own: &str| {
+        format!(
+            "<link name='a'><inertial><origin xyz='0 0 -0.5'/><mass value='2'{own}/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+        )
+    };
+    let rest = format!("{GRAVITY}initial: {{ hinge.angle: 1 }}");
+    let own = robot(&[hinge(" mbint:damping='[0.05, 0.2]'"), body(" mbint:mass='5%'")]);
+    let plain = robot(&[hinge(""), body("")]);
+    let said = "parameters: { link.a.mass: 5%, joint.hinge.damping: [0.05, 0.2] }\n";
+    let [a, b] = [own.model(&rest), plain.model(&format!("{said}{rest}"))].map(|model| run(&model));
+    let (a, b) = (&a.outputs[0].bands[0], &b.outputs[0].bands[0]);
+    assert_eq!(a.lower, b.lower);
+    assert_eq!(a.upper, b.upper);
+    assert!(a.upper.last() > a.lower.last());
+}
+
+#[test]
+fn a_floating_base_falls() {
+    let files = Files::new(&format!("<robot name='r'>{}</robot>", link("ball", 2.0, "0 0 0", [0.1, 0.2, 0.25])));
+    let bounds = nominal(&files.model(&format!("base: floating\n{GRAVITY}")));
+    let fall = distance_from(&bounds.times, curve(&bounds, "ball_z"), |t| -9.81 / 2.0 * t * t);
+    assert!(fall < 1e-9, "{fall}");
+}
+
+#[test]
+fn a_floating_joint_begins_at_its_origin() {
+    let files = robot(&[
+        joint("free", "floating", "base", "ball", "<origin xyz='1 2 3' rpy='0.1 0.2 0.3'/>"),
+        link("ball", 2.0, "0 0 0", [0.1, 0.2, 0.25]),
+    ]);
+    let bounds = nominal(&files.model(GRAVITY));
+    assert!(distance_from(&bounds.times, curve(&bounds, "free_x"), |_| 1.0) < 1e-9);
+    assert!(distance_from(&bounds.times, curve(&bounds, "free_z"), |t| 3.0 - 9.81 / 2.0 * t * t) < 1e-9);
+}
+
+#[test]
+fn a_sliding_joint_is_damped_and_pushes_back() {
+    // Two carriages without gravity: m₂ moves against m₁, both free along x; their relative velocity dies away with
+    // d (1/m₁ + 1/m₂), and their momentum stays.
+    let files = robot(&[
+        joint("first", "prismatic", "base", "one", "<origin rpy='0 0 0.7'/>"),
+        link("one", 2.0, "0 0 0", [0.1; 3]),
+        joint("second", "prismatic", "one", "two", "<origin rpy='0 0 3.141592653589793'/><dynamics damping='3'/>"),
+        link("two", 1.0, "0 0 0", [0.1; 3]),
+    ]);
+    let text = "initial: { second.velocity: 1, first.velocity: 0 }\noutputs: { relative: second.velocity, first: first.velocity }";
+    let bounds = nominal(&files.model(text));
+    let rate = 3.0 * (1.0 / 2.0 + 1.0);
+    assert!(distance_from(&bounds.times, curve(&bounds, "relative"), |t| (-rate * t).exp()) < 1e-5);
+    // Momentum: 2 v₁ + 1 (v₁ − u) = −1, as the second's axis points backwards.
+    let first = |t: f64| ((-rate * t).exp() - 1.0) / 3.0;
+    assert!(distance_from(&bounds.times, curve(&bounds, "first"), first) < 1e-5);
+}
+
+#[test]
+fn a_planar_joint_slides_down_its_plane() {
+    let tilt = 0.5_f64;
+    let files = robot(&[
+        joint("plane", "planar", "base", "puck", &format!("<origin xyz='0 0 1' rpy='0 {tilt} 0'/><axis xyz='0 0 1'/>")),
+        link("puck", 2.0, "0 0 0", [0.1; 3]),
+    ]);
+    let bounds = nominal(&files.model(GRAVITY));
+    let fallen = |t: f64| 1.0 - 9.81 * tilt.sin().powi(2) * t * t / 2.0;
+    let error = distance_from(&bounds.times, curve(&bounds, "plane_z"), fallen);
+    assert!(error < 1e-6, "{error}");
+}
+
+#[test]
+fn a_mimic_follows() {
+    let files = robot(&[
+        joint("lead", "revolute", "base", "a", "<axis xyz='0 1 0'/>"),
+        link("a", 1.0, "0.3 0 0", [0.1; 3]),
+        joint(
+            "turn",
+            "continuous",
+            "base",
+            "b",
+            "<axis xyz='0 1 0'/><mimic joint='lead' multiplier='-2' offset='0.3'/>",
+        ),
+        link("b", 1.0, "0 0 0", [0.1; 3]),
+        joint("slide", "prismatic", "base", "c", "<axis xyz='0 1 0'/><mimic joint='lead' multiplier='0.1'/>"),
+        link("c", 1.0, "0 0 0", [0.1; 3]),
+    ]);
+    let bounds = nominal(&files.model(GRAVITY));
+    let [lead, turn, slide] = ["lead", "turn", "slide"].map(|name| curve(&bounds, name));
+    assert!(lead[row(&bounds, 0.5)] > 0.1, "it moves");
+    assert!(largest(lead.iter().zip(turn).map(|(lead, turn)| turn - (-2.0 * lead + 0.3))) < 1e-9);
+    assert!(largest(lead.iter().zip(slide).map(|(lead, slide)| slide - 0.1 * lead)) < 1e-9);
+}
+
+#[test]
+fn friction_is_there_only_where_the_file_has_it() {
+    let parts = |details: &str| [joint("hinge", "revolute", "base", "a", details), link("a", 1.0, "0 0 0", [0.1; 3])];
+    let frictionless = robot(&parts("")).model("");
+    assert!(frictionless.effects.is_empty());
+    let description = robot(&parts("<dynamics friction='0.5'/>")).model("initial: { hinge.angular_velocity: 4 }");
+    let names: Vec<(&str, bool)> = description
+        .effects
+        .iter()
+        .map(|effect| (effect.name.as_str(), matches!(effect.kind, EffectKind::JointFriction(_))))
+        .collect();
+    assert_eq!(names, [("hinge.friction", true)]);
+    // ω̇ = −(f/J) ω/s, s = √(ω² + v₀²): s − v₀ log((v₀ + s)/ω) falls by f/J a second. What is left is the scheme's own error
+    // of a spin, of second order.
+    let of_speed = |omega: f64| {
+        let slow = 0.05;
+        let s = omega.hypot(slow);
+        s - slow * ((slow + s) / omega).ln()
+    };
+    let error = |h: f64| {
+        let bounds = nominal(&description.clone().observing(&["hinge.angular_velocity"]).step(h));
+        let falls: Vec<f64> = bounds.outputs[0].nominal.iter().map(|&omega| of_speed(omega)).collect();
+        distance_from(&bounds.times, &falls, |t| of_speed(4.0) - 5.0 * t)
+    };
+    let (coarse, fine) = (error(1e-3), error(5e-4));
+    assert!((order(coarse, fine) - 2.0).abs() < 0.1 && fine < 2e-6, "{coarse} {fine}");
+}
+
+#[test]
+fn names_of_links_and_joints_stand_in_formulas() {
+    let files = welded("<link name='b'/>");
+    let description = files.model(&format!(
+        "{GRAVITY}outputs: {{ x: b.x, same: link.b.x, a: joint.hinge.angle, b: hinge.angle, m: link.a.mass + 0*a.x }}"
+    ));
+    let bounds = nominal(&description);
+    assert_eq!(curve(&bounds, "x"), curve(&bounds, "same"));
+    assert_eq!(curve(&bounds, "a"), curve(&bounds, "b"));
+    assert!(distance_from(&bounds.times, curve(&bounds, "m"), |_| 2.0) < 1e-12);
+}
+
+#[test]
+fn a_link_without_mass_at_the_end_is_left_out() {
+    let files = robot(&[
+        joint("hinge", "revolute", "base", "a", "<axis xyz='0 1 0'/>"),
+        link("a", 1.0, "0.3 0 0", [0.1; 3]),
+        joint("end", "revolute", "a", "tip", ""),
+        "<link name='tip'/>".to_owned(),
+    ]);
+    let reading = files.with(GRAVITY);
+    let records = reading.diagnostics.records();
+    assert_eq!(records.len(), 1);
+    assert_eq!(records[0].message, "link `tip` moves, but has no mass: it is left out, with its joint `end`");
+    assert_eq!(nominal(&reading.description.unwrap()).outputs.len(), 1);
+}
+
+/// What urdf-rs reads of the same text, as another reader of the format.
+#[test]
+fn numbers_are_those_of_urdf_rs() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/arm.urdf");
+    let other = urdf_rs::read_file(&path).unwrap();
+    let ours = load(&path);
+    let tree = ours.robot.as_ref().unwrap();
+    assert_eq!(tree.links.len(), other.links.len());
+    for link in &other.links {
+        let found = tree.links.iter().find(|known| known.name == link.name).unwrap();
+        assert_eq!(found.mass.unwrap_or(0.0), link.inertial.mass.value);
+    }
+    for joint in &other.joints {
+        let found = tree.links.iter().filter_map(|link| link.joint.as_ref()).find(|known| known.name == joint.name);
+        let found = found.unwrap();
+        let dynamics = joint.dynamics.as_ref();
+        assert_eq!(found.damping, dynamics.map_or(0.0, |dynamics| dynamics.damping));
+        assert_eq!(found.friction, dynamics.map_or(0.0, |dynamics| dynamics.friction));
+        if let Some(axis) = found.axis {
+            assert_eq!(axis, *joint.axis.xyz);
+            assert_eq!(found.limits.unwrap(), [joint.limit.lower, joint.limit.upper]);
+        }
+    }
+}
+
+/// Every URDF below the folder MBINT_ROBOTS runs 0.1 s, e.g. the unpacked package example-robot-data.
+#[test]
+#[ignore = "by hand: MBINT_ROBOTS=folder"]
+fn robots_of_a_collection_run() {
+    let mut folders = vec![PathBuf::from(std::env::var_os("MBINT_ROBOTS").expect("MBINT_ROBOTS is a folder"))];
+    let mut findings = Findings::default();
+    let mut count = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "urdf") {
+                count += 1;
+                let name = path.display();
+                match model::load(&path, &[]) {
+                    Err(told) => findings.check(false, format_args!("{name}: {told}")),
+                    Ok(description) => {
+                        let description = description.duration(0.1);
+                        let options = Options { methods: Some(Vec::new()), threads: Some(2), ..Options::default() };
+                        match batch::run(&description, options) {
+                            Err(error) => findings.check(false, format_args!("{name}: {error}")),
+                            Ok((_, summary)) => {
+                                findings
+                                    .check(summary.failure.is_none(), format_args!("{name}: {:?}", summary.failure));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{count} robots");
+    findings.none();
+}
