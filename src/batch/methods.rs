@@ -213,7 +213,7 @@ impl Run<'_> {
             spent: probes.solves,
         };
         for output in 0..self.outputs() {
-            let (span, time) = (probes.direct.span(output), probes.time_error(output, self.schedule.rows));
+            let (span, time) = (probes.spans[output], probes.time_error(output, self.schedule.rows));
             let allowed = tolerance * span;
             // Where the steps miss the tolerance nothing is to be gained.
             let missed = |time: &f64| time.is_nan() || *time > allowed;

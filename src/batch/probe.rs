@@ -51,14 +51,14 @@ impl Table {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Largest less least value of an output in all rows and samples.
-    pub fn span(&self, output: usize) -> f64 {
+    /// Largest less least value of an output in all rows and samples; zero where that is less than `least`.
+    fn span(&self, output: usize, least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
-        let (least, largest) = lines.flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), &value| {
-            (least.min(value), largest.max(value))
+        let (lower, upper) = lines.flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| {
+            (lower.min(value), upper.max(value))
         });
-        (largest - least).max(0.0)
+        if upper - lower < least { 0.0 } else { (upper - lower).max(0.0) }
     }
 }
 
@@ -74,6 +74,23 @@ pub(super) struct Probes {
     pub solves: usize,
     pub done: FleetRun,
     pub summary: MethodSummary,
+    /// How far each output ranges at all, in all rows and samples; zero where it is at rest.
+    pub spans: Vec<f64>,
+}
+
+/// What ranges less, relative to the model's size and the run's duration, is at rest: Newton's iteration ends at 1e-12 or so.
+const AT_REST: f64 = 1e-10;
+
+/// The least range of an output that is told from rounding; zero for what has no size of its own, as a force.
+fn least_range(unit: &str, length: f64, duration: f64) -> f64 {
+    AT_REST
+        * match unit {
+            "rad" => 1.0,
+            "m" => length,
+            "rad/s" => 1.0 / duration,
+            "m/s" => length / duration,
+            _ => 0.0,
+        }
 }
 
 impl Probes {
@@ -97,7 +114,12 @@ impl Probes {
         };
         let solves = points.len() + halved;
         let summary = run.method_summary("probes", solves, counters, done.stop_place(), begun);
-        Ok(Self { points, direct, halved: fine, solves, done, summary })
+        let system = &run.study.simulator.system;
+        let duration = run.schedule.output_step * run.schedule.rows as f64;
+        let least = |unit: &str| least_range(unit, system.length, duration);
+        let spans = system.outputs.iter().enumerate().map(|(index, output)| direct.span(index, least(&output.unit)));
+        let spans = spans.collect();
+        Ok(Self { points, direct, halved: fine, solves, done, summary, spans })
     }
 
     /// The time steps' error of an output in each row, as if its range were that of the probes.
@@ -105,6 +127,6 @@ impl Probes {
         let ranges: Vec<Range> = (0..rows).map(|row| Range::of(&self.direct.at(row, output))).collect();
         let of_row = |row: usize| time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
         let time: Vec<f64> = (0..rows).map(of_row).collect();
-        BandError::new(&ranges, &vec![0.0; rows], &time, self.direct.span(output), None).total
+        BandError::new(&ranges, &vec![0.0; rows], &time, self.spans[output], None).total
     }
 }

@@ -264,7 +264,7 @@ impl<'a> Study<'a> {
             let Some(allowed) = self.request.tolerance else { return Ok((schedule, probes)) };
             let outputs = 0..self.simulator.program.outputs.len();
             let share = |output: usize| {
-                let span = probes.direct.span(output);
+                let span = probes.spans[output];
                 let error = largest(probes.time_error(output, schedule.rows));
                 if span > 0.0 { error / (allowed * span) } else { 0.0 }
             };
@@ -378,7 +378,7 @@ impl<'a> Study<'a> {
                 method: *method,
                 lower: ranges.iter().map(|range| range.lower).collect(),
                 upper: ranges.iter().map(|range| range.upper).collect(),
-                error: BandError::new(ranges, surrogate, &time, probes.direct.span(output), self.request.tolerance),
+                error: BandError::new(ranges, surrogate, &time, probes.spans[output], self.request.tolerance),
             }
         };
         results.methods.iter().enumerate().map(band).collect()

@@ -80,7 +80,7 @@ pub fn time_error_certified(range: Range, halved: Range) -> f64 {
 
 impl BandError {
     /// From the errors of every row, and the rows' ranges. `tolerance` is that of the error relative to `span`, which is how
-    /// far the output ranges at all; what exceeds it is not resolved. Without one, a band is lost from where its surrogate no
+    /// far the output ranges at all, zero where it is at rest; what exceeds it is not resolved. Without one, a band is lost from where its surrogate no
     /// longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
@@ -90,12 +90,13 @@ impl BandError {
         let mut unresolved = Vec::with_capacity(total.len());
         for (row, range) in ranges.iter().enumerate() {
             // Written so that not a number is not resolved.
-            let small = |share: f64| total[row] <= share * span || (span == 0.0 && !total[row].is_nan());
+            let at_rest = span == 0.0 && !total[row].is_nan();
+            let small = |share: f64| total[row] <= share * span || at_rest;
             unresolved.push(match tolerance {
                 Some(tolerance) => !small(tolerance),
                 None => {
                     // However narrow the band is: of what nothing varies, rounding is all that there is.
-                    let follows = surrogate[row] <= (LOST * range.width()).max(SMALL * span);
+                    let follows = surrogate[row] <= (LOST * range.width()).max(SMALL * span) || at_rest;
                     lost |= !(follows && small(FAR_OFF));
                     lost
                 }
@@ -170,6 +171,8 @@ mod tests {
         assert_eq!(BandError::new(&ranges, &[1e-2; 2], &[2e-3; 2], 1.0, None).unresolved, [true; 2]);
         // What was never seen has no span, and no error either.
         assert_eq!(BandError::new(&ranges, &[0.0; 2], &[f64::NAN; 2], 0.0, None).unresolved, [true; 2]);
+        // At rest, to rounding.
+        assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[1e-16; 2], 0.0, None).unresolved, [false; 2]);
     }
 
     #[test]

@@ -162,6 +162,7 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
         force,
         constraint: constraints.values,
         outputs,
+        length,
         start,
         effects,
         left_out,

@@ -37,6 +37,8 @@ pub struct System {
     pub constraint: Vec<Expr>,
     /// What is observed, over t, q, v, w, λ and the parameters.
     pub outputs: Vec<OutputInfo>,
+    /// The model's size, m: the largest length that it names.
+    pub length: f64,
     /// What is known at the start.
     pub start: Start,
     /// What each effect came to, in file order.

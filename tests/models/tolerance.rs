@@ -263,3 +263,25 @@ fn every_model_is_bounded_to_a_per_cent() {
         }
     }
 }
+
+/// A bob between three equal springs stays where it is. What rounding makes of that is no motion that bounds could miss.
+#[test]
+fn what_moves_by_rounding_alone_is_at_rest() {
+    let spring = |name: &str| {
+        format!("  {name}: {{ spring_damper: {{ between: [ground.{name}, bob], stiffness: k, free_length: 0.2 }} }}\n")
+    };
+    let springs: String = ["A", "B", "C"].map(spring).concat();
+    // The points are on a circle of 0.3 m, 120° apart.
+    let text = format!(
+        "model: held\nparameters: {{ k: {{ value: 100, unit: N/m, tolerance: 10 % }} }}\n\
+         bodies:\n  ground: {{ points: {{ A: [0.2819077862357725, 0.1026060429977006], B: [-0.2298133329356934, 0.19283628290596184], \
+         C: [-0.0520944533000791, -0.2954423259036624] }} }}\n  \
+         bob: {{ mass: 0.3, coordinates: [x, y] }}\neffects:\n{springs}\
+         initial: {{ bob.x: 0, bob.y: 0, bob.vx: 0, bob.vy: 0 }}\noutputs: {{ x: bob.x, vy: bob.vy, twice: 2 * bob.x }}\n\
+         simulation: {{ duration: 1, step: 1e-3, output_step: 0.05 }}\nbounds: {{ chebyshev: {{ order: 4 }} }}\n"
+    );
+    let (bounds, _) = run_methods(&read(&text), None);
+    let x = &bounds.outputs[0];
+    assert!(x.nominal.iter().any(|value| *value != 0.0) && x.nominal.iter().all(|value| value.abs() < 1e-13));
+    assert_eq!(unresolved(&bounds), 0);
+}

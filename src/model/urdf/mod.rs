@@ -67,9 +67,9 @@ impl Urdf {
         root: &Node,
         overrides: &[(Override, Span)],
     ) -> Option<Self> {
-        let floating = match fields.get("base") {
-            Some(node) => reader.choice(node, &[("fixed", false), ("floating", true)])?,
-            None => false,
+        let base = match fields.get("base") {
+            Some(node) => Some(reader.choice(node, &[("fixed", false), ("floating", true)])?),
+            None => None,
         };
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
@@ -85,6 +85,9 @@ impl Urdf {
         };
         let start = reader.diagnostics.sources.add(path.display().to_string(), text.clone());
         let robot = read::read(&text, start, reader.diagnostics)?;
+        // A drone or a brick by itself: fixed, nothing of it would be left.
+        let loose = || is_urdf(model) && robot.is_rigid() && robot.has_mass();
+        let floating = base.unwrap_or_else(loose);
         Some(Self { robot, floating, words: uncertain::words(root, overrides) })
     }
 

@@ -108,6 +108,16 @@ pub struct Robot {
 }
 
 impl Robot {
+    /// Whether it has no joints that move.
+    pub fn is_rigid(&self) -> bool {
+        self.joints.iter().all(|joint| joint.kind == Kind::Fixed)
+    }
+
+    /// Whether a link has mass.
+    pub fn has_mass(&self) -> bool {
+        self.links.iter().filter_map(|link| link.inertial.as_ref()).any(|inertial| inertial.mass.value > 0.0)
+    }
+
     /// Every number that can be a parameter, in the file's order.
     pub fn numbers(&self) -> impl Iterator<Item = &Number> {
         let links = self.links.iter().filter_map(|link| link.inertial.as_ref()).flat_map(|inertial| {
