@@ -55,9 +55,9 @@ impl Table {
     fn span(&self, output: usize, least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
-        let (lower, upper) = lines.flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| {
-            (lower.min(value), upper.max(value))
-        });
+        let (lower, upper) = lines
+            .flatten()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| (lower.min(value), upper.max(value)));
         if upper - lower < least { 0.0 } else { (upper - lower).max(0.0) }
     }
 }

@@ -250,26 +250,29 @@ fn every_benchmark_converges_with_order_two() {
     findings.none();
 }
 
-/// Halved down to where round-off shows, or patience ends: 2 minutes.
+/// Halved down to where round-off shows, or patience ends: 2 minutes. Singular positions amplify rounding: two loops are
+/// passed to 6e-8 m at best, with steps of 8e-6 s to 1.6e-5 s, others below 1e-9 m.
 #[test]
 #[ignore = "2 minutes: every benchmark with ever smaller steps"]
 fn order_two_down_to_round_off() {
     let cases = [
-        (pendulum(), 2e-3, 12),
-        (two_loops(), 1e-3, 9),
-        (forty_loops(), 1e-3, 4),
-        (andrews(), 2e-6, 7),
-        (bricard(), 2e-3, 5),
-        (governor(), 4e-3, 6),
-        (car_axis(), 1e-3, 11),
-        (heavy_top(), 2e-4, 9),
+        (pendulum(), 2e-3, 12, 1e-9),
+        (two_loops(), 1e-3, 9, 1e-7),
+        (forty_loops(), 1e-3, 4, 1e-7),
+        (andrews(), 2e-6, 7, 1e-9),
+        (bricard(), 2e-3, 5, 1e-9),
+        (governor(), 4e-3, 6, 1e-9),
+        (car_axis(), 1e-3, 11, 1e-9),
+        (heavy_top(), 2e-4, 9, 1e-9),
     ];
-    for (benchmark, h, count) in cases {
+    for (benchmark, h, count, rounding) in cases {
         let steps: Vec<f64> = (0..count).map(|level| h * 0.5_f64.powi(level)).collect();
         let errors = benchmark.errors_of_steps(&steps);
-        for pair in errors.windows(2).filter(|pair| pair[1] > 1e-9) {
+        for pair in errors.windows(2).filter(|pair| pair[1] > rounding) {
             assert!((order(pair[0], pair[1]) - 2.0).abs() < 0.25, "{}: {errors:?}", benchmark.name);
         }
+        // Where it shows it does no harm.
+        assert!(errors.iter().all(|error| *error <= errors[0]), "{}: {errors:?}", benchmark.name);
     }
 }
 
@@ -303,7 +306,8 @@ fn the_error_falls_as_the_tolerance_does_further() {
         let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
         falls_with_the_tolerance(&benchmark, &tolerances, &mut findings);
     }
-    falls_with_the_tolerance(&forty_loops(), &[1e-3, 1e-4, 1e-5], &mut findings);
+    // At 1e-3 they are out of step with the reference by 0.12 m at the end, and further is hardly possible.
+    falls_with_the_tolerance(&forty_loops(), &[1e-4, 1e-5, 1e-6], &mut findings);
     findings.none();
 }
 
