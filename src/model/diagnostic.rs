@@ -119,6 +119,15 @@ impl Diagnostics {
         self.items.len()
     }
 
+    /// Of those behind the `first`: says of names that are unknown because they are left out that they are.
+    pub(super) fn found_without(&mut self, first: usize, left_out: &[String]) {
+        for diagnostic in self.items[first..].iter_mut().filter(|found| found.message.starts_with("unknown ")) {
+            if let Some(name) = left_out.iter().find(|name| diagnostic.message.ends_with(&format!(" `{name}`"))) {
+                diagnostic.help = Some(format!("`{name}` is left out here: leave this out too, or put `{name}` in"));
+            }
+        }
+    }
+
     /// Of those behind the `first`, which were found in a scene: forgets what was said before, and points to the scene from the
     /// others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
     pub(super) fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {

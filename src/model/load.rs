@@ -173,12 +173,16 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     };
     let plan = Scenes::read(&mut blank(name, &mut diagnostics), &root);
-    let (description, mut unused) = describe(name, &plan.model(), &placed, &mut diagnostics);
+    let before = diagnostics.len();
+    let model = plan.model();
+    let (description, mut unused) = describe(name, &model, &placed, &mut diagnostics);
+    diagnostics.found_without(before, &model.left_out);
     let mut scenes = Vec::with_capacity(plan.len());
     for scene in 0..plan.len() {
         let before = diagnostics.len();
         let variant = plan.scene(&mut blank(name, &mut diagnostics), scene);
         let (found, idle) = describe(name, &variant, &placed, &mut diagnostics);
+        diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
         // What one of them uses is used.
         unused.retain(|warning| idle.contains(warning));

@@ -40,6 +40,8 @@ pub struct Variant {
     pub scene: Option<String>,
     /// The tree, without `scenes`, `without`, and what is left out.
     pub root: Node,
+    /// Names of effects, joints and outputs that are not in it.
+    pub left_out: Vec<String>,
     /// What of a robot is left out: its names are known only when its file is read.
     pub robot: LeftOut,
     /// Whether parameters that nothing speaks of are there because something else is not.
@@ -143,11 +145,12 @@ impl<'n> Scenes<'n> {
     fn variant(&self, draft: Draft, scene: Option<String>) -> Variant {
         let partial = scene.is_some() || !draft.out.is_empty() || draft.robot.given().next().is_some();
         let robot = draft.robot.clone();
+        let left_out = draft.out.iter().map(|(_, name)| name.clone()).collect();
         let value = match self.root.value {
             Value::Mapping(_) => Value::Mapping(draft.finished()),
             _ => self.root.value.clone(),
         };
-        Variant { scene, root: Node { span: self.root.span.clone(), value }, robot, partial }
+        Variant { scene, root: Node { span: self.root.span.clone(), value }, left_out, robot, partial }
     }
 }
 

@@ -38,6 +38,9 @@ pub fn read<'r>(
     limits: Option<(&Node, Span)>,
 ) -> Vec<RobotEffect<'r>> {
     let mut found = Vec::new();
+    if let Some((_, at)) = limits.as_ref().filter(|_| !source.robot.joints.iter().any(is_limited)) {
+        reader.error(at.clone(), "no joint of the robot has limits", None);
+    }
     let impacts =
         limits.map(|(node, at)| [Kind::Revolute, Kind::Prismatic].map(|kind| impact(reader, source, node, &at, kind)));
     for &index in &source.robot.order {
@@ -47,13 +50,17 @@ pub fn read<'r>(
         let impact = impacts
             .as_ref()
             .and_then(|[turning, sliding]| if joint.kind.turns() { turning.clone() } else { sliding.clone() });
-        let limits = joint.limits.as_ref().filter(|_| joint.kind != Kind::Continuous);
-        if let (Some(impact), Some(limits)) = (impact, limits) {
+        if let (Some(impact), Some(limits), true) = (impact, &joint.limits, is_limited(joint)) {
             let on = OnJoint { joint: number, coordinate };
             found.push(stop(reader, source, joint, limits, on, impact));
         }
     }
     found
+}
+
+/// Whether the joint's way has ends.
+fn is_limited(joint: &Joint) -> bool {
+    matches!(joint.kind, Kind::Revolute | Kind::Prismatic) && joint.limits.is_some()
 }
 
 /// Damping and friction, where the file has them.
@@ -85,8 +92,7 @@ fn rubbing<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found
 /// How stops of joints of a kind push back; nothing where there are none.
 fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Kind) -> Option<Impact> {
     let coordinate = if kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement };
-    let limited = |joint: &Joint| joint.kind == kind && joint.limits.is_some();
-    if !source.robot.joints.iter().any(limited) {
+    if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {
         return None;
     }
     let fields = reader.fields::<file::Limits>(node, at.clone())?;
