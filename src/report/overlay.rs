@@ -41,7 +41,7 @@ pub fn overlay_svg(name: &str, scenes: &[SceneBounds]) -> Result<String, String>
             let bands = band.map(|band| {
                 let method = if same { String::new() } else { format!(" ({})", band.method.name()) };
                 let style =
-                    Style { label: format!("{}{method}", scene.name), color, edge: 1.6, fill: 0.18, dashes: None };
+                    Style { label: format!("{}{method}", scene.name), color, edge: 1.6, fill: 0.14, dashes: None };
                 (band, style)
             });
             let label = if bands.is_some() { "" } else { scene.name };
