@@ -23,7 +23,7 @@ parameters:
   clear: { value: 0.2, unit: m, tolerance: 1% }
 bodies:
   crank:  { mass: mass, inertia: mass*l1^2/12, points: { A: [-l1/2, 0], B: [l1/2, 0] } }
-  rod:    { mass: 0.8, inertia: 0.8*l2^2/12, points: { B: [-l2/2, 0], C: [l2/2, 0] } }
+  rod:    { mass: 0.8, inertia: 0.021, points: { B: [-l2/2, 0], C: [l2/2, 0] } }
   slider: { mass: 0.45, coordinates: [x] }
 joints:
   pivot: { revolute: [ground, crank.A] }
@@ -222,8 +222,8 @@ fn door(place: &Place) {
 model: door
 parameters:
   mass: { value: 20, unit: kg, tolerance: 5% }
-  rub: { value: 2, unit: N*m, tolerance: 10% }
-bodies: { leaf: { mass: mass, inertia: mass*0.07, points: { hinge: [-0.45, 0] } } }
+  rub: { value: 2, unit: N*m*s/rad, tolerance: 10% }
+bodies: { leaf: { mass: mass, inertia: 1.4, points: { hinge: [-0.45, 0] } } }
 joints: { hinge: { revolute: [ground, leaf.hinge] } }
 effects:
   closer: { torsional_spring_damper: { on: hinge, stiffness: 9, damping: 9 } }
@@ -385,8 +385,7 @@ outputs: { angle: crank.angle }
 simulation: { duration: 0.1, step: 1e-3, output_step: 0.01 }
 bounds: { scan: { points: 3 } }
 ";
-    let scenes =
-        "scenes:\n  fine: {}\n  short: { parameters: { rod: 0.01 } }\n  also_fine: { parameters: { torque: 2 } }\n";
+    let scenes = "scenes:\n  fine: {}\n  short: { parameters: { rod: { value: 0.01, tolerance: 1% } } }\n  also_fine: { parameters: { torque: 2 } }\n";
     fs::write(place.path().join("rocker.yaml"), format!("{text}{scenes}")).unwrap();
     let (output, errors) = place.run("run rocker.yaml", 1);
     assert!(errors.starts_with("error: rocker/short: "), "{errors}");
@@ -441,7 +440,17 @@ scenes:
     place.run("run -q robot.yaml", 0);
     place.run("run -q by_hand.yaml", 0);
     let table = |name: &str| fs::read_to_string(place.path().join("results").join(name).join("bounds.csv")).unwrap();
-    assert_eq!(table("robot/stopped"), table("by_hand"), "a limit is the stop that says the same");
+    // A limit is the stop that says the same, but that effects add up in another order.
+    let numbers = |name: &str| -> Vec<f64> {
+        let cells = table(name);
+        let cells = cells.lines().skip(1).flat_map(|line| line.split(',').filter_map(|cell| cell.parse().ok()));
+        cells.collect()
+    };
+    let (limited, stopped) = (numbers("robot/stopped"), numbers("by_hand"));
+    assert_eq!((limited.len(), limited.len()), (stopped.len(), 51 * 9));
+    for (limited, stopped) in limited.iter().zip(&stopped) {
+        assert!((limited - stopped).abs() < 1e-10, "{limited} {stopped}");
+    }
     let effects = |scene: &str| {
         let names: Vec<String> = explained(&place, &format!("robot.yaml --scene {scene}"))["effects"]
             .as_array()
@@ -489,7 +498,7 @@ fn a_ctrl_c_keeps_the_scenes_that_are_done() {
         }
         std::thread::sleep(std::time::Duration::from_millis(100));
     }
-    std::thread::sleep(std::time::Duration::from_millis(500));
+    std::thread::sleep(std::time::Duration::from_millis(2000));
     assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
     let ended = run.wait_with_output().unwrap();
     let (output, errors) = (String::from_utf8(ended.stdout).unwrap(), String::from_utf8(ended.stderr).unwrap());

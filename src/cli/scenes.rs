@@ -62,7 +62,7 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        let files = write_scenes(&self.folder, &found);
+        let files = if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &found) };
         let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;
@@ -79,14 +79,18 @@ impl Scenes {
         }
         let rows = ran.iter().map(|ran| (ran.scene, ran.seconds, ran.done.as_ref().map(|done| &done.summary)));
         text += &format!("\n\n{}\n", table(rows).render(2));
-        let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
-        let names: Vec<_> = names.collect();
-        let folders = ran.iter().filter(|ran| ran.done.is_some()).filter_map(|ran| {
-            let (_, job) = self.jobs.iter().find(|(scene, _)| scene == ran.scene)?;
-            Some(format!("{}/", job.folder.file_name().map(Path::new)?.display()))
-        });
-        let folders: Vec<String> = folders.collect();
-        text += &format!("  {}: {}; {}\n", self.folder.display(), names.join(", "), folders.join(", "));
+        if !files.is_empty() {
+            let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
+            let names: Vec<String> = files.iter().filter_map(|file| name(file)).collect();
+            let written = |scene: &str| ran.iter().any(|ran| ran.scene == scene && ran.done.is_some());
+            let folders: Vec<String> = self
+                .jobs
+                .iter()
+                .filter(|(scene, _)| written(scene))
+                .filter_map(|(_, job)| Some(format!("{}/", name(&job.folder)?)))
+                .collect();
+            text += &format!("  {}: {}; {}\n", self.folder.display(), names.join(", "), folders.join(", "));
+        }
         text
     }
 }
