@@ -43,14 +43,14 @@ pub(super) struct Job {
 
 /// What is run of a model.
 enum Work {
-    Alone(Job),
+    Alone(Box<Job>),
     Scenes(Scenes),
 }
 
 impl Work {
     fn jobs(&self) -> Vec<&Job> {
         match self {
-            Self::Alone(job) => vec![job],
+            Self::Alone(job) => vec![job.as_ref()],
             Self::Scenes(scenes) => scenes.jobs().collect(),
         }
     }
@@ -234,7 +234,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {
             Some((scene, job)) if alone || scene.is_none() => {
-                work.push(Work::Alone(job));
+                work.push(Work::Alone(Box::new(job)));
                 continue;
             }
             first => first.into_iter().chain(jobs).filter_map(|(scene, job)| Some((scene?, job))).collect(),

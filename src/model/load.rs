@@ -177,8 +177,8 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     let model = plan.model();
     let (description, mut unused) = describe(name, &model, &placed, &mut diagnostics);
     diagnostics.found_without(before, &model.left_out);
-    let mut scenes = Vec::with_capacity(plan.len());
-    for scene in 0..plan.len() {
+    let mut scenes = Vec::with_capacity(plan.count());
+    for scene in 0..plan.count() {
         let before = diagnostics.len();
         let variant = plan.scene(&mut blank(name, &mut diagnostics), scene);
         let (found, idle) = describe(name, &variant, &placed, &mut diagnostics);

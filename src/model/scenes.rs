@@ -65,6 +65,10 @@ impl LeftOut {
         among(&self.names) || self.all && !among(&self.kept)
     }
 
+    fn leaves_out_any(&self) -> bool {
+        self.all || !self.names.is_empty()
+    }
+
     /// Every name that was given, with its place.
     pub fn given(&self) -> impl Iterator<Item = &(String, Span)> {
         self.names.iter().chain(&self.kept)
@@ -114,7 +118,7 @@ impl<'n> Scenes<'n> {
     }
 
     /// How many scenes there are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.layers.len()
     }
 
@@ -143,7 +147,7 @@ impl<'n> Scenes<'n> {
     }
 
     fn variant(&self, draft: Draft, scene: Option<String>) -> Variant {
-        let partial = scene.is_some() || !draft.out.is_empty() || draft.robot.given().next().is_some();
+        let partial = scene.is_some() || !draft.out.is_empty() || draft.robot.leaves_out_any();
         let robot = draft.robot.clone();
         let left_out = draft.out.iter().map(|(_, name)| name.clone()).collect();
         let value = match self.root.value {
