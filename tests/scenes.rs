@@ -201,14 +201,14 @@ fn what_is_left_out_is_told_where_it_is_spoken_of() {
     let told = model::load_str("test.yaml", &text, &[]).unwrap_err();
     let expected = "\
 error: unknown joint `wrist`
-  --> test.yaml:30:36
+  --> test.yaml:28:36
    |
-30 |   rubbing: { joint_friction: { on: wrist, coefficient: 0.1, radius: 5 mm, coulomb: rub } }
+28 |   rubbing: { joint_friction: { on: wrist, coefficient: 0.1, radius: 5 mm, coulomb: rub } }
    |                                    ^^^^^
    |
-  ::: test.yaml:43:11
+  ::: test.yaml:41:11
    |
-43 | scenes: { open: { without: [wrist, x] } }
+41 | scenes: { open: { without: [wrist, x] } }
    |           ---- in this scene
    |
    = help: `wrist` is left out here: leave this out too, or put `wrist` in

@@ -185,7 +185,7 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
         // What one of them uses is used.
-        unused.retain(|warning| idle.contains(warning));
+        unused.retain(|warning| idle.iter().any(|found| found.message == warning.message));
         let (name, whole) = plan.place(scene);
         diagnostics.found_in_scene(before, &name, &whole);
     }
