@@ -217,9 +217,10 @@ fn overrides_are_reported_where_they_stand() {
     }
 }
 
-/// What is spoilt: a model of the plane, or a text with everything that there is in space.
-fn sound(spatial: bool) -> String {
-    if spatial { fs::read_to_string(root().join("tests/bad_models/space.yaml")).unwrap() } else { slider_crank() }
+/// What is spoilt: a model of the plane, a text with everything that there is in space, or one of scenes.
+fn sound(which: usize) -> String {
+    let file = ["models/slider_crank.yaml", "tests/bad_models/space.yaml", "models/door.yaml"][which];
+    fs::read_to_string(root().join(file)).unwrap()
 }
 
 fn never_panics(text: &str) {
@@ -234,10 +235,10 @@ proptest! {
 
     #[test]
     fn flipped_bytes_do_not_panic(
-        spatial in any::<bool>(),
+        which in 0..3_usize,
         flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
     ) {
-        let mut bytes = sound(spatial).into_bytes();
+        let mut bytes = sound(which).into_bytes();
         for (index, byte) in flips {
             let at = index.index(bytes.len());
             bytes[at] = byte;
@@ -247,10 +248,10 @@ proptest! {
 
     #[test]
     fn edited_lines_do_not_panic(
-        spatial in any::<bool>(),
+        which in 0..3_usize,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3), 1..5),
     ) {
-        let text = sound(spatial);
+        let text = sound(which);
         let mut lines: Vec<&str> = text.lines().collect();
         for (from, to, edit) in edits {
             let (from, to) = (from.index(lines.len()), to.index(lines.len()));
@@ -265,10 +266,10 @@ proptest! {
 
     #[test]
     fn swapped_tokens_do_not_panic(
-        spatial in any::<bool>(),
+        which in 0..3_usize,
         swaps in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..5),
     ) {
-        let text = sound(spatial);
+        let text = sound(which);
         let mut tokens: Vec<String> = Vec::new();
         for c in text.chars() {
             match tokens.last_mut() {

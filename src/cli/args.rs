@@ -73,6 +73,10 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
 
+    /// Only this scene of the models; may be given several times [default: all scenes].
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub scene: Vec<String>,
+
     /// Threads; results do not depend on it [default: one a core].
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
@@ -101,7 +105,8 @@ const MOST_THREADS: i64 = 1024;
 const RUN_HELP: &str = "\
 Writes bounds.csv (a column t, then NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
 output, and which are unresolved),
-summary.json, and a plot NAME.svg of each output.";
+summary.json, and a plot NAME.svg of each output. A model's scenes have a folder each; beside
+them are scenes.csv and a plot of each output with all scenes in it.";
 
 #[derive(Debug, Args)]
 #[command(after_help = COST_HELP)]
@@ -125,6 +130,10 @@ pub(super) struct CostArgs {
     /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
+
+    /// A scene of the model, instead of the model itself.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
 
     /// Threads [default: one a core].
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
@@ -156,6 +165,10 @@ pub(super) struct ExplainArgs {
     /// Model file.
     #[arg(value_name = "MODEL", required_unless_present = "effects")]
     pub model: Option<PathBuf>,
+
+    /// A scene of the model, instead of the model itself.
+    #[arg(long, value_name = "NAME", conflicts_with = "effects")]
+    pub scene: Option<String>,
 
     /// Instead of a model: every effect that there is, with its keys, units, formula and source.
     #[arg(long, conflicts_with = "model")]

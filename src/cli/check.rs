@@ -23,12 +23,26 @@ struct Checked {
     /// What is wrong with the mechanism as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
+    /// What is known of each of its scenes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    scenes: Vec<CheckedScene>,
     /// `diagnostics` for people.
     #[serde(skip)]
     rendered: String,
     /// Of a robot's links, for people.
     #[serde(skip)]
     tree: String,
+}
+
+/// What is known of a scene.
+#[derive(Serialize)]
+struct CheckedScene {
+    scene: String,
+    ok: bool,
+    #[serde(flatten)]
+    counts: Option<Counts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -56,6 +70,15 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
                 if let Some(counts) = &model.counts {
                     console.print(&counts.line())?;
                 }
+                for scene in &model.scenes {
+                    match (&scene.counts, &scene.error) {
+                        (Some(counts), _) => console.print(&counts.line())?,
+                        (None, error) => {
+                            let error = error.as_deref().unwrap_or_default();
+                            console.error(&format!("{}: scene {}: {error}", model.file, scene.scene));
+                        }
+                    }
+                }
                 console.print(&model.tree)?;
             }
         }
@@ -73,6 +96,7 @@ fn check_one(path: &Path, color: bool) -> Checked {
         counts: None,
         diagnostics: Vec::new(),
         error: None,
+        scenes: Vec::new(),
         rendered: String::new(),
         tree: String::new(),
     };
@@ -81,11 +105,24 @@ fn check_one(path: &Path, color: bool) -> Checked {
     let rendered = if told.is_empty() { String::new() } else { told.render(color) };
     let read = Checked { diagnostics: told.records(), rendered, ..nothing };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
+    if !reading.scenes.is_empty() {
+        // The scenes are what is run; the model itself has been read.
+        let scenes: Vec<CheckedScene> = reading.scenes.iter().map(check_scene).collect();
+        return Checked { ok: scenes.iter().all(|scene| scene.ok), scenes, ..read };
+    }
     match reading.description.as_ref().map(explain_model) {
         None => read,
         Some(Err(error)) => Checked { error: Some(error.to_string()), ..read },
         Some(Ok(explanation)) => Checked { ok: true, counts: Some(explanation.into()), ..read },
     }
+}
+
+fn check_scene(scene: &model::Scene) -> CheckedScene {
+    let (counts, error) = match explain_model(&scene.description) {
+        Ok(explanation) => (Some(Counts::from(explanation)), None),
+        Err(error) => (None, Some(error.to_string())),
+    };
+    CheckedScene { scene: scene.name.clone(), ok: counts.is_some(), counts, error }
 }
 
 impl From<Explanation> for Counts {

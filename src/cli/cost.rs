@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use super::args::CostArgs;
 use super::console::{BOLD, Console, count};
 use super::progress::Progress;
-use super::run::set_once;
+use super::run::{results_of, set_once};
 use super::table::{Align, Table};
 use super::{Failure, Status, load};
 use crate::batch::{self, CostOptions};
 use crate::model::{BoundsRequest, Description, Stepping};
-use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, file_stem, pareto, prepare_folder, write_cost};
+use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, pareto, prepare_folder, write_cost};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
     set_once(&args.set)?;
-    let Some(model) = load::load(&args.model, &args.set, console) else {
+    let Some(model) = load::load(&args.model, &args.set, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let folder = args.output.clone().unwrap_or_else(|| Path::new("results").join(file_stem(&model.name)));
+    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
 
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));

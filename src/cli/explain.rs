@@ -17,7 +17,7 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
         })?;
         return Ok(Status::Done);
     };
-    let Some(model) = load::load(path, &[], console) else {
+    let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let explanation = explain_model(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;

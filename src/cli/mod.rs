@@ -15,6 +15,7 @@ mod load;
 mod new;
 mod progress;
 mod run;
+mod scenes;
 mod table;
 mod tree;
 

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::args::RunArgs;
 use super::console::{BOLD, Console, count};
 use super::progress::Progress;
+use super::scenes::Scenes;
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::batch;
@@ -18,48 +19,83 @@ use crate::report::{
 };
 
 /// What a run needs, checked.
-struct Request {
+pub(super) struct Request {
     models: Vec<PathBuf>,
     overrides: Vec<Override>,
+    /// Empty: all that there are.
+    scenes: Vec<String>,
     /// Absent: those that the model asks for.
     methods: Option<Vec<Method>>,
     certify: bool,
     output: Option<PathBuf>,
     threads: Option<usize>,
-    quiet: bool,
+    pub quiet: bool,
     timings: bool,
     certify_time: bool,
     skip_infeasible: bool,
 }
 
-/// A model with the folder for its results.
-struct Job {
-    model: Description,
-    folder: PathBuf,
+/// A model, or a scene of it, with the folder for its results.
+pub(super) struct Job {
+    pub model: Description,
+    pub folder: PathBuf,
+}
+
+/// What is run of a model.
+enum Work {
+    Alone(Box<Job>),
+    Scenes(Scenes),
+}
+
+impl Work {
+    fn jobs(&self) -> Vec<&Job> {
+        match self {
+            Self::Alone(job) => vec![job.as_ref()],
+            Self::Scenes(scenes) => scenes.jobs().collect(),
+        }
+    }
+}
+
+/// What a run came to.
+pub(super) struct Done {
+    pub status: Status,
+    pub bounds: Bounds,
+    pub summary: Summary,
+    pub files: Vec<PathBuf>,
 }
 
 pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failure> {
     let request = Request::check(args)?;
-    let Some(models) = load::load_all(&request.models, &request.overrides, console) else {
+    let Some(models) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
         return Ok(Status::Wrong);
     };
+    let work = work(models, &request)?;
     // All that can be wrong is found before the first run, which may take hours.
-    for (model, path) in models.iter().zip(&request.models) {
-        mechanics::build(model).map_err(|error| Failure::Wrong(format!("{}: {error}", shown(path))))?;
+    for (work, path) in work.iter().zip(&request.models) {
+        for job in work.jobs() {
+            let wrong = |error| match work {
+                Work::Alone(_) => Failure::Wrong(format!("{}: {error}", shown(path))),
+                Work::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
+            };
+            mechanics::build(&job.model).map_err(wrong)?;
+        }
     }
-    let jobs = jobs(models, &request)?;
-    for job in &jobs {
+    for job in work.iter().flat_map(Work::jobs) {
         prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     }
 
     interrupt::listen();
     let mut status = Status::Done;
-    for (i, job) in jobs.iter().enumerate() {
+    for (i, work) in work.iter().enumerate() {
         if i > 0 && !request.quiet {
             console.print("\n")?;
         }
         // A model that fails does not take the others with it.
-        match run_one(job, &request, console) {
+        let done = match work {
+            Work::Alone(job) => run_and_tell(job, &request, console),
+            Work::Scenes(scenes) => scenes.run(&request, console),
+        };
+        match done {
             Ok(done) => status = status.max(done),
             Err(Failure::Failed(message)) => {
                 console.error(&message);
@@ -74,7 +110,17 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
     Ok(status)
 }
 
-fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
+fn run_and_tell(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
+    let done = run_one(job, request)?;
+    if !request.quiet {
+        console.print(&overview(&done.summary, &job.folder, &done.files))?;
+    }
+    complain(&done, console);
+    Ok(done.status)
+}
+
+/// Runs a model and writes its results; what of them is wrong is in the status, and told by [`complain`].
+pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     let name = &job.model.name;
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
     let progress = Progress::new(name, !request.quiet);
@@ -92,35 +138,48 @@ fn run_one(job: &Job, request: &Request, console: &mut Console) -> Result<Status
 
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let files = write_results(&job.folder, &bounds, &written).map_err(|error| failed(&error))?;
-    if !request.quiet {
-        console.print(&overview(&summary, &job.folder, &files))?;
+    let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
+    Ok(Done { status, bounds, summary, files })
+}
+
+/// Tells what is wrong with a run's results.
+pub(super) fn complain(done: &Done, console: &Console) {
+    let name = &done.summary.model;
+    if let Some(failure) = &done.summary.failure {
+        console.error(&format!("{name}: {failure}"));
+        return;
     }
-    if let Some(failure) = &summary.failure {
-        return Err(failed(failure));
-    }
-    if let Some(message) = unresolved(&summary) {
+    if let Some(message) = unresolved(&done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
-    if let Some(message) = left_out(&bounds, &summary) {
+    if let Some(message) = left_out(&done.bounds, &done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
+}
+
+/// Whether every output is resolved by some method at every time.
+fn resolution(bounds: &Bounds) -> Status {
     // A method that is lost where another is not leaves an answer.
     let answered = |output: &OutputBounds| {
         let resolved = |row: usize| output.bands.iter().any(|band| !band.error.unresolved[row]);
         output.bands.is_empty() || (0..bounds.times.len()).all(resolved)
     };
-    Ok(if bounds.outputs.iter().all(answered) { Status::Done } else { Status::Unresolved })
+    if bounds.outputs.iter().all(answered) { Status::Done } else { Status::Unresolved }
 }
 
 impl Request {
     fn check(args: RunArgs) -> Result<Self, Failure> {
         set_once(&args.set)?;
+        let mut scenes = args.scene;
+        scenes.sort_unstable();
+        scenes.dedup();
         let mut methods = args.method;
         methods.sort_unstable();
         methods.dedup();
         Ok(Self {
             models: args.models,
             overrides: args.set,
+            scenes,
             methods: if methods.is_empty() { None } else { Some(methods) },
             certify: args.certify,
             output: args.output,
@@ -142,28 +201,47 @@ pub(super) fn set_once(overrides: &[Override]) -> Result<(), Failure> {
     }
 }
 
+/// Where a model's results are by default; a scene's, in a folder of its own there.
+pub(super) fn results_of(name: &str) -> PathBuf {
+    name.split('/').fold(PathBuf::from("results"), |folder, part| folder.join(file_stem(part)))
+}
+
 /// Gives every model its folder; no two the same.
-fn jobs(models: Vec<Description>, request: &Request) -> Result<Vec<Job>, Failure> {
+fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failure> {
     let several = models.len() > 1;
     let mut taken: HashMap<String, &Path> = HashMap::new();
-    let mut jobs = Vec::new();
-    for (mut model, path) in models.into_iter().zip(&request.models) {
-        model.bounds.certified |= request.certify;
-        let name = file_stem(&model.name);
+    let mut work = Vec::new();
+    for (load::Model { name, scenes }, path) in models.into_iter().zip(&request.models) {
+        let stem = file_stem(&name);
         // Folders that differ only in upper and lower case are one on some systems.
-        if let Some(other) = taken.insert(name.to_lowercase(), path) {
+        if let Some(other) = taken.insert(stem.to_lowercase(), path) {
             let (first, second) = (other.display(), path.display());
-            let message = format!("{first} and {second} would both write the results of `{}`", model.name);
+            let message = format!("{first} and {second} would both write the results of `{name}`");
             return Err(Failure::Wrong(format!("{message}: run them one by one, each with its own --output")));
         }
         let folder = match &request.output {
-            Some(folder) if several => folder.join(name),
+            Some(folder) if several => folder.join(stem),
             Some(folder) => folder.clone(),
-            None => Path::new("results").join(name),
+            None => results_of(&name),
         };
-        jobs.push(Job { model, folder });
+        let mut jobs = scenes.into_iter().map(|(scene, mut model)| {
+            model.bounds.certified |= request.certify;
+            let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
+            (scene, Job { model, folder })
+        });
+        // A scene that is asked for alone is run as a model is.
+        let alone = request.scenes.len() == 1;
+        let first = jobs.next();
+        let scenes: Vec<(String, Job)> = match first {
+            Some((scene, job)) if alone || scene.is_none() => {
+                work.push(Work::Alone(Box::new(job)));
+                continue;
+            }
+            first => first.into_iter().chain(jobs).filter_map(|(scene, job)| Some((scene?, job))).collect(),
+        };
+        work.push(Work::Scenes(Scenes::new(name, folder, scenes)));
     }
-    Ok(jobs)
+    Ok(work)
 }
 
 /// How wide each band is and how far it may be from the truth.

@@ -35,6 +35,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         .parameters
         .iter()
         .filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. }))
+        .filter(|parameter| !reader.idle.contains(&parameter.name))
         .map(|parameter| parameter.name.clone())
         .collect();
     let Some((node, at)) = section else {
@@ -184,7 +185,7 @@ fn per_parameter(
     };
     let mut counts: HashMap<&str, usize> = HashMap::new();
     let mut complete = true;
-    for entry in entries {
+    for entry in entries.iter().filter(|entry| !reader.idle.contains(&entry.key)).collect::<Vec<_>>() {
         let count = reader.count(&entry.value, least, most);
         if uncertain.contains(&entry.key) {
             complete &= count.is_some();

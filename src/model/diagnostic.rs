@@ -1,5 +1,6 @@
 //! What is wrong with a model, and where: collected, not thrown one by one.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use serde::Serialize;
@@ -111,6 +112,33 @@ impl Diagnostics {
     /// Adds one.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.items.push(diagnostic);
+    }
+
+    /// How many there are so far.
+    pub(super) fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Of those behind the `first`: says of names that are unknown because they are left out that they are.
+    pub(super) fn found_without(&mut self, first: usize, left_out: &[String]) {
+        for diagnostic in self.items[first..].iter_mut().filter(|found| found.message.starts_with("unknown ")) {
+            if let Some(name) = left_out.iter().find(|name| diagnostic.message.ends_with(&format!(" `{name}`"))) {
+                diagnostic.help = Some(format!("`{name}` is left out here: leave this out too, or put `{name}` in"));
+            }
+        }
+    }
+
+    /// Of those behind the `first`, which were found in a scene: forgets what was said before, and points to the scene from the
+    /// others that lie outside of it. `name` is the place of the scene's name, `whole` that of all of it.
+    pub(super) fn found_in_scene(&mut self, first: usize, name: &Span, whole: &Span) {
+        let found = self.items.split_off(first);
+        let key = |diagnostic: &Diagnostic| (diagnostic.span.clone(), diagnostic.message.clone());
+        let said: HashSet<_> = self.items.iter().map(key).collect();
+        for diagnostic in found.into_iter().filter(|diagnostic| !said.contains(&key(diagnostic))) {
+            let inside =
+                diagnostic.span.as_ref().is_some_and(|span| whole.start <= span.start && span.end <= whole.end);
+            self.items.push(if inside { diagnostic } else { diagnostic.also(name.clone(), "in this scene") });
+        }
     }
 
     /// All, in the order in which they stand in the file.

@@ -5,6 +5,7 @@ mod touching;
 
 use symdiff::Formula;
 
+pub(super) use self::touching::impact;
 use super::description::Effect;
 use super::effect_kinds::{EffectKind, Twisted};
 use super::file;

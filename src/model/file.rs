@@ -208,6 +208,20 @@ enum OrBetween<T> {
     Full(T),
 }
 
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+enum AllEffects {
+    All,
+}
+
+/// Names of effects, joints and outputs, or `all` effects.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+enum Without {
+    All(AllEffects),
+    Names(Vec<String>),
+}
+
 /// A whole number for all parameters, or one for each uncertain parameter.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -280,6 +294,64 @@ grammar! {
         simulation: Simulation,
         /// Which bounds to compute; without this, Chebyshev of order 5.
         bounds: Option<Bounds>,
+        /// Makes stops of the limits of the robot's joints; by default they do nothing.
+        limits: Option<Limits>,
+        /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
+        without: Option<Without>,
+        /// Named variants of this model; `mbint run` runs each of them instead of it.
+        scenes: Option<IndexMap<String, Scene>>,
+    }
+
+    /// A variant of the model: what is not said here is as the model says it.
+    Scene is "a scene" {
+        /// One line for people.
+        description: Option<String>,
+        /// A scene whose changes come first.
+        extends: Option<String>,
+        /// What is not in: effects, joints and outputs by name, or `all` effects.
+        without: Option<Without>,
+        /// What is in although the model, the scene that is extended or this one's `without` leaves it out.
+        with: Option<Vec<String>>,
+        /// New values of the model's parameters, in the model's units.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Instead of the model's of the same name, or on top.
+        joints: Option<IndexMap<String, Joint>>,
+        /// Instead of the model's of the same name, or on top.
+        effects: Option<IndexMap<String, Effect>>,
+        /// Instead of the model's of the same name, or on top.
+        initial: Option<IndexMap<String, StartFile>>,
+        /// Instead of the model's of the same name, or on top.
+        guess: Option<IndexMap<String, StartFile>>,
+        /// Instead of the model's of the same name, or on top.
+        outputs: Option<IndexMap<String, Number>>,
+        /// Keys that are not as in the model.
+        simulation: Option<SceneSimulation>,
+        /// Instead of the model's.
+        bounds: Option<Bounds>,
+        /// Instead of the model's.
+        limits: Option<Limits>,
+    }
+
+    /// How time is stepped in a scene.
+    SceneSimulation is "`simulation`" {
+        /// s
+        duration: Option<Number>,
+        /// Length of every step, s; instead of a `tolerance` of the model.
+        step: Option<Number>,
+        /// Instead of `step`: what the steps' position errors may add up to over the run, relative to |q| or, where that is larger, to the model's size.
+        tolerance: Option<Number>,
+        /// HHT parameter from -1/3 to below 0.
+        alpha: Option<Number>,
+        /// s between rows of output.
+        output_step: Option<Number>,
+        /// By which coordinates the motion is described.
+        formulation: Option<FormulationName>,
+    }
+
+    /// Stops at the limits of a robot's joints.
+    Limits is "`limits`" {
+        /// How they push back.
+        impact: Impact,
     }
 
     /// A parameter; certain unless it has a tolerance, an interval, or plus and minus.
@@ -961,6 +1033,8 @@ mod tests {
     #[test]
     fn the_reader_and_the_schema_know_the_same_keys() {
         same_keys::<File>();
+        same_keys::<Scene>();
+        same_keys::<SceneSimulation>();
         same_keys::<Parameter>();
         same_keys::<Body>();
         same_keys::<Held>();

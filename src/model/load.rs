@@ -1,5 +1,6 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::Read;
 use std::path::Path;
@@ -9,8 +10,9 @@ use super::diagnostic::{Diagnostic, Diagnostics};
 use super::file;
 use super::overrides::Override;
 use super::reader::Reader;
+use super::scenes::{Scenes, Variant};
 use super::source::Span;
-use super::suggest::clip;
+use super::suggest::{self, clip};
 use super::urdf::{self, Urdf};
 use super::yaml::{self, Entry, Node};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
@@ -21,10 +23,54 @@ pub(super) const MAX_BYTES: u64 = 10_000_000;
 /// What reading a model gave: both may be there when there are only warnings.
 #[derive(Clone, Debug)]
 pub struct Reading {
-    /// The model, unless it has errors.
+    /// The model itself, unless it or a scene of it has errors.
     pub description: Option<Description>,
+    /// Its scenes, each a model of its own; none where there are errors.
+    pub scenes: Vec<Scene>,
     /// Errors and warnings.
     pub diagnostics: Diagnostics,
+}
+
+/// A scene of a model.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Its name, which is also that of its folder.
+    pub name: String,
+    /// The model as it is in this scene; its name is `MODEL/SCENE`.
+    pub description: Description,
+}
+
+/// A scene that a model does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no scene `{name}`: {help}")]
+pub struct UnknownScene {
+    /// As it was asked for.
+    pub name: String,
+    /// What would be right.
+    pub help: String,
+}
+
+impl Reading {
+    /// Scenes by their names, in the file's order, each with its name; all where none is named. A model without scenes is itself
+    /// what is asked for, under no name.
+    ///
+    /// # Errors
+    /// For a name that no scene has.
+    pub fn chosen(self, names: &[String]) -> Result<Vec<(Option<String>, Description)>, UnknownScene> {
+        let known = || self.scenes.iter().map(|scene| scene.name.as_str());
+        if let Some(name) = names.iter().find(|name| !known().any(|known| known == **name)) {
+            let help = match self.scenes.len() {
+                0 => "the model has no `scenes`".to_owned(),
+                _ => suggest::help(name, "scenes", known()).unwrap_or_else(|| "`mbint check` lists them".to_owned()),
+            };
+            return Err(UnknownScene { name: clip(name), help });
+        }
+        if self.scenes.is_empty() {
+            return Ok(self.description.map(|description| (None, description)).into_iter().collect());
+        }
+        let chosen = self.scenes.into_iter().filter(|scene| names.is_empty() || names.contains(&scene.name));
+        Ok(chosen.map(|scene| (Some(scene.name), scene.description)).collect())
+    }
 }
 
 /// Reads a model file, parameters replaced as the command line says.
@@ -32,7 +78,7 @@ pub struct Reading {
 /// # Errors
 /// Everything that is wrong with the file.
 pub fn load(path: &Path, overrides: &[Override]) -> Result<Description, Diagnostics> {
-    let Reading { description, diagnostics } = read(path, overrides);
+    let Reading { description, diagnostics, .. } = read(path, overrides);
     description.ok_or(diagnostics)
 }
 
@@ -41,7 +87,7 @@ pub fn load(path: &Path, overrides: &[Override]) -> Result<Description, Diagnost
 /// # Errors
 /// Everything that is wrong with the text.
 pub fn load_str(name: &str, text: &str, overrides: &[Override]) -> Result<Description, Diagnostics> {
-    let Reading { description, diagnostics } = read_str(name, text, overrides);
+    let Reading { description, diagnostics, .. } = read_str(name, text, overrides);
     description.ok_or(diagnostics)
 }
 
@@ -62,7 +108,7 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");
             diagnostics.push(*error);
-            Reading { description: None, diagnostics }
+            Reading { description: None, scenes: Vec::new(), diagnostics }
         }
     }
 }
@@ -121,15 +167,37 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     if let Some(zero) = text.find('\0') {
         let message = "the file is not text: it has a zero byte";
         diagnostics.push(Diagnostic::error(zero..zero + 1, message));
-        return Reading { description: None, diagnostics };
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
     }
-    let root = yaml::parse(text, &mut diagnostics);
-    let description = root.map(|root| describe(name, &root, &placed, &mut diagnostics));
-    Reading { description: description.filter(|_| !diagnostics.has_errors()), diagnostics }
+    let Some(root) = yaml::parse(text, &mut diagnostics) else {
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
+    };
+    let plan = Scenes::read(&mut blank(name, &mut diagnostics), &root);
+    let before = diagnostics.len();
+    let model = plan.model();
+    let (description, mut unused) = describe(name, &model, &placed, &mut diagnostics);
+    diagnostics.found_without(before, &model.left_out);
+    let mut scenes = Vec::with_capacity(plan.count());
+    for scene in 0..plan.count() {
+        let before = diagnostics.len();
+        let variant = plan.scene(&mut blank(name, &mut diagnostics), scene);
+        let (found, idle) = describe(name, &variant, &placed, &mut diagnostics);
+        diagnostics.found_without(before, &variant.left_out);
+        scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
+        // What one of them uses is used.
+        unused.retain(|warning| idle.iter().any(|found| found.message == warning.message));
+        let (name, whole) = plan.place(scene);
+        diagnostics.found_in_scene(before, &name, &whole);
+    }
+    if diagnostics.has_errors() {
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
+    }
+    unused.into_iter().for_each(|warning| diagnostics.push(warning));
+    Reading { description: Some(description), scenes, diagnostics }
 }
 
-/// Reads every section. What others refer to comes before what refers to it.
-fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics: &mut Diagnostics) -> Description {
+/// A reader of nothing yet.
+fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
     let model = Description {
         name: Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned()),
         description: None,
@@ -151,7 +219,7 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         },
         bounds: BoundsRequest::default(),
     };
-    let mut reader = Reader {
+    Reader {
         diagnostics,
         model,
         kinds: Vec::new(),
@@ -159,13 +227,29 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         varies: Vec::new(),
         broken: false,
         used: Vec::new(),
+        used_by_parameters: Vec::new(),
+        idle: HashSet::new(),
         tables: Vec::new(),
         folder: Path::new(name).parent().unwrap_or(Path::new("")).to_owned(),
-    };
+    }
+}
+
+/// Reads every section, what others refer to before what refers to it; the warnings are of parameters that are used nowhere.
+fn describe(
+    name: &str,
+    variant: &Variant,
+    overrides: &[(Override, Span)],
+    diagnostics: &mut Diagnostics,
+) -> (Description, Vec<Diagnostic>) {
+    let root = &variant.root;
+    let mut reader = blank(name, diagnostics);
     let start = root.span.start..root.span.start;
-    let Some(fields) = reader.fields::<file::File>(root, start) else { return reader.model };
+    let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
     if let Some(node) = fields.get("model") {
         title(&mut reader, node);
+    }
+    if let Some(scene) = &variant.scene {
+        reader.model.name = format!("{}/{scene}", reader.model.name);
     }
     if let Some(node) = fields.get("description") {
         let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
@@ -175,7 +259,7 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         None => None,
         Some(node) => {
             let Some(robot) = Urdf::read(&mut reader, node, &fields, Path::new(name), root, overrides) else {
-                return reader.model;
+                return (reader.model, Vec::new());
             };
             Some(robot)
         }
@@ -207,11 +291,21 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
     reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
     reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
     requests::outputs(&mut reader, output_entries);
-    if let Some(robot) = &robot {
-        robot.finish(&mut reader, output_entries.is_empty());
+    let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
+    match &robot {
+        Some(robot) => robot.finish(&mut reader, &variant.robot, limits, output_entries.is_empty()),
+        None => {
+            if let Some((_, at)) = limits {
+                let message = "`limits` are those of a robot's joints, but the model names no `urdf`";
+                reader.error(at, message, "the effect `stop` limits a joint of the model's own".to_owned());
+            }
+        }
     }
     if let Some(node) = reader.required(&fields, "simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
+    }
+    if variant.partial {
+        reader.idle = parameters::idle(&reader);
     }
     let bounds_section = fields.get("bounds").map(|node| (node, fields.key_span("bounds")));
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
@@ -225,10 +319,10 @@ fn describe(name: &str, root: &Node, overrides: &[(Override, Span)], diagnostics
         let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
         reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
     }
-    if !reader.diagnostics.has_errors() {
-        parameters::warn_unused(&mut reader, parameter_entries);
-    }
-    reader.model
+    let unused = parameters::unused(&reader, parameter_entries);
+    let Reader { mut model, idle, .. } = reader;
+    model.parameters.retain(|parameter| !idle.contains(&parameter.name));
+    (model, unused)
 }
 
 fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
@@ -238,12 +332,20 @@ fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [
 /// The model's name, which is also that of its folder.
 fn title(reader: &mut Reader, node: &Node) {
     let Some(scalar) = reader.scalar(node, "a name") else { return };
-    let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
-    if scalar.text.len() > 100 || !scalar.text.chars().all(good) {
-        let message = format!("`{}` cannot be the name of a model", clip(&scalar.text));
-        let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
-        reader.error(node.span.clone(), message, help);
-        return;
+    if reader.folder_name(&scalar.text, node.span.clone(), "a model") {
+        reader.model.name.clone_from(&scalar.text);
     }
-    reader.model.name.clone_from(&scalar.text);
+}
+
+impl Reader<'_> {
+    /// Whether a text can be the name of something that has a folder of results; says so where it cannot.
+    pub(super) fn folder_name(&mut self, name: &str, span: Span, what: &str) -> bool {
+        let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+        let fine = name.len() <= 100 && name.chars().all(good);
+        if !fine {
+            let help = "it names a folder of results: use letters, digits, `_` and `-`".to_owned();
+            self.error(span, format!("`{}` cannot be the name of {what}", clip(name)), help);
+        }
+        fine
+    }
 }

@@ -31,6 +31,7 @@ mod motors;
 mod overrides;
 mod parameters;
 mod requests;
+mod scenes;
 mod space;
 mod tables;
 #[cfg(test)]
@@ -44,6 +45,6 @@ pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
 pub use effect_kinds::*;
 pub use file::schema;
 pub use kinds::*;
-pub use load::{Reading, load, load_str, read, read_str, shown};
+pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;
 pub use source::{Place, Source, Sources, Span};

@@ -1,6 +1,6 @@
 //! `parameters:` and the `--set` that replace them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
@@ -82,6 +82,8 @@ pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span
     sort(reader, &order);
     let places: Vec<Span> = order.iter().map(|&index| drafts[index].name_span.clone()).collect();
     corners(reader, &places);
+    let none = vec![false; entries.len()];
+    reader.used_by_parameters = std::mem::replace(&mut reader.used, none);
 }
 
 fn find_overrides<'o>(
@@ -524,14 +526,32 @@ fn corners(reader: &mut Reader, name_spans: &[Span]) {
     reader.varies = varies;
 }
 
-/// Warns of parameters that nothing uses.
-pub fn warn_unused(reader: &mut Reader, entries: &[Entry]) {
-    let named = reader.model.parameters.iter().map(|parameter| parameter.name.as_str()).zip(&reader.used);
-    let used: HashMap<&str, bool> = named.map(|(name, used)| (name, *used)).collect();
+/// Warnings of parameters that nothing uses.
+pub fn unused(reader: &Reader, entries: &[Entry]) -> Vec<Diagnostic> {
+    let used = reader.used.iter().zip(&reader.used_by_parameters).map(|(used, by_parameters)| *used || *by_parameters);
+    let used: HashMap<&str, bool> =
+        reader.model.parameters.iter().map(|parameter| parameter.name.as_str()).zip(used).collect();
     let unused = |entry: &&Entry| used.get(entry.key.as_str()) == Some(&false);
-    // What a robot's numbers do is in its bodies.
-    for entry in entries.iter().filter(|entry| !urdf::is_number(&entry.key)).filter(unused) {
+    let warning = |entry: &Entry| {
         let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
-        reader.diagnostics.push(Diagnostic::warning(entry.key_span.clone(), message));
+        Diagnostic::warning(entry.key_span.clone(), message)
+    };
+    // What a robot's numbers do is in its bodies.
+    entries.iter().filter(|entry| !urdf::is_number(&entry.key)).filter(unused).map(warning).collect()
+}
+
+/// Names of the parameters that vary, but that nothing speaks of, directly or through others.
+pub fn idle(reader: &Reader) -> HashSet<String> {
+    let parameters = &reader.model.parameters;
+    let positions: HashMap<&str, usize> =
+        parameters.iter().enumerate().map(|(index, parameter)| (parameter.name.as_str(), index)).collect();
+    let mut needed = reader.used.clone();
+    // Each depends on earlier ones only.
+    for (index, parameter) in parameters.iter().enumerate().rev() {
+        if let (true, ParameterValue::Formula(formula)) = (needed[index], &parameter.value) {
+            formula.names().filter_map(|(name, _)| positions.get(name)).for_each(|&used| needed[used] = true);
+        }
     }
+    let idle = |index: &usize| reader.varies[*index] && !needed[*index];
+    (0..parameters.len()).filter(idle).map(|index| parameters[index].name.clone()).collect()
 }

@@ -3,7 +3,7 @@
 //! Reading goes on after an error, so that one run reports as many as can be found. A reader gives `None` only when it
 //! has reported why.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
 use symdiff::{Formula, Graph, Spline};
@@ -35,8 +35,12 @@ pub struct Reader<'d> {
     pub varies: Vec<bool>,
     /// Whether a parameter has no value because of an error that was reported.
     pub broken: bool,
-    /// Names that formulas used, for the warning about the others.
+    /// Parameters that something speaks of, other parameters aside.
     pub used: Vec<bool>,
+    /// Parameters that others speak of.
+    pub used_by_parameters: Vec<bool>,
+    /// Parameters that vary, but in what is left out only.
+    pub idle: HashSet<String>,
     /// Functions that the file gives by their values.
     pub tables: Vec<Table>,
     /// Where files are that the model names.

@@ -45,13 +45,17 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Adds a text and gives the offset of its first byte.
+    /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes name,
+    /// is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
+        let (name, text) = (name.into(), text.into());
+        if let Some(known) = self.all.iter().find(|known| known.name == name && known.text == text) {
+            return known.start;
+        }
         // One offset lies between two texts, so that the end of one is not the start of the next.
         let start = self.all.last().map_or(0, |last| last.start + last.text.len() + 1);
-        let text: String = text.into();
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(newline, _)| newline + 1)).collect();
-        self.all.push(Source { name: name.into(), text, start, lines });
+        self.all.push(Source { name, text, start, lines });
         start
     }
 

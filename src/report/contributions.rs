@@ -5,8 +5,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, svg, text_style, text_width};
 use super::csv::number;
-use super::plot::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, svg, text_style, text_width};
 use crate::bounds::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.

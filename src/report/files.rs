@@ -79,7 +79,7 @@ pub fn file_stem(name: &str) -> String {
 }
 
 /// [`file_stem`]s, made unique (also where upper and lower case are one) by `-2`, `-3`, … on the later ones.
-fn unique_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub(super) fn unique_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut unique = |name: &str| {
         let stem = file_stem(name);

@@ -1,14 +1,19 @@
 //! Bounds → files: CSV, summary and plots.
 
 mod axis;
+mod canvas;
 mod contributions;
 mod cost;
 mod csv;
 mod explanation;
+mod figure;
 mod files;
 mod folder;
+mod overlay;
+mod panel;
 mod plot;
 mod polyline;
+mod scenes;
 mod summary;
 mod view;
 
@@ -20,7 +25,9 @@ pub use cost::{
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, write_results};
 pub use folder::prepare_folder;
+pub use overlay::overlay_svg;
 pub use plot::plot_svg;
+pub use scenes::{SceneBounds, scenes_csv, write_scenes};
 pub use summary::{
     ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
 };

@@ -35,6 +35,16 @@ pub fn load(path: &Path) -> Description {
     model::load(path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
+/// What `mbint run` runs of a file: its scenes or, where it has none, the model itself.
+#[track_caller]
+pub fn load_all(path: &Path) -> Vec<Description> {
+    let reading = model::read(path, &[]);
+    let told = reading.diagnostics.clone();
+    let chosen = reading.chosen(&[]).unwrap();
+    assert!(!chosen.is_empty(), "{told}");
+    chosen.into_iter().map(|(_, description)| description).collect()
+}
+
 /// A model from text.
 #[track_caller]
 pub fn read(text: &str) -> Description {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use mbint::bounds::{Bounds, OutputBounds};
 
-use super::common::{load, model_files, run};
+use super::common::{load_all, model_files, run};
 
 /// Times that are shown of a run.
 const TIMES: usize = 10;
@@ -68,16 +68,26 @@ fn bounds_are_those_of_the_snapshots() {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     for path in model_files() {
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        settings.set_description(format!("models/{name}.yaml"));
-        settings.bind(|| insta::assert_snapshot!(name, table(&run(&load(&path)))));
+        let file = path.file_stem().unwrap().to_string_lossy().into_owned();
+        for description in load_all(&path) {
+            // A scene's is called `door.windy`.
+            let name = description.name.replace('/', ".");
+            settings.set_description(format!(
+                "models/{file}.yaml{}",
+                description.name.replacen(&file, "", 1).replace('/', ", scene ")
+            ));
+            settings.bind(|| insta::assert_snapshot!(name, table(&run(&description))));
+        }
     }
 }
 
 #[test]
 fn snapshots_belong_to_models() {
-    let models: Vec<String> =
-        model_files().iter().map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
+    let models: Vec<String> = model_files()
+        .iter()
+        .flat_map(|path| load_all(path))
+        .map(|description| description.name.replace('/', "."))
+        .collect();
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("snapshots");
     for entry in std::fs::read_dir(folder).unwrap() {
         let file = entry.unwrap().file_name().to_string_lossy().into_owned();

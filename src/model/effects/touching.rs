@@ -154,7 +154,7 @@ fn ordered(reader: &mut Reader, fields: &Fields, (low, first): (&str, &Formula),
 }
 
 /// `impact:`, by the dimensions of a depth, of its rate, and of what it pushes with.
-fn impact(reader: &mut Reader, fields: &Fields, [depth, speed, effort]: [Dimension; 3]) -> Option<Impact> {
+pub fn impact(reader: &mut Reader, fields: &Fields, [depth, speed, effort]: [Dimension; 3]) -> Option<Impact> {
     let node = reader.required(fields, "impact")?;
     let fields = reader.fields::<file::Impact>(node, fields.key_span("impact"))?;
     let exponent = match fields.get("exponent") {

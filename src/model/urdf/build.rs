@@ -1,4 +1,4 @@
-//! [`Robot`] → bodies, joints, effects and start values.
+//! [`Robot`] → bodies, joints and start values.
 //!
 //! Links that are welded together are one body, whose frame is that of the link nearest to the root:
 //!
@@ -6,8 +6,7 @@
 //! m = Σ mᵢ,   m c = Σ mᵢ cᵢ,   J = Σ Rᵢ Jᵢ Rᵢᵀ + mᵢ (dᵢ² 1 − dᵢ dᵢᵀ),   dᵢ = cᵢ − c
 //! ```
 //!
-//! The others are frames at points of it, named after them. Damping is −d v, Coulomb friction −f tanh(v/v₀), each between
-//! the joint's two bodies, v the joint's velocity.
+//! The others are frames at points of it, named after them.
 
 use std::collections::{HashMap, HashSet};
 
@@ -16,17 +15,12 @@ use symdiff::Formula;
 use super::algebra::{self, Quaternion, Value, Vector};
 use super::robot::{Joint as UrdfJoint, Kind, Number, Robot};
 use crate::model::description::{
-    Body, Coordinate, Effect, Inertia, Joint, Output, Point, PointRef, RobotTree, Rotation, StartValue, TimeOrder,
-    TreeJoint, TreeLink,
+    Body, Coordinate, Inertia, Joint, Output, Point, PointRef, RobotTree, Rotation, StartValue, TimeOrder, TreeJoint,
+    TreeLink,
 };
 use crate::model::diagnostic::Diagnostic;
-use crate::model::effect_kinds::{DryFriction, EffectKind, JointFriction, Rubbing};
 use crate::model::kinds::{JointCoordinate, JointKind, Turning};
 use crate::model::reader::Reader;
-
-/// Velocities at which Coulomb friction has three quarters of its size: rad/s, m/s.
-const SLOW_TURN: f64 = 0.05;
-const SLOW_SLIDE: f64 = 0.01;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
 const LEAST_MASS: f64 = 1e-3;
@@ -62,7 +56,7 @@ struct Group {
 /// Where everything of the robot is in the model.
 pub struct Built {
     /// Of each of the robot's joints that moves and is not left out: the model's.
-    joints: Vec<Option<usize>>,
+    pub joints: Vec<Option<usize>>,
     /// Of each link, its body and pose in it.
     places: Vec<(Option<usize>, Pose)>,
     /// Of each link, its frame as others can name it; absent where it is left out.
@@ -80,7 +74,7 @@ pub struct Source<'s> {
 }
 
 impl Source<'_> {
-    fn value(&self, number: &Number) -> Value {
+    pub fn value(&self, number: &Number) -> Value {
         if self.named.contains(&number.name) { Value::Text(number.name.clone()) } else { Value::Number(number.value) }
     }
 
@@ -174,7 +168,8 @@ fn left_out(reader: &mut Reader, source: &Source, groups: &[Group], of_link: &[(
     left_out
 }
 
-fn formula(reader: &mut Reader, value: &Value) -> Formula {
+/// The formula of a value that is not too long.
+pub fn formula(reader: &mut Reader, value: &Value) -> Formula {
     value.formula().unwrap_or_else(|| {
         let message = "too many links are welded together with uncertain numbers";
         reader.diagnostics.push(Diagnostic::of_file(message));
@@ -315,7 +310,8 @@ fn unit(axis: [f64; 3]) -> [f64; 3] {
     axis.map(|part| part / length)
 }
 
-fn coordinate(kind: Kind) -> Option<(JointCoordinate, &'static str, &'static str)> {
+/// The coordinate of a joint that has one, and the names of it and its rate.
+pub fn coordinate(kind: Kind) -> Option<(JointCoordinate, &'static str, &'static str)> {
     match kind {
         Kind::Revolute | Kind::Continuous => Some((JointCoordinate::Angle, "angle", "angular_velocity")),
         Kind::Prismatic => Some((JointCoordinate::Displacement, "displacement", "velocity")),
@@ -349,34 +345,6 @@ fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) {
         name.push('_');
     }
     reader.model.joints.push(Joint { name, kind });
-}
-
-/// Damping and friction, where the file has them.
-pub fn effects(reader: &mut Reader, source: &Source, built: &Built) {
-    for &index in &source.robot.order {
-        let joint = &source.robot.joints[index];
-        let (Some(found), true) = (built.joints[index], coordinate(joint.kind).is_some()) else { continue };
-        let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
-        for (number, what) in [(&joint.damping, "damping"), (&joint.friction, "friction")] {
-            if !acts(number) {
-                continue;
-            }
-            let value = formula(reader, &source.value(number));
-            let none = || Formula::number(0.0);
-            let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
-            let (rubbing, slow) =
-                if joint.kind.turns() { (Rubbing::Turning, SLOW_TURN) } else { (Rubbing::Sliding, SLOW_SLIDE) };
-            let dry = DryFriction {
-                coefficient: none(),
-                breakaway: Formula::number(1.0),
-                stribeck: None,
-                transition: Formula::number(slow),
-            };
-            let kind = JointFriction { joint: found, rubbing, dry, coulomb, viscous, radius: none(), length: None };
-            let name = format!("{}.{what}", joint.name);
-            reader.model.effects.push(Effect { name, kind: EffectKind::JointFriction(kind) });
-        }
-    }
 }
 
 /// The zero configuration, for what the model says nothing of.

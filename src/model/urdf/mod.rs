@@ -1,11 +1,12 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
 //! XML (`read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`uncertain`) → bodies, joints and effects
-//! (`build`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
+//! (`build`, `effects`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
 //! all others stay numbers.
 
 mod algebra;
 mod build;
+mod effects;
 mod read;
 mod robot;
 mod tree;
@@ -21,6 +22,7 @@ use super::diagnostic::Diagnostic;
 use super::load;
 use super::overrides::Override;
 use super::reader::{Fields, Reader};
+use super::scenes::LeftOut;
 use super::source::Span;
 use super::yaml::{Entry, Node, Scalar, Value};
 
@@ -121,11 +123,13 @@ impl Urdf {
 }
 
 impl Declared {
-    /// Effects, start values and, where the model has none, outputs; and whether masses stay positive.
-    pub fn finish(&self, reader: &mut Reader, observe: bool) {
+    /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay positive.
+    /// `limits` is the section of that name.
+    pub fn finish(&self, reader: &mut Reader, left_out: &LeftOut, limits: Option<(&Node, Span)>, observe: bool) {
         let Urdf { robot, floating, words } = &self.urdf;
         let source = Source { robot, floating: *floating, words, named: &self.named };
-        build::effects(reader, &source, &self.built);
+        let effects = effects::read(reader, &source, &self.built, limits);
+        effects::add(reader, &source, effects, left_out);
         build::start(reader, &source, &self.built);
         for number in robot.numbers().filter(|number| self.named.contains(&number.name)) {
             let last = number.name.rsplit('.').next().unwrap_or_default();

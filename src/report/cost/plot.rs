@@ -10,7 +10,7 @@ use super::front::pareto;
 use super::log_axis::LogAxis;
 use super::study::{CostMethod, CostPoint, CostStudy, cost_curves};
 use crate::program::Scheme;
-use crate::report::plot::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, svg, text_style};
+use crate::report::canvas::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, svg, text_style};
 use crate::report::polyline::Point;
 
 /// Size on the page, px.

@@ -1,0 +1,132 @@
+//! `mbint run` of a model with scenes: each by itself, and then side by side.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::console::{BOLD, Console, count};
+use super::run::{Done, Job, Request, complain, run_one};
+use super::table::{Align, Table};
+use super::{Failure, Status, interrupt};
+use crate::report::{ErrorSummary, SceneBounds, Summary, write_scenes};
+
+/// A model's scenes that are run together.
+pub(super) struct Scenes {
+    model: String,
+    /// In which each scene has a folder.
+    folder: PathBuf,
+    jobs: Vec<(String, Job)>,
+}
+
+/// What a scene's run came to, and how long it took, compiling included.
+struct Ran<'s> {
+    scene: &'s str,
+    seconds: f64,
+    /// Absent where there is nothing.
+    done: Option<Done>,
+}
+
+impl Scenes {
+    pub fn new(model: String, folder: PathBuf, jobs: Vec<(String, Job)>) -> Self {
+        Self { model, folder, jobs }
+    }
+
+    pub fn jobs(&self) -> impl Iterator<Item = &Job> {
+        self.jobs.iter().map(|(_, job)| job)
+    }
+
+    /// Runs all of them, or those before an interruption. One that fails does not take the others with it.
+    pub fn run(&self, request: &Request, console: &mut Console) -> Result<Status, Failure> {
+        let mut status = Status::Done;
+        let mut ran: Vec<Ran> = Vec::new();
+        for (scene, job) in &self.jobs {
+            let start = Instant::now();
+            let done = match run_one(job, request) {
+                Ok(done) => {
+                    complain(&done, console);
+                    status = status.max(done.status);
+                    Some(done)
+                }
+                Err(Failure::Failed(message)) => {
+                    console.error(&message);
+                    status = status.max(Status::Failed);
+                    None
+                }
+                Err(wrong) => return Err(wrong),
+            };
+            ran.push(Ran { scene, seconds: start.elapsed().as_secs_f64(), done });
+            if interrupt::asked() {
+                break;
+            }
+        }
+        let found: Vec<SceneBounds> = ran
+            .iter()
+            .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
+            .collect();
+        let files = if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &found) };
+        let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
+        if !request.quiet {
+            console.print(&self.overview(&ran, &files))?;
+        }
+        Ok(status)
+    }
+
+    /// What was found, scene by scene, and where it is, for people.
+    fn overview(&self, ran: &[Ran], files: &[PathBuf]) -> String {
+        let not_run = self.jobs.len() - ran.len();
+        let mut text = format!("{BOLD}{}{BOLD:#}: {}", self.model, count(self.jobs.len(), "scene", "scenes"));
+        if not_run > 0 {
+            text += &format!(", {} not run", count(not_run, "of them was", "of them were"));
+        }
+        let rows = ran.iter().map(|ran| (ran.scene, ran.seconds, ran.done.as_ref().map(|done| &done.summary)));
+        text += &format!("\n\n{}\n", table(rows).render(2));
+        if !files.is_empty() {
+            let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
+            let names: Vec<String> = files.iter().filter_map(|file| name(file)).collect();
+            let written = |scene: &str| ran.iter().any(|ran| ran.scene == scene && ran.done.is_some());
+            let folders: Vec<String> = self
+                .jobs
+                .iter()
+                .filter(|(scene, _)| written(scene))
+                .filter_map(|(_, job)| Some(format!("{}/", name(&job.folder)?)))
+                .collect();
+            text += &format!("  {}: {}; {}\n", self.folder.display(), names.join(", "), folders.join(", "));
+        }
+        text
+    }
+}
+
+/// The band of an output that is looked at first: of the first method that resolves it to the end, or else of the first.
+fn best(bands: &[ErrorSummary]) -> Option<&ErrorSummary> {
+    bands.iter().find(|band| band.unresolved_from.is_none()).or(bands.first())
+}
+
+/// How large each scene is, how wide each output's bounds are, and how far they may be from the truth.
+fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) -> Table<6> {
+    let mut table = Table::new([
+        ("scene", Align::Left),
+        ("coordinates", Align::Right),
+        ("seconds", Align::Right),
+        ("bounds", Align::Left),
+        ("widest", Align::Right),
+        ("error", Align::Right),
+    ]);
+    for (scene, seconds, summary) in scenes {
+        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
+        let size = summary.map_or_else(|| "–".to_owned(), |summary| summary.coordinates.to_string());
+        let mut first = [scene.to_owned(), size, format!("{seconds:.3}")];
+        let bands = summary.map_or(&[][..], |summary| &summary.errors);
+        let mut of_outputs = bands.chunk_by(|a, b| a.output == b.output).filter_map(best).peekable();
+        let none = of_outputs.peek().is_none();
+        for band in of_outputs {
+            let name = format!("{}.{}", band.output, band.method);
+            let [scene, size, seconds] = std::mem::take(&mut first);
+            table.row([scene, size, seconds, name, number(band.width), number(band.error)]);
+        }
+        if none {
+            let [scene, size, seconds] = first;
+            let what = if summary.is_some() { "" } else { "failed" };
+            table.row([scene, size, seconds, what.to_owned(), String::new(), String::new()]);
+        }
+    }
+    table
+}

@@ -1,0 +1,159 @@
+//! Effects of a [`Robot`](super::robot::Robot)'s joints: damping and friction as the file has them and, where the model asks for
+//! it, stops at their limits.
+//!
+//! Damping is −d v, Coulomb friction −f tanh(v/v₀), each between the joint's two bodies, v the joint's velocity. They are
+//! called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
+
+use symdiff::Formula;
+
+use super::build::{Built, Source, coordinate, formula};
+use super::robot::{Joint, Kind, Limits, Number};
+use crate::model::description::Effect;
+use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, OnJoint, Rubbing, Stop};
+use crate::model::effects;
+use crate::model::file;
+use crate::model::kinds::JointCoordinate;
+use crate::model::motors::dimensions_of;
+use crate::model::reader::Reader;
+use crate::model::scenes::{self, LeftOut};
+use crate::model::source::Span;
+use crate::model::yaml::Node;
+
+/// Velocities at which Coulomb friction has three quarters of its size: rad/s, m/s.
+const SLOW_TURN: f64 = 0.05;
+const SLOW_SLIDE: f64 = 0.01;
+
+/// An effect that may yet be left out.
+pub struct RobotEffect<'r> {
+    effect: Effect,
+    /// Its numbers of the file.
+    numbers: Vec<&'r Number>,
+}
+
+/// What acts in the joints.
+pub fn read<'r>(
+    reader: &mut Reader,
+    source: &Source<'r>,
+    built: &Built,
+    limits: Option<(&Node, Span)>,
+) -> Vec<RobotEffect<'r>> {
+    let mut found = Vec::new();
+    if let Some((_, at)) = limits.as_ref().filter(|_| !source.robot.joints.iter().any(is_limited)) {
+        reader.error(at.clone(), "no joint of the robot has limits", None);
+    }
+    let impacts =
+        limits.map(|(node, at)| [Kind::Revolute, Kind::Prismatic].map(|kind| impact(reader, source, node, &at, kind)));
+    for &index in &source.robot.order {
+        let joint = &source.robot.joints[index];
+        let (Some(number), Some((coordinate, ..))) = (built.joints[index], coordinate(joint.kind)) else { continue };
+        found.extend(rubbing(reader, source, joint, number));
+        let impact = impacts
+            .as_ref()
+            .and_then(|[turning, sliding]| if joint.kind.turns() { turning.clone() } else { sliding.clone() });
+        if let (Some(impact), Some(limits), true) = (impact, &joint.limits, is_limited(joint)) {
+            let on = OnJoint { joint: number, coordinate };
+            found.push(stop(reader, source, joint, limits, on, impact));
+        }
+    }
+    found
+}
+
+/// Whether the joint's way has ends.
+fn is_limited(joint: &Joint) -> bool {
+    matches!(joint.kind, Kind::Revolute | Kind::Prismatic) && joint.limits.is_some()
+}
+
+/// Damping and friction, where the file has them.
+fn rubbing<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found: usize) -> Vec<RobotEffect<'r>> {
+    let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
+    let mut effects = Vec::new();
+    for (number, what) in [(&joint.damping, "damping"), (&joint.friction, "friction")] {
+        if !acts(number) {
+            continue;
+        }
+        let value = formula(reader, &source.value(number));
+        let none = || Formula::number(0.0);
+        let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
+        let (rubbing, slow) =
+            if joint.kind.turns() { (Rubbing::Turning, SLOW_TURN) } else { (Rubbing::Sliding, SLOW_SLIDE) };
+        let dry = DryFriction {
+            coefficient: none(),
+            breakaway: Formula::number(1.0),
+            stribeck: None,
+            transition: Formula::number(slow),
+        };
+        let kind = JointFriction { joint: found, rubbing, dry, coulomb, viscous, radius: none(), length: None };
+        let effect = Effect { name: format!("{}.{what}", joint.name), kind: EffectKind::JointFriction(kind) };
+        effects.push(RobotEffect { effect, numbers: vec![number] });
+    }
+    effects
+}
+
+/// How stops of joints of a kind push back; nothing where there are none.
+fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Kind) -> Option<Impact> {
+    let coordinate = if kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement };
+    if !source.robot.joints.iter().any(|joint| joint.kind == kind && is_limited(joint)) {
+        return None;
+    }
+    let fields = reader.fields::<file::Limits>(node, at.clone())?;
+    effects::impact(reader, &fields, dimensions_of(coordinate))
+}
+
+fn stop<'r>(
+    reader: &mut Reader,
+    source: &Source<'r>,
+    joint: &Joint,
+    limits: &'r Limits,
+    on: OnJoint,
+    impact: Impact,
+) -> RobotEffect<'r> {
+    let [lower, upper] = [&limits.lower, &limits.upper].map(|number| Some(formula(reader, &source.value(number))));
+    let effect =
+        Effect { name: format!("{}.limit", joint.name), kind: EffectKind::Stop(Stop { on, lower, upper, impact }) };
+    RobotEffect { effect, numbers: vec![&limits.lower, &limits.upper] }
+}
+
+/// Adds to the model what is not left out.
+pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left_out: &LeftOut) {
+    for (name, span) in left_out.given() {
+        if !effects.iter().any(|known| known.effect.name == *name) {
+            let robot = effects.iter().map(|known| known.effect.name.clone());
+            let own = reader.model.effects.iter().map(|effect| effect.name.clone());
+            let known: Vec<String> =
+                robot.chain(own).chain(reader.model.joints.iter().map(|joint| joint.name.clone())).collect();
+            scenes::unknown(reader, name, span.clone(), known.iter().map(String::as_str));
+        }
+    }
+    let mut acting: Vec<&str> = Vec::new();
+    for RobotEffect { effect, numbers } in effects {
+        if left_out.leaves_out(&effect.name) {
+            continue;
+        }
+        if let EffectKind::Stop(Stop { lower: Some(lower), upper: Some(upper), .. }) = &effect.kind {
+            leaves_a_way(reader, &effect.name, numbers[0].span.clone(), lower, upper);
+        }
+        acting.extend(numbers.iter().map(|number| number.name.as_str()));
+        reader.model.effects.push(effect);
+    }
+    // Numbers of bodies and frames are used by them; these by what is not left out.
+    for number in source.robot.numbers().filter(|number| source.named.contains(&number.name)) {
+        let of_effect = number.name.starts_with("joint.") && !number.name.contains(".origin.");
+        let place = reader.model.parameters.iter().position(|parameter| parameter.name == number.name);
+        if let Some(used) = place.and_then(|place| reader.used.get_mut(place)) {
+            *used |= !of_effect || acting.contains(&number.name.as_str());
+        }
+    }
+}
+
+/// Reports limits between which a joint cannot move, at any corner.
+fn leaves_a_way(reader: &mut Reader, name: &str, span: Span, lower: &Formula, upper: &Formula) {
+    for corner in 0..reader.corners.len() {
+        let values = reader.evaluate(lower, corner).zip(reader.evaluate(upper, corner));
+        if let Some((lower, upper)) = values.filter(|(lower, upper)| lower >= upper) {
+            let label = reader.corners[corner].label.clone();
+            let message = format!("a stop at {lower} and one at {upper} leave this joint no way{label}");
+            reader.error(span, message, format!("correct the limits, or leave the stops out: `without: [{name}]`"));
+            return;
+        }
+    }
+}
