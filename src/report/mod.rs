@@ -22,5 +22,5 @@ pub use files::{ReportError, file_stem, write_results};
 pub use folder::prepare_folder;
 pub use plot::plot_svg;
 pub use summary::{
-    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
+    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
 };
