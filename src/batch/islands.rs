@@ -5,13 +5,15 @@
 //! another's. Parts of the box that are not feasible are parts of the whole box: where those are to be left out, there is one
 //! island.
 
+use symdiff::Formula;
+
 use super::study::{Ran, Study, contributions, summarised_errors};
 use super::{Options, RunError, feasible, formulation};
 use crate::bounds::{Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, Range};
 use crate::integrate::Simulator;
-use symdiff::Formula;
 
-use crate::model::{Description, ParameterValue};
+use crate::mechanics::{self, BuildError};
+use crate::model::{Description, Formulation, ParameterValue};
 use crate::reduce::{Choices, Island, Reduction, narrow};
 use crate::report::{IslandSummary, MethodSummary, ParameterSummary, Summary};
 
@@ -55,7 +57,20 @@ impl Prepared {
 /// Where an island cannot be built or assembled.
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
-    let prepared = std::mem::take(&mut reduction.islands).into_iter().map(Prepared::new);
+    let prepared = std::mem::take(&mut reduction.islands).into_iter().map(|island| {
+        // Joints carry bodies in the model that asks for it, but perhaps not in every island.
+        let carried = description.simulation.formulation == Formulation::Joint;
+        let absolute = carried.then(|| island.clone());
+        match (Prepared::new(island), absolute) {
+            (Err(RunError::Build(BuildError::NotCarried { .. })), Some(mut island))
+                if mechanics::build(description).is_ok() =>
+            {
+                island.description.simulation.formulation = Formulation::Absolute;
+                Prepared::new(island)
+            }
+            (prepared, _) => prepared,
+        }
+    });
     let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
     Ok((reduction, prepared))
 }

@@ -11,6 +11,7 @@ mod certain;
 mod certify;
 mod compose;
 mod cost;
+mod decisions;
 mod feasible;
 mod finding;
 mod formulation;
@@ -31,6 +32,7 @@ use crate::report::Summary;
 use islands::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
+pub use decisions::explain;
 pub use feasible::{Place, Survey};
 
 /// How to run.

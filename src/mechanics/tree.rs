@@ -132,7 +132,8 @@ impl Tree {
         }
         let mut depths = vec![0; self.carriers.len()];
         for &body in &self.order {
-            depths[body] = self.carriers[body].map_or(0, |carrier| depths[carrier.parent.body] + usize::from(!self.merged[body]));
+            depths[body] =
+                self.carriers[body].map_or(0, |carrier| depths[carrier.parent.body] + usize::from(!self.merged[body]));
         }
         let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());
         (depth > deepest)

@@ -25,10 +25,12 @@ fn points(between: &mut [PointRef; 2]) -> Vec<Reference<'_>> {
 }
 
 fn turnings(between: &mut [Turning; 2]) -> Vec<Reference<'_>> {
-    let one = |turning| match turning {
-        &mut Turning::Body(ref mut body) => Reference::Body(body),
-        &mut Turning::Joint(ref mut joint) => Reference::Joint(joint),
-    };
+    fn one(turning: &mut Turning) -> Reference<'_> {
+        match turning {
+            Turning::Body(body) => Reference::Body(body),
+            Turning::Joint(joint) => Reference::Joint(joint),
+        }
+    }
     between.iter_mut().map(one).collect()
 }
 

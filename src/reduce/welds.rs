@@ -26,10 +26,10 @@ pub fn merge(description: &mut Description) -> Vec<Weld> {
     let mut anchored: Vec<bool> =
         held.iter().zip(named(description, &description.initial)).map(|(held, named)| *held || named).collect();
     let mut welds = Vec::new();
-    for joint in 0..description.joints.len() {
-        let JointKind::Fixed { between, angle, .. } = &description.joints[joint].kind else { continue };
+    for (joint, (known, &observed)) in description.joints.iter().zip(&observed).enumerate() {
+        let JointKind::Fixed { between, angle, .. } = &known.kind else { continue };
         let [a, b] = between.map(|point| sets.of(point.body));
-        let obstacle = if observed[joint] {
+        let obstacle = if observed {
             Some("its reaction is asked for".to_owned())
         } else if !is_steady(description, angle) {
             Some("its angle changes in time".to_owned())

@@ -4,6 +4,7 @@ mod axis;
 mod contributions;
 mod cost;
 mod csv;
+mod decisions;
 mod explanation;
 mod files;
 mod folder;
@@ -17,10 +18,12 @@ pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::{
     CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
 };
+pub use decisions::{Decision, Each, Saving};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, write_results};
 pub use folder::prepare_folder;
 pub use plot::plot_svg;
 pub use summary::{
-    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
+    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    Summary,
 };
