@@ -387,7 +387,7 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
     assert!(program.sample().len() + program.step_size().len() > 0);
     // With a centre of mass off the frame's origin M depends on the angle, and the matrix with it.
     let simulator = batch::prepare(&sliders("inertia: 0.3, center_of_mass: [0.1, 0]")).unwrap();
-    assert!(!constant(&simulator) && simulator.program.factor().len() > 0);
+    assert!(!constant(&simulator) && !simulator.program.factor().is_empty());
 }
 
 #[test]
@@ -505,4 +505,58 @@ fn with_parts_of_the_box_left_out_there_is_one_island() {
     assert!(summary.pieces.iter().all(|piece| piece.lower.len() == 2), "{:?}", summary.pieces);
     // Of 0.25 m, 0.05 are too short.
     assert!((0.6..0.85).contains(&bounds.covered[0]), "{:?}", bounds.covered);
+}
+
+/// A number that the equations do not have is no dimension of the box.
+#[test]
+fn parameters_that_no_equation_has_are_not_sampled() {
+    let model = read(
+        "
+model: slider
+parameters: { m: { value: 2, unit: kg, tolerance: 10% }, J: { value: 1, unit: kg*m^2, tolerance: 10% } }
+bodies: { slider: { mass: m, inertia: J, coordinates: [x] } }
+effects: { spring: { spring_damper: { between: [ground, slider], along: x, stiffness: 30, free_length: 0.1 } } }
+initial: { slider.x: 0.3 }
+outputs: { x: slider.x, force: spring.force }
+simulation: { duration: 0.5, step: 1e-3 }
+bounds: { chebyshev: { order: [4, 6] } }
+",
+    );
+    let (bounds, summary) = run(&model);
+    let solves = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().solves;
+    assert_eq!((solves, summary.parameters.len()), (5, 2));
+    let total = |number: usize| bounds.contributions[0][number].total[20];
+    assert!((total(0) - 1.0).abs() < 1e-9 && total(1) == 0.0, "{} {}", total(0), total(1));
+}
+
+/// Where nothing at all can move, there is still something to be observed.
+#[test]
+fn what_stands_still_can_be_observed() {
+    let text = |outputs: &str| {
+        read(&format!(
+            "
+model: still
+parameters: {{ d: {{ value: 0.2, unit: m, tolerance: 10% }} }}
+bodies:
+  ground: {{ points: {{ A: [1, 0], B: [1, d] }} }}
+  post: {{ mass: 1, inertia: 1, points: {{ P: [-d, 0] }} }}
+  free: {{ mass: 1, inertia: 1 }}
+joints: {{ foot: {{ fixed: [ground, post.P] }} }}
+effects: {{ tie: {{ spring_damper: {{ between: [ground.A, ground.B], stiffness: 10, free_length: 0 }} }} }}
+outputs: {outputs}
+simulation: {{ duration: 0.1, step: 1e-2 }}
+bounds: {{ scan: {{ points: 3 }} }}
+"
+        ))
+    };
+    let ends = |description: &Description, name: &str| {
+        let bounds = run(description).0;
+        let output = bounds.outputs.iter().find(|output| output.name == name).unwrap();
+        (output.bands[0].lower[3], output.bands[0].upper[3])
+    };
+    let near = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() + (b - d).abs() < 1e-12;
+    assert!(near(ends(&text("{ x: post.x }"), "x"), (0.18, 0.22)));
+    assert!(near(ends(&text("{ pull: tie.force }"), "pull"), (1.8, 2.2)));
+    assert!(near(ends(&text("{ pull: tie.force, x: free.x }"), "pull"), (1.8, 2.2)));
+    assert!(near(ends(&text("{ d: d }"), "d"), (0.18, 0.22)));
 }

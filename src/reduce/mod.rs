@@ -12,7 +12,9 @@ mod extract;
 mod sets;
 mod welds;
 
-use crate::model::{Description, ParameterValue};
+use std::collections::HashSet;
+
+use crate::model::Description;
 
 use couplings::{Couplings, Part};
 
@@ -65,6 +67,11 @@ impl Reduction {
         let welds = if choices.merge { welds::merge(&mut whole) } else { Vec::new() };
         let mut couplings = Couplings::of(&whole);
         let movable = couplings.movable();
+        let bodies: Vec<Part> = movable.iter().copied().filter(|part| matches!(part, Part::Body(_))).collect();
+        if bodies.is_empty() && choices.merge {
+            // Something has to have coordinates.
+            return Self::of(description, Choices { merge: false, ..choices });
+        }
         let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
         let mut needed: Vec<Part> = Vec::new();
         for parts in &named {
@@ -79,6 +86,15 @@ impl Reduction {
         }
         if !choices.part {
             couplings.together(&needed);
+        }
+        let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
+        let moves = |couplings: &mut Couplings, part: &Part| moving.contains(&couplings.set(*part));
+        // What acts on nothing that moves goes with something that does.
+        let company = needed.iter().find(|part| moves(&mut couplings, part)).or(bodies.first()).copied();
+        let alone: Vec<Part> = needed.iter().filter(|part| !moves(&mut couplings, part)).copied().collect();
+        if let Some(company) = company.filter(|_| !alone.is_empty()) {
+            needed.push(company);
+            alone.into_iter().for_each(|part| _ = couplings.together(&[company, part]));
         }
 
         // What names nothing that moves goes with the first.
@@ -124,13 +140,5 @@ impl Reduction {
     pub fn joined(description: &Description) -> Island {
         let mut islands = Self::of(description, Choices { part: false, ..Choices::default() }).islands;
         islands.swap_remove(0)
-    }
-
-    /// Uncertain parameters that no island has, by their numbers.
-    pub fn idle(&self, description: &Description) -> Vec<usize> {
-        let uncertain = description.parameters.iter();
-        let uncertain = uncertain.filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. }));
-        let reached = |number: &usize| self.islands.iter().any(|island| island.parameters.contains(number));
-        (0..uncertain.count()).filter(|number| !reached(number)).collect()
     }
 }
