@@ -410,9 +410,8 @@ fn every_decision_is_explained_with_what_it_saves() {
     let alone = |one: &Sections| -> usize { instructions(&one.model())[2..6].iter().sum() };
     assert_eq!(saves("a moves on its own"), (251 - 11) * alone(&a) as i64);
     assert_eq!(saves("c moves on its own"), (251 - 1) * alone(&c) as i64);
-    assert!(
-        saves("folded into the instructions") > 0 && saves("no output names them") > 0 && saves("once a sample") > 0
-    );
+    assert!(saves("no output names them") > 0 && saves("once a sample") > 0, "{:#?}", explanation.decisions);
+    assert!(find("folded into the instructions").saves.is_some());
     assert!(explanation.coordinates.iter().all(|name| !name.starts_with("idle")), "{:?}", explanation.coordinates);
     let left_out =
         |what: &str| explanation.left_out.iter().find(|item| item.what == what).map(|item| item.why.as_str());
@@ -519,7 +518,7 @@ effects: { spring: { spring_damper: { between: [ground, slider], along: x, stiff
 initial: { slider.x: 0.3 }
 outputs: { x: slider.x, force: spring.force }
 simulation: { duration: 0.5, step: 1e-3 }
-bounds: { chebyshev: { order: [4, 6] } }
+bounds: { chebyshev: { order: 4 } }
 ",
     );
     let (bounds, summary) = run(&model);
@@ -538,11 +537,11 @@ fn what_stands_still_can_be_observed() {
 model: still
 parameters: {{ d: {{ value: 0.2, unit: m, tolerance: 10% }} }}
 bodies:
-  ground: {{ points: {{ A: [1, 0], B: [1, d] }} }}
-  post: {{ mass: 1, inertia: 1, points: {{ P: [-d, 0] }} }}
+  ground: {{ points: {{ A: [1, 0] }} }}
+  post: {{ mass: 1, inertia: 1, points: {{ P: [-d, 0], Q: [1 - d, d] }} }}
   free: {{ mass: 1, inertia: 1 }}
 joints: {{ foot: {{ fixed: [ground, post.P] }} }}
-effects: {{ tie: {{ spring_damper: {{ between: [ground.A, ground.B], stiffness: 10, free_length: 0 }} }} }}
+effects: {{ tie: {{ spring_damper: {{ between: [ground.A, post.Q], stiffness: 10, free_length: 0 }} }} }}
 outputs: {outputs}
 simulation: {{ duration: 0.1, step: 1e-2 }}
 bounds: {{ scan: {{ points: 3 }} }}
