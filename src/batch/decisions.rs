@@ -63,7 +63,7 @@ fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepa
         let count = reduction.left_out.len();
         found.push(Decision {
             what: format!("{} not simulated: {}", parts(count), named(&reduction.left_out)),
-            why: "no output depends on them".to_owned(),
+            why: format!("no output depends on {}", if count == 1 { "it" } else { "them" }),
             saves: without(description, Choices { prune: false, part: false, ..default }, step, affordable),
         });
     }
