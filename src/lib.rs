@@ -1,6 +1,6 @@
 //! mbint: what a mechanism can do when its parameters are only known up to tolerances.
 //!
-//! The way of the data, one module a stage: [`model`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
+//! The way of the data, one module a stage: [`model`] → [`reduce`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
 
 pub mod batch;
 pub mod bounds;
@@ -9,4 +9,5 @@ pub mod integrate;
 pub mod mechanics;
 pub mod model;
 pub mod program;
+pub mod reduce;
 pub mod report;

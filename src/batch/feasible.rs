@@ -9,10 +9,11 @@ use std::fmt;
 
 use super::RunError;
 use super::adapt::{EMPTY, union};
+use super::islands::add;
 use super::study::{Ran, Study, Tried, summarised_errors};
 use crate::bounds::{Band, BandError, Bounds, OutputBounds, ParameterBox, Range, spread, validation};
 use crate::integrate::SimulationError;
-use crate::report::{MethodSummary, PieceSummary, Summary};
+use crate::report::{PieceSummary, Summary};
 
 /// Samples of the box that tell how much of it fails.
 const SURVEYED: usize = 1000;
@@ -259,16 +260,4 @@ fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
     }
     summary.failure = ran.iter().find_map(|(ran, _)| ran.summary.failure.clone().filter(|_| (study.interrupted)()));
     summary
-}
-
-fn add(known: &mut MethodSummary, other: &MethodSummary) {
-    known.solves += other.solves;
-    known.steps = known.steps.max(other.steps);
-    known.newton_iterations += other.newton_iterations;
-    known.rank_revealing_solves += other.rank_revealing_solves;
-    known.boxes = known.boxes.zip(other.boxes).map(|(a, b)| a + b);
-    known.seconds = known.seconds.zip(other.seconds).map(|(a, b)| a + b);
-    if let (Some(known), Some(other)) = (&mut known.order, &other.order) {
-        known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
-    }
 }

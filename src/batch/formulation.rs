@@ -47,7 +47,7 @@ fn because(mut system: System, why: String) -> System {
 }
 
 /// Of a step with one correction.
-fn instructions(simulator: &Simulator) -> usize {
+pub(super) fn instructions(simulator: &Simulator) -> usize {
     let p = &simulator.program;
     [p.step(), p.factor(), p.correct(), p.advance()].into_iter().map(symdiff::Tape::len).sum()
 }

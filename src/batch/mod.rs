@@ -1,18 +1,21 @@
 //! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
 //!
-//! A `study` makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
+//! `islands` takes a model apart into what moves on its own. A `study` of each makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
 //! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
 //! `adapt` expands them as far as a tolerance asks for; `feasible` bounds the part of a box in which there is a motion. `cost` runs one model with many settings, to tell what accuracy costs.
 
 mod adapt;
 mod apportion;
+mod certain;
 mod certify;
 mod compose;
 mod cost;
+mod decisions;
 mod feasible;
 mod finding;
 mod formulation;
+mod islands;
 mod methods;
 mod probe;
 mod step_search;
@@ -23,11 +26,13 @@ use crate::integrate::{SimulationError, Simulator};
 use crate::mechanics::BuildError;
 use crate::model::{Description, Stepping};
 use crate::program::Scheme;
+use crate::reduce::Reduction;
 use crate::report::Summary;
 
-use study::Study;
+use islands::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
+pub use decisions::explain;
 pub use feasible::{Place, Survey};
 
 /// How to run.
@@ -91,23 +96,22 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| {
-        let study = Study::new(description, &options)?;
-        if options.skip_infeasible {
-            return feasible::run(&study);
-        }
-        match study.run() {
-            Ok(ran) => Ok((ran.bounds, ran.summary)),
-            Err(error) => Err(feasible::explained(&study, error)),
-        }
-    })
+    pool.install(|| islands::run(description, &options))
 }
 
-/// A compiled model for checking it: what `run` would start from.
+/// A compiled model: of what `run` simulates, all in one.
 ///
 /// # Errors
 /// As for [`run`].
 pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
+    Ok(Prepared::new(Reduction::joined(description))?.simulator)
+}
+
+/// A whole model compiled, with the parts that no output depends on, and nothing merged: for checking it.
+///
+/// # Errors
+/// As for [`run`].
+pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
 }
 

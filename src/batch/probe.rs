@@ -1,6 +1,6 @@
 //! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
 
-use super::methods::{FleetRun, Run, Until};
+use super::methods::{FleetRun, Outcome, Run, Until};
 use crate::bounds::{BandError, Range, probes, time_error, validation};
 use crate::integrate::{Counters, Observed, Schedule, SimulationError};
 use crate::report::MethodSummary;
@@ -120,6 +120,25 @@ impl Probes {
         let spans = system.outputs.iter().enumerate().map(|(index, output)| direct.span(index, least(&output.unit)));
         let spans = spans.collect();
         Ok(Self { points, direct, halved: fine, solves, done, summary, spans })
+    }
+
+    /// Where nothing is uncertain the one course is the only probe; it is simulated with each step halved.
+    ///
+    /// # Errors
+    /// Where it cannot be assembled.
+    pub fn of_course(run: &Run, course: &Outcome) -> Result<Self, SimulationError> {
+        let begun = std::time::Instant::now();
+        let points = validation(0);
+        let at = |row: usize| course.bands.iter().map(move |ranges| ranges[row].lower);
+        let values = (0..course.reached).flat_map(at).collect();
+        let direct = Table { motions: 0, outputs: run.outputs(), samples: points.len(), values };
+        let schedule: Schedule = run.schedule.refined(2);
+        let finer = Run { schedule: &schedule, tolerance: None, ..*run };
+        let (halved, done) = Table::of(&finer, &run.study.domain.points(&points), Observed::Outputs)?;
+        let stop = course.stop.as_ref().map(|(stop, _)| stop);
+        let summary = run.method_summary("probes", points.len(), done.counters, stop, begun);
+        let solves = points.len();
+        Ok(Self { points, direct, halved, solves, done: FleetRun::default(), summary })
     }
 
     /// The time steps' error of an output in each row, as if its range were that of the probes.

@@ -8,7 +8,7 @@ use super::compose;
 use super::methods::{Outcome, Progress, Run, TAYLOR_WORK};
 use super::probe::Probes;
 use super::step_search::StepSearch;
-use super::{Options, RunError, formulation};
+use super::{Options, RunError};
 use crate::bounds::{
     Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, largest, probes, time_error,
     time_error_certified, validation,
@@ -42,14 +42,14 @@ pub(super) struct Study<'a> {
 }
 
 /// What one schedule yields.
-struct Results {
-    schedule: Schedule,
-    nominal: Outcome,
+pub(super) struct Results {
+    pub(super) schedule: Schedule,
+    pub(super) nominal: Outcome,
     /// Absent where no method is asked for.
-    probes: Option<Probes>,
-    methods: Vec<(Method, Outcome)>,
+    pub(super) probes: Option<Probes>,
+    pub(super) methods: Vec<(Method, Outcome)>,
     /// The same with halved steps, where asked for.
-    halved: Vec<(Method, Outcome)>,
+    pub(super) halved: Vec<(Method, Outcome)>,
 }
 
 impl Results {
@@ -98,9 +98,12 @@ pub(super) struct Tried {
 }
 
 impl<'a> Study<'a> {
-    /// Builds, assembles and compiles.
-    pub(super) fn new(description: &'a Description, options: &Options<'a>) -> Result<Self, RunError> {
-        let simulator = formulation::compiled(description)?;
+    /// Of a model that is compiled already.
+    pub(super) fn new(
+        description: &'a Description,
+        simulator: Simulator,
+        options: &Options<'a>,
+    ) -> Result<Self, RunError> {
         let system = &simulator.system;
         let collect = |pick: fn(&mechanics::UncertainParameter) -> f64| system.parameters.iter().map(pick).collect();
         let domain = ParameterBox {
@@ -213,6 +216,9 @@ impl<'a> Study<'a> {
     /// Nominal first, then the probes, then every method asked for. With a tolerance for the bounds, the probes decide how
     /// the schedule's steps are divided or joined.
     fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+        if self.domain.dimension() == 0 {
+            return self.certain(schedule, tolerance);
+        }
         let progress = Progress { done: AtomicUsize::new(0), total: self.total_work(schedule) };
         let (schedule, probes) = if self.request.is_empty() {
             (schedule.clone(), None)
@@ -449,19 +455,23 @@ impl<'a> Study<'a> {
             errors: summarised_errors(bounds),
             contributions: contributions(bounds),
             pieces: Vec::new(),
+            not_simulated: Vec::new(),
+            islands: Vec::new(),
             failure,
         }
     }
 }
 
 /// Every parameter's mean shares in every output, the largest first.
-fn contributions(bounds: &Bounds) -> Vec<ContributionSummary> {
+pub(super) fn contributions(bounds: &Bounds) -> Vec<ContributionSummary> {
     let of_output = |(output, contributions): (&OutputBounds, &Vec<Contribution>)| {
         let band = output.bands.iter().find(|band| band.method == Method::Chebyshev);
         let width = |row: usize| band.map_or(0.0, |band| band.upper[row] - band.lower[row]);
         let mean = |shares: &[f64]| {
             let known = || (0..shares.len()).filter(|&row| shares[row].is_finite() && width(row).is_finite());
-            known().map(|row| width(row) * shares[row]).sum::<f64>() / known().map(width).sum::<f64>()
+            let total = known().map(width).sum::<f64>();
+            // Of nothing, nobody has a share.
+            if total == 0.0 { 0.0 } else { known().map(|row| width(row) * shares[row]).sum::<f64>() / total }
         };
         let summary = |contribution: &Contribution| ContributionSummary {
             output: output.name.clone(),

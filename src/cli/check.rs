@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, count};
-use super::explain::explain_model;
 use super::{Failure, Status, tree};
-use crate::model;
+use crate::batch::{self, RunError};
+use crate::model::{self, Description};
+use crate::reduce::{Choices, Reduction};
 use crate::report::Explanation;
 
 /// What is known of a model; an element of the JSON output.
@@ -56,6 +57,9 @@ struct Counts {
     singular_at_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
+    /// Parts that no output depends on.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    not_simulated: Vec<String>,
 }
 
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
@@ -110,24 +114,26 @@ fn check_one(path: &Path, color: bool) -> Checked {
         let scenes: Vec<CheckedScene> = reading.scenes.iter().map(check_scene).collect();
         return Checked { ok: scenes.iter().all(|scene| scene.ok), scenes, ..read };
     }
-    match reading.description.as_ref().map(explain_model) {
+    match reading.description.as_ref().map(Counts::of) {
         None => read,
         Some(Err(error)) => Checked { error: Some(error.to_string()), ..read },
-        Some(Ok(explanation)) => Checked { ok: true, counts: Some(explanation.into()), ..read },
+        Some(Ok(counts)) => Checked { ok: true, counts: Some(counts), ..read },
     }
 }
 
 fn check_scene(scene: &model::Scene) -> CheckedScene {
-    let (counts, error) = match explain_model(&scene.description) {
-        Ok(explanation) => (Some(Counts::from(explanation)), None),
+    let (counts, error) = match Counts::of(&scene.description) {
+        Ok(counts) => (Some(counts), None),
         Err(error) => (None, Some(error.to_string())),
     };
     CheckedScene { scene: scene.name.clone(), ok: counts.is_some(), counts, error }
 }
 
-impl From<Explanation> for Counts {
-    fn from(explanation: Explanation) -> Self {
-        Self {
+impl Counts {
+    /// Of the whole model, whatever of it will be simulated.
+    fn of(model: &Description) -> Result<Self, RunError> {
+        let explanation = Explanation::new(&model.name, &batch::prepare_whole(model)?);
+        Ok(Self {
             model: explanation.model,
             coordinates: explanation.coordinates.len(),
             constraints: explanation.constraints.len(),
@@ -137,7 +143,8 @@ impl From<Explanation> for Counts {
             singular_at_start: explanation.singular_at_start,
             undetermined_outputs: explanation.undetermined_outputs,
             outputs: explanation.outputs,
-        }
+            not_simulated: Reduction::of(model, Choices::default()).left_out,
+        })
     }
 }
 
@@ -159,8 +166,9 @@ impl Counts {
         };
         let singular = others(&self.singular_at_start, "a singular start, at which others imply");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
+        let left_out = others(&self.not_simulated, "not simulated, since no output depends on it:");
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}{left_out}\n",
             self.model,
             count(self.coordinates, "coordinate", "coordinates"),
             count(self.constraints, "constraint", "constraints"),
@@ -192,6 +200,7 @@ mod tests {
             singular_at_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
+            not_simulated: vec![],
         };
         let plain = |counts: &Counts| anstream::adapter::strip_str(&counts.line()).to_string();
         insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");

@@ -7,7 +7,7 @@ use super::table::{Align, Table};
 use super::{Failure, Status, effects, load};
 use crate::batch::{self, RunError};
 use crate::model::Description;
-use crate::report::Explanation;
+use crate::report::{Decision, Explanation};
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
@@ -32,8 +32,8 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
 ///
 /// # Errors
 /// What is wrong with the mechanism as a whole: it cannot be built or assembled.
-pub(super) fn explain_model(model: &Description) -> Result<Explanation, RunError> {
-    Ok(Explanation::new(&model.name, &batch::prepare(model)?))
+fn explain_model(model: &Description) -> Result<Explanation, RunError> {
+    batch::explain(model)
 }
 
 /// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
@@ -94,7 +94,19 @@ fn text(explanation: &Explanation) -> String {
     }
     let heading = if e.left_out.is_empty() { "nothing left out" } else { "left out" };
     section(heading.to_owned(), left_out.render(2));
+    if !e.decisions.is_empty() {
+        section("saved".to_owned(), decisions(&e.decisions));
+    }
     text
+}
+
+/// A line each, and what it saves below.
+fn decisions(decisions: &[Decision]) -> String {
+    let line = |decision: &Decision| {
+        let saves = decision.saves.map_or(String::new(), |saving| format!("\n    {}", saving.text()));
+        format!("  {}: {}{saves}\n", decision.what, decision.why)
+    };
+    decisions.iter().map(line).collect()
 }
 
 /// Names, indented, in lines of a readable length.
@@ -121,7 +133,7 @@ fn indented(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix};
+    use crate::report::{Each, EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix, Saving};
 
     #[test]
     fn an_explanation_reads_well() {
@@ -153,6 +165,11 @@ mod tests {
             },
             newton: NewtonMatrix { size: 13, nonzeros: 43, factor_nonzeros: 51, fill: 8, pivots: vec![(0, 7), (7, 0)] },
             left_out: vec![LeftOut { what: "parameter m4".into(), why: "nothing depends on it".into() }],
+            decisions: vec![Decision {
+                what: "bodies welded together are one: grip".into(),
+                why: "nothing asks for a reaction there".into(),
+                saves: Some(Saving { instructions: 120, each: Each::Step }),
+            }],
         };
         let plain = anstream::adapter::strip_str(&text(&explanation)).to_string();
         insta::assert_snapshot!(plain, @r"
@@ -193,6 +210,10 @@ mod tests {
 
         left out
           parameter m4  nothing depends on it
+
+        saved
+          bodies welded together are one: grip: nothing asks for a reaction there
+            saves 120 instructions a step
         ");
     }
 

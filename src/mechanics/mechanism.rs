@@ -175,6 +175,7 @@ impl<'d> Mechanism<'d> {
                 mechanism.carry(g, body, carrier)?;
             }
         }
+        mechanism.merge(g);
         for (joint, coordinate) in super::coordinates::called_for(description) {
             if !mechanism.joint_coordinates.contains_key(&(joint, coordinate)) {
                 let index = mechanism.add_coordinate(g, Owner::Joint(joint, coordinate));

@@ -23,6 +23,7 @@ mod formulation;
 mod inertia;
 mod joints;
 mod mechanism;
+mod merging;
 mod outputs;
 mod placement;
 mod pose;

@@ -225,7 +225,7 @@ fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
         };
         let (between, kind) = match &joint.kind {
             JointKind::Revolute { between, .. } => (between, LinkKind::Pin),
-            JointKind::Fixed { between, angle } => (between, LinkKind::Weld(value(angle)?)),
+            JointKind::Fixed { between, angle, .. } => (between, LinkKind::Weld(value(angle)?)),
             JointKind::Prismatic { between, angle, .. } => (between, LinkKind::Slide(value(angle)?)),
             JointKind::PinInSlot { between, .. }
             | JointKind::PointOnLine { between, .. }

@@ -221,7 +221,7 @@ impl Mechanism<'_> {
             loads.add_torque_pair(g, first.body, second.body, torque);
         }
         let applied = loads.carried_on(g, self);
-        for &index in &self.tree.order {
+        for &index in self.tree.order.iter().filter(|&&index| !self.tree.merges(index)) {
             let body = &self.bodies[index];
             let (Some(carried), Some(carrier)) = (&body.carried, self.tree.carriers[index]) else { continue };
             let [force, torque] = forces.wrenches[index].map(|part| body.rotate(g, part));

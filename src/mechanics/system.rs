@@ -136,16 +136,22 @@ pub struct Start {
 }
 
 impl System {
-    /// Uncertain parameters that no equation, output or start value depends on are noted as left out.
-    pub(super) fn note_unused_parameters(&mut self) {
+    /// Uncertain parameters that no equation, output or start value depends on, by number.
+    pub fn unused_parameters(&self) -> Vec<usize> {
         let mut roots: Vec<Expr> = self.mass.iter().map(|&(_, _, value)| value).collect();
         roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
         let used = self.graph.symbols_of(&roots);
-        for parameter in self.parameters.iter().filter(|parameter| used.binary_search(&parameter.symbol).is_err()) {
+        let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
+        (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// They are noted as left out.
+    pub(super) fn note_unused_parameters(&mut self) {
+        for number in self.unused_parameters() {
             let why = "nothing depends on it".to_owned();
-            self.left_out.push(LeftOut { what: format!("parameter {}", parameter.name), why });
+            self.left_out.push(LeftOut { what: format!("parameter {}", self.parameters[number].name), why });
         }
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! In joint coordinates a body has none of its own: its place follows from that of another body and from the coordinates of
 //! the joint between them. The joints chosen for that form trees, whose roots are the ground and bodies with coordinates
-//! of their own; what is left of the joints closes loops, by constraints.
+//! of their own; what is left of the joints closes loops, by constraints. Bodies that are merged follow one of them in absolute coordinates too.
 
 use std::collections::VecDeque;
 
-use crate::model::{Body, Coordinate, Description, JointKind, PointRef};
+use crate::model::{Description, JointKind, PointRef, StartValue};
 
 /// A joint that carries a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,57 +30,94 @@ pub struct Tree {
     pub order: Vec<usize>,
     /// Whether each joint carries a body.
     carrying: Vec<bool>,
+    /// Whether each body is merged with what carries it.
+    merged: Vec<bool>,
 }
 
 impl Tree {
-    /// Nothing is carried: every body has coordinates of its own.
+    /// Every body has coordinates of its own, but those that are merged.
     pub fn absolute(description: &Description) -> Self {
-        let (bodies, joints) = (description.bodies.len(), description.joints.len());
-        Self { carriers: vec![None; bodies], order: Vec::new(), carrying: vec![false; joints] }
+        Self::spanning(description, |_| false)
     }
 
     /// As much as can be carried, near the roots first. `steady` says of a joint whether what it is made of stays as it
     /// is.
     pub fn spanning(description: &Description, mut steady: impl FnMut(&JointKind) -> bool) -> Self {
         let bodies = &description.bodies;
-        let mut tree = Self::absolute(description);
-        let mut joints = vec![Vec::new(); bodies.len()];
+        let mut tree = Self {
+            carriers: vec![None; bodies.len()],
+            order: Vec::new(),
+            carrying: vec![false; description.joints.len()],
+            merged: vec![false; bodies.len()],
+        };
+        let (mut joints, mut welds) = (vec![Vec::new(); bodies.len()], vec![Vec::new(); bodies.len()]);
         for (index, joint) in description.joints.iter().enumerate() {
-            let Some([first, second]) = joint.kind.between().filter(|_| carries(&joint.kind) && steady(&joint.kind))
-            else {
-                continue;
+            let Some([first, second]) = joint.kind.between() else { continue };
+            let list = match &joint.kind {
+                kind if merges(kind) => &mut welds,
+                kind if carries(kind) && steady(kind) => &mut joints,
+                _ => continue,
             };
-            joints[first.body].push(Carrier { joint: index, parent: first, child: second, reversed: false });
-            joints[second.body].push(Carrier { joint: index, parent: second, child: first, reversed: true });
+            list[first.body].push(Carrier { joint: index, parent: first, child: second, reversed: false });
+            list[second.body].push(Carrier { joint: index, parent: second, child: first, reversed: true });
         }
-        let mut reached: Vec<bool> = bodies.iter().map(|body| !is_free(body, description.space.spatial)).collect();
-        let mut queue: VecDeque<usize> = (0..bodies.len()).filter(|&body| reached[body]).collect();
-        let mut next_root = 0;
+        let mut reached: Vec<bool> = bodies.iter().map(|body| !body.is_free(description.space.spatial)).collect();
+        let mut queue = VecDeque::new();
+        for root in (0..bodies.len()).filter(|&body| reached[body]).collect::<Vec<_>>() {
+            tree.merge(root, &welds, &mut reached, &mut queue);
+        }
+        // What nothing joins to a root moves freely, and may carry others; of merged bodies the one that the start names.
+        let named = if welds.iter().all(Vec::is_empty) { Vec::new() } else { named_at_start(description) };
+        let mut roots = named.into_iter().chain(0..bodies.len());
         loop {
             while let Some(body) = queue.pop_front() {
                 for &carrier in &joints[body] {
                     let child = carrier.child.body;
                     if !reached[child] {
                         reached[child] = true;
-                        tree.carriers[child] = Some(carrier);
-                        tree.carrying[carrier.joint] = true;
-                        tree.order.push(child);
-                        queue.push_back(child);
+                        tree.carry(carrier);
+                        tree.merge(child, &welds, &mut reached, &mut queue);
                     }
                 }
             }
-            // What nothing joins to a root moves freely, and may carry others.
-            let Some(root) = (next_root..bodies.len()).find(|&body| !reached[body]) else { break };
+            let Some(root) = roots.find(|&body| !reached[body]) else { break };
             reached[root] = true;
-            queue.push_back(root);
-            next_root = root + 1;
+            tree.merge(root, &welds, &mut reached, &mut queue);
         }
         tree
     }
 
-    /// Whether nothing is carried.
+    fn carry(&mut self, carrier: Carrier) {
+        self.carriers[carrier.child.body] = Some(carrier);
+        self.carrying[carrier.joint] = true;
+        self.order.push(carrier.child.body);
+    }
+
+    /// Merges a body that was reached with all that is welded to it, and lets them carry others.
+    fn merge(&mut self, body: usize, welds: &[Vec<Carrier>], reached: &mut [bool], queue: &mut VecDeque<usize>) {
+        let mut next = vec![body];
+        while let Some(body) = next.pop() {
+            queue.push_back(body);
+            for &carrier in &welds[body] {
+                let child = carrier.child.body;
+                if !reached[child] {
+                    reached[child] = true;
+                    self.merged[child] = true;
+                    self.carry(carrier);
+                    next.push(child);
+                }
+            }
+        }
+    }
+
+    /// Whether nothing is carried but what is merged.
     pub fn is_absolute(&self) -> bool {
-        self.order.is_empty()
+        self.order.iter().all(|&body| self.merged[body])
+    }
+
+    /// Whether a body is merged with what carries it.
+    pub fn merges(&self, body: usize) -> bool {
+        self.merged[body]
     }
 
     /// Why joint coordinates are not worth a try: joints close loops, or bodies are more than so many joints from their roots
@@ -95,7 +132,8 @@ impl Tree {
         }
         let mut depths = vec![0; self.carriers.len()];
         for &body in &self.order {
-            depths[body] = self.carriers[body].map_or(0, |carrier| depths[carrier.parent.body] + 1);
+            depths[body] =
+                self.carriers[body].map_or(0, |carrier| depths[carrier.parent.body] + usize::from(!self.merged[body]));
         }
         let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());
         (depth > deepest)
@@ -108,15 +146,20 @@ impl Tree {
     }
 }
 
-/// Whether nothing of a body is held, so that a joint alone may say where it is.
-fn is_free(body: &Body, spatial: bool) -> bool {
-    let has = |coordinate: &Coordinate| body.coordinates.contains(coordinate);
-    let freedoms: &[Coordinate] = if spatial {
-        &[Coordinate::X, Coordinate::Y, Coordinate::Z, Coordinate::Euler(0)]
-    } else {
-        &[Coordinate::X, Coordinate::Y, Coordinate::Angle]
+/// Bodies whose own coordinates the start gives, what is kept before what is guessed.
+fn named_at_start(description: &Description) -> Vec<usize> {
+    let body = |value: &StartValue| match value {
+        StartValue::Coordinate { body, .. }
+        | StartValue::Orientation { body, .. }
+        | StartValue::AngularVelocity { body, .. } => Some(*body),
+        StartValue::Joint { .. } => None,
     };
-    freedoms.iter().all(has) && body.held.is_empty()
+    description.initial.iter().chain(&description.guess).filter_map(body).collect()
+}
+
+/// Whether a joint makes its bodies one.
+fn merges(kind: &JointKind) -> bool {
+    matches!(kind, JointKind::Fixed { merged: true, .. })
 }
 
 /// Whether a joint's freedoms are angles about and displacements along an axis.

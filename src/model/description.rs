@@ -204,6 +204,17 @@ impl Body {
     pub fn has_orientation(&self) -> bool {
         self.held_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
     }
+
+    /// Whether nothing of it is held, so that a joint alone may say where it is.
+    pub fn is_free(&self, spatial: bool) -> bool {
+        let has = |coordinate: &Coordinate| self.coordinates.contains(coordinate);
+        let freedoms: &[Coordinate] = if spatial {
+            &[Coordinate::X, Coordinate::Y, Coordinate::Z, Coordinate::Euler(0)]
+        } else {
+            &[Coordinate::X, Coordinate::Y, Coordinate::Angle]
+        };
+        freedoms.iter().all(has) && self.held.is_empty()
+    }
 }
 
 /// A named point of a body, and a frame there.

@@ -141,7 +141,7 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         "fixed" => {
             let details = Details::read_short::<file::Fixed>(reader, kind)?;
             let (between, angle) = (points(reader, &details), number(reader, &details, "angle", Dimension::ANGLE));
-            Some(JointKind::Fixed { between: between?, angle: angle? })
+            Some(JointKind::Fixed { between: between?, angle: angle?, merged: false })
         }
         "pin_in_slot" => {
             let details = Details::read::<file::PinInSlot>(reader, kind)?;

@@ -33,6 +33,8 @@ pub enum JointKind {
         between: [PointRef; 2],
         /// rad
         angle: Formula,
+        /// Whether both bodies move as one, so that there is no reaction between them; a file cannot say so.
+        merged: bool,
     },
     /// The second point moves along a line through the first, fixed in the first body; it may turn about the frames' z.
     PinInSlot {

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::Decision;
 use crate::integrate::Simulator;
 
 /// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
@@ -37,6 +38,9 @@ pub struct Explanation {
     pub newton: NewtonMatrix,
     /// What the model says and the program does not hold.
     pub left_out: Vec<LeftOut>,
+    /// What is not computed, or less often than it might be.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub decisions: Vec<Decision>,
 }
 
 impl Explanation {
@@ -91,6 +95,7 @@ impl Explanation {
                 .iter()
                 .map(|left_out| LeftOut { what: left_out.what.clone(), why: left_out.why.clone() })
                 .collect(),
+            decisions: Vec::new(),
         }
     }
 }

@@ -126,6 +126,8 @@ mod tests {
             errors: vec![],
             contributions: vec![],
             pieces: vec![],
+            not_simulated: vec![],
+            islands: vec![],
             failure: None,
         };
         (bounds, summary)

@@ -5,6 +5,7 @@ mod canvas;
 mod contributions;
 mod cost;
 mod csv;
+mod decisions;
 mod explanation;
 mod figure;
 mod files;
@@ -22,6 +23,7 @@ pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::{
     CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
 };
+pub use decisions::{Decision, Each, Saving};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, write_results};
 pub use folder::prepare_folder;
@@ -29,5 +31,6 @@ pub use overlay::overlay_svg;
 pub use plot::plot_svg;
 pub use scenes::{SceneBounds, scenes_csv, write_scenes};
 pub use summary::{
-    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, Summary,
+    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    Summary,
 };

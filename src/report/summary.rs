@@ -35,6 +35,12 @@ pub struct Summary {
     /// Where only a part of the box is bounded: the pieces that are, with how far in time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pieces: Vec<PieceSummary>,
+    /// Parts of the model that no output depends on: `body pendulum`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_simulated: Vec<String>,
+    /// Where parts of the model move on their own: what each is and took.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub islands: Vec<IslandSummary>,
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -45,7 +51,8 @@ impl Summary {
     #[must_use]
     pub fn without_seconds(&self) -> Self {
         let mut summary = self.clone();
-        summary.methods.iter_mut().for_each(|method| method.seconds = None);
+        let of_islands = summary.islands.iter_mut().flat_map(|island| &mut island.methods);
+        summary.methods.iter_mut().chain(of_islands).for_each(|method| method.seconds = None);
         summary
     }
 }
@@ -76,6 +83,18 @@ pub struct PieceSummary {
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
     pub until: f64,
+}
+
+/// A part of the model that moves on its own, with the names of what is in it and of the uncertain parameters that reach it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct IslandSummary {
+    pub bodies: Vec<String>,
+    pub outputs: Vec<String>,
+    pub parameters: Vec<String>,
+    pub coordinates: usize,
+    pub constraints: usize,
+    pub methods: Vec<MethodSummary>,
 }
 
 /// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which time on it is

@@ -15,7 +15,6 @@ use std::time::Instant;
 
 use super::RunError;
 use super::compose;
-use super::formulation;
 use crate::model::{Description, MOST_SOLVES};
 use crate::report::{CostMethod, CostPoint, CostStudy, pareto};
 
@@ -58,7 +57,7 @@ const BOUNDS_DONE: f64 = 0.95;
 /// Where the model cannot be run at all, or the reference cannot be computed.
 pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, CostError> {
     let begun = Instant::now();
-    let system = formulation::compiled(model)?.system;
+    let system = super::prepare(model)?.system;
     let k = uncertain(model);
     let composable = compose::fits(k, system.q.len());
     let plan = Plan::within_budget(model, composable, options)?;

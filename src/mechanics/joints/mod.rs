@@ -63,7 +63,7 @@ pub fn rows(g: &mut Graph, m: &Mechanism, joint: usize) -> Result<Vec<Row>, Buil
     match &m.description.joints[joint].kind {
         JointKind::Revolute { between, axis } => revolute::rows(g, m, *between, axis),
         JointKind::Prismatic { between, axis, angle } => prismatic::rows(g, m, *between, axis, angle),
-        JointKind::Fixed { between, angle } => fixed::rows(g, m, *between, angle),
+        JointKind::Fixed { between, angle, .. } => fixed::rows(g, m, *between, angle),
         JointKind::PinInSlot { between, axis } => pin_in_slot::rows(g, m, *between, axis),
         JointKind::Cylindrical { between, axis } => cylindrical::rows(g, m, *between, axis),
         JointKind::Screw { between, axis, pitch } => screw::rows(g, m, joint, *between, axis, pitch),

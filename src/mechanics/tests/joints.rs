@@ -24,7 +24,7 @@ fn kinds(m: &Model) -> Vec<JointKind> {
     vec![
         JointKind::Revolute { between, axis: vector(["0", "0", "1"]) },
         JointKind::Prismatic { between, axis: pair("1", "2"), angle: formula("0.3") },
-        JointKind::Fixed { between, angle: formula("0.3") },
+        JointKind::Fixed { between, angle: formula("0.3"), merged: false },
         JointKind::PinInSlot { between, axis: pair("1", "2") },
         JointKind::Distance { between, length: formula("d") },
         JointKind::Gear { between: [Turning::Body(1), Turning::Body(2)], ratio: formula("-2"), offset: formula("0.1") },

@@ -116,7 +116,7 @@ fn kinds(m: &Model) -> Vec<(JointKind, usize)> {
     vec![
         (JointKind::Revolute { between, axis: axis() }, 5),
         (JointKind::Prismatic { between, axis: axis(), angle: formula("0.3") }, 5),
-        (JointKind::Fixed { between, angle: formula("0.3") }, 6),
+        (JointKind::Fixed { between, angle: formula("0.3"), merged: false }, 6),
         (JointKind::PinInSlot { between, axis: vector(["1", "-2", "0"]) }, 4),
         (JointKind::Cylindrical { between, axis: axis() }, 4),
         (JointKind::Screw { between, axis: axis(), pitch }, 5),

@@ -93,7 +93,7 @@ fn welds_and_rods_are_guessed_closed() {
     m.body("bob", "1", "1", "xy", &[]);
     m.revolute("shoulder", "ground", "arm.A");
     // The second body of this joint is the one that is placed first.
-    m.joint("wrist", JointKind::Fixed { between: m.between("hand.A", "arm.B"), angle: formula("pi/4") });
+    m.joint("wrist", JointKind::Fixed { between: m.between("hand.A", "arm.B"), angle: formula("pi/4"), merged: false });
     m.joint("string", JointKind::Distance { between: m.between("hand.B", "bob"), length: formula("0.7") });
     m.initial("arm", 'a', TimeOrder::Position, "0.3");
     assert_all_close(&gaps(&m.build()), &[0.0; 6], 1e-15);

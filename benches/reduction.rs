@@ -1,0 +1,80 @@
+//! What is not asked for costs nothing: a model with ten more bodies against the bare one, and islands apart against the same in one.
+//!
+//! Every measure alternates both, so that what else the machine does meets them alike; the ratio of the least times is told.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use mbint::batch::{Options, run};
+use mbint::model::{Description, load_str};
+
+/// Runs of each; the least time of them counts.
+const REPEATED: usize = 15;
+
+fn main() {
+    let crank = slider_crank(0);
+    compare("slider crank", &crank, "with ten bodies that no output needs", &slider_crank(10));
+    compare("two uncertain pendulums, apart", &pendulums(2, ""), "as one", &pendulums(2, "mixed: p0.x - p1.x"));
+    compare(
+        "three uncertain pendulums, apart",
+        &pendulums(3, ""),
+        "as one",
+        &pendulums(3, "mixed: p0.x - p1.x + p2.x"),
+    );
+}
+
+fn compare(name: &str, first: &Description, other_name: &str, other: &Description) {
+    let mut best = [Duration::MAX; 2];
+    for _ in 0..REPEATED {
+        for (best, description) in best.iter_mut().zip([first, other]) {
+            let begun = Instant::now();
+            run(description, Options { threads: Some(1), ..Options::default() }).expect("the model runs");
+            *best = (*best).min(begun.elapsed());
+        }
+    }
+    let [first, other] = best.map(|best| 1e3 * best.as_secs_f64());
+    println!("{name}: {first:.2} ms, {other_name}: {other:.2} ms, ratio {:.3}", other / first);
+}
+
+/// The slider crank of Wu, Luo & Zhang, with so many bodies beside it.
+fn slider_crank(more: usize) -> Description {
+    let text = include_str!("../models/slider_crank.yaml");
+    let (mut bodies, mut joints, mut effects) = (String::new(), String::new(), String::new());
+    for i in 0..more {
+        let before = if i == 0 { "ground".to_owned() } else { format!("idle{}.B", i - 1) };
+        _ = writeln!(bodies, "  idle{i}: {{ mass: 1, inertia: 0.1, points: {{ A: [-0.4, 0], B: [0.4, 0] }} }}");
+        _ = writeln!(joints, "  idle_joint{i}: {{ revolute: [{before}, idle{i}.A] }}");
+        _ = writeln!(
+            effects,
+            "  idle_spring{i}: {{ spring_damper: {{ between: [ground, idle{i}.B], stiffness: 20, free_length: 0.5 }} }}"
+        );
+    }
+    let add = |text: String, section: &str, lines: &str| text.replacen(section, &format!("{section}{lines}"), 1);
+    let text = add(text.to_owned(), "\nbodies:\n", &bodies);
+    let text = add(text, "\njoints:\n", &joints);
+    let text = add(text, "\neffects:\n", &effects);
+    assert_eq!(text.matches("idle_spring").count(), more, "the model has the sections that are added to");
+    read("slider_crank.yaml", &text)
+}
+
+/// Pendulums that have nothing to do with one another, the length of each uncertain.
+fn pendulums(count: usize, mixed: &str) -> Description {
+    let mut text = "model: pendulums\nparameters:\n".to_owned();
+    let mut add = |heading: &str, line: &dyn Fn(usize) -> String, last: &str| {
+        text += heading;
+        (0..count).for_each(|i| _ = writeln!(text, "  {}", line(i)));
+        _ = writeln!(text, "  {last}");
+    };
+    add("", &|i| format!("l{i}: {{ value: 0.{}, unit: m, tolerance: 2% }}", 5 + i), "");
+    add("bodies:\n", &|i| format!("p{i}: {{ mass: 1, inertia: 0.02, points: {{ A: [-l{i}/2, 0] }} }}"), "");
+    add("joints:\n", &|i| format!("h{i}: {{ revolute: [ground, p{i}.A] }}"), "");
+    add("initial:\n", &|i| format!("p{i}.angle: 0.{i}"), "");
+    add("outputs:\n", &|i| format!("x{i}: p{i}.x"), mixed);
+    text += "effects: { weight: { gravity: { acceleration: [0, -9.81] } } }\n";
+    text += "simulation: { duration: 1, step: 1e-3 }\nbounds: { chebyshev: { order: 5 } }\n";
+    read("pendulums.yaml", &text)
+}
+
+fn read(name: &str, text: &str) -> Description {
+    load_str(name, text, &[]).unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))
+}

@@ -1,0 +1,159 @@
+//! Which bodies, points and joints the parts of a mechanism refer to by index, and which formulas they are made of.
+
+use symdiff::Formula;
+
+use super::description::{Body, PointRef, Rotation, StartValue};
+use super::effect_kinds::{
+    Backlash, Beam, Cable, ClearanceJoint, Contact, Drag, EffectKind, JointFriction, Preload, Preloaded, Servo, Stop,
+    Twisted,
+};
+use super::kinds::{JointKind, Turning};
+
+/// An index in a joint, an effect or a value at the start.
+#[derive(Debug)]
+pub enum Reference<'a> {
+    /// Of a body.
+    Body(&'a mut usize),
+    /// Of a body, with one of its points.
+    Point(&'a mut PointRef),
+    /// Of a joint.
+    Joint(&'a mut usize),
+}
+
+fn points(between: &mut [PointRef; 2]) -> Vec<Reference<'_>> {
+    between.iter_mut().map(Reference::Point).collect()
+}
+
+fn turnings(between: &mut [Turning; 2]) -> Vec<Reference<'_>> {
+    fn one(turning: &mut Turning) -> Reference<'_> {
+        match turning {
+            Turning::Body(body) => Reference::Body(body),
+            Turning::Joint(joint) => Reference::Joint(joint),
+        }
+    }
+    between.iter_mut().map(one).collect()
+}
+
+impl JointKind {
+    /// Every index in it; what its formulas name is not among them.
+    pub fn references(&mut self) -> Vec<Reference<'_>> {
+        match self {
+            Self::Revolute { between, .. }
+            | Self::Prismatic { between, .. }
+            | Self::Fixed { between, .. }
+            | Self::PinInSlot { between, .. }
+            | Self::Cylindrical { between, .. }
+            | Self::Screw { between, .. }
+            | Self::Spherical { between }
+            | Self::Universal { between, .. }
+            | Self::Planar { between, .. }
+            | Self::PointOnLine { between, .. }
+            | Self::PointOnPlane { between, .. }
+            | Self::Distance { between, .. } => points(between),
+            Self::Gear { between, .. } => turnings(between),
+            Self::Rack { pinion, rack, .. } => vec![Reference::Joint(pinion), Reference::Joint(rack)],
+            Self::Motor { joint, .. } => vec![Reference::Joint(joint)],
+            Self::Equation { .. } => Vec::new(),
+        }
+    }
+
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        match self {
+            Self::Revolute { axis, .. }
+            | Self::PinInSlot { axis, .. }
+            | Self::Cylindrical { axis, .. }
+            | Self::Planar { normal: axis, .. }
+            | Self::PointOnLine { axis, .. }
+            | Self::PointOnPlane { normal: axis, .. } => axis.iter().collect(),
+            Self::Prismatic { axis, angle: number, .. } | Self::Screw { axis, pitch: number, .. } => {
+                axis.iter().chain([number]).collect()
+            }
+            Self::Fixed { angle: number, .. } | Self::Distance { length: number, .. } => vec![number],
+            Self::Spherical { .. } => Vec::new(),
+            Self::Universal { axes, .. } => axes.iter().flatten().collect(),
+            Self::Gear { ratio, offset, .. } | Self::Rack { radius: ratio, offset, .. } => vec![ratio, offset],
+            Self::Motor { motion, .. } => motion.formulas(),
+            Self::Equation { left, right } => vec![left, right],
+        }
+    }
+}
+
+impl EffectKind {
+    /// Every index in it; what its formulas name is not among them. Gravity acts on all bodies and has none.
+    pub fn references(&mut self) -> Vec<Reference<'_>> {
+        match self {
+            Self::Gravity { .. } => Vec::new(),
+            Self::Force { on, .. } | Self::Drag(Drag { on, .. }) => vec![Reference::Point(on)],
+            Self::Torque { on, from, .. } => vec![Reference::Body(on), Reference::Body(from)],
+            Self::JointTorque { joint, .. } | Self::JointFriction(JointFriction { joint, .. }) => {
+                vec![Reference::Joint(joint)]
+            }
+            Self::TorsionalSpringDamper { on: Twisted::Joint(joint), .. } => vec![Reference::Joint(joint)],
+            Self::TorsionalSpringDamper { on: Twisted::Bodies(bodies), .. } => {
+                bodies.iter_mut().map(Reference::Body).collect()
+            }
+            Self::Stop(Stop { on, .. })
+            | Self::Servo(Servo { on, .. })
+            | Self::Preload(Preload { on: Preloaded::Joint(on), .. }) => vec![Reference::Joint(&mut on.joint)],
+            Self::Backlash(Backlash { between, .. }) => turnings(between),
+            Self::SpringDamper { between, .. }
+            | Self::Bushing { between, .. }
+            | Self::Contact(Contact { between, .. })
+            | Self::ClearanceJoint(ClearanceJoint { between, .. })
+            | Self::Cable(Cable { between, .. })
+            | Self::Beam(Beam { between, .. })
+            | Self::Preload(Preload { on: Preloaded::Points(between), .. }) => points(between),
+        }
+    }
+}
+
+impl StartValue {
+    /// The one index in it.
+    pub fn reference(&mut self) -> Reference<'_> {
+        match self {
+            Self::Coordinate { body, .. } | Self::Orientation { body, .. } | Self::AngularVelocity { body, .. } => {
+                Reference::Body(body)
+            }
+            Self::Joint { joint, .. } => Reference::Joint(joint),
+        }
+    }
+
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        match self {
+            Self::Coordinate { value, .. } | Self::Joint { value, .. } => vec![value],
+            Self::AngularVelocity { value, .. } => value.iter().collect(),
+            Self::Orientation { rotation, .. } => rotation.formulas(),
+        }
+    }
+}
+
+impl Rotation {
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        match self {
+            Self::RollPitchYaw(angles) => angles.iter().collect(),
+            Self::AxisAngle(axis, angle) => axis.iter().chain([angle]).collect(),
+            Self::Quaternion(p) => p.iter().collect(),
+        }
+    }
+}
+
+impl Body {
+    /// Every formula in it.
+    pub fn formulas(&self) -> Vec<&Formula> {
+        let mut found: Vec<&Formula> = self.mass.iter().chain(self.center_of_mass.iter().flatten()).collect();
+        if let Some(inertia) = &self.inertia {
+            let super::Inertia { xx, yy, zz, xy, xz, yz } = inertia;
+            found.extend([xx, yy, zz, xy, xz, yz]);
+        }
+        found.extend(self.held.iter().map(|(_, value)| value));
+        found.extend(self.held_orientation.iter().flat_map(Rotation::formulas));
+        for point in &self.points {
+            found.extend(&point.position);
+            found.extend(point.rotation.iter().flat_map(Rotation::formulas));
+        }
+        found
+    }
+}

@@ -1,0 +1,162 @@
+//! A part of a model as a model of its own.
+
+use super::couplings::{Couplings, Named, Part};
+use crate::model::{
+    ChebyshevRequest, Degree, Description, ParameterValue, PointRef, Reference, ScanRequest, StartValue,
+};
+
+/// What is kept of a description, by index.
+struct Kept {
+    bodies: Vec<bool>,
+    /// Body by body.
+    points: Vec<Vec<bool>>,
+    joints: Vec<bool>,
+    effects: Vec<bool>,
+    parameters: Vec<bool>,
+}
+
+/// Where what is kept has gone.
+fn places(kept: &[bool]) -> Vec<Option<usize>> {
+    let mut next = 0..;
+    kept.iter().map(|&kept| if kept { next.next() } else { None }).collect()
+}
+
+fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    list.retain(|_| *kept.next().unwrap_or(&true));
+}
+
+/// The model of the parts in `set`, with these of the outputs; every other part is left out, and so are parameters that nothing
+/// kept names. Also which uncertain parameters are left, by their number among all.
+pub fn extract(
+    description: &Description,
+    couplings: &mut Couplings,
+    set: Option<usize>,
+    outputs: &[usize],
+) -> (Description, Vec<usize>) {
+    let kept = Kept::of(description, couplings, set, outputs);
+    let mut part = description.clone();
+    part.outputs = outputs.iter().map(|&output| description.outputs[output].clone()).collect();
+    let (bodies, joints) = (places(&kept.bodies), places(&kept.joints));
+    let points: Vec<Vec<Option<usize>>> = kept.points.iter().map(|points| places(points)).collect();
+    let moved = |place: PointRef| {
+        let point = match place.point {
+            Some(point) => Some(points[place.body][point]?),
+            None => None,
+        };
+        Some(PointRef { body: bodies[place.body]?, point })
+    };
+    // What is kept refers to nothing that is not.
+    let follow = |reference: Reference| match reference {
+        Reference::Body(body) => *body = bodies[*body].unwrap_or(0),
+        Reference::Point(place) => *place = moved(*place).unwrap_or(PointRef { body: 0, point: None }),
+        Reference::Joint(joint) => *joint = joints[*joint].unwrap_or(0),
+    };
+    for (body, points) in part.bodies.iter_mut().zip(&kept.points) {
+        retain(&mut body.points, points);
+    }
+    retain(&mut part.bodies, &kept.bodies);
+    retain(&mut part.joints, &kept.joints);
+    retain(&mut part.effects, &kept.effects);
+    retain(&mut part.parameters, &kept.parameters);
+    part.joints.iter_mut().flat_map(|joint| joint.kind.references()).for_each(follow);
+    part.effects.iter_mut().flat_map(|effect| effect.kind.references()).for_each(follow);
+    for values in [&mut part.initial, &mut part.guess] {
+        values.retain(|value| kept.starts(value));
+        values.iter_mut().map(StartValue::reference).for_each(follow);
+    }
+    for link in part.robot.iter_mut().flat_map(|robot| &mut robot.links) {
+        link.place = link.place.and_then(moved);
+    }
+    let uncertain = (0..description.parameters.len())
+        .filter(|&index| matches!(description.parameters[index].value, ParameterValue::Interval { .. }));
+    let left: Vec<usize> =
+        uncertain.enumerate().filter(|&(_, index)| kept.parameters[index]).map(|(number, _)| number).collect();
+    narrow(&mut part, &left);
+    (part, left)
+}
+
+/// Leaves in the requests what is said of these of the uncertain parameters.
+pub fn narrow(description: &mut Description, left: &[usize]) {
+    let pick = |list: &mut Vec<usize>| *list = left.iter().filter_map(|&number| list.get(number)).copied().collect();
+    if let Some(ChebyshevRequest { degree: Degree::Fixed { order, nodes }, .. }) = &mut description.bounds.chebyshev {
+        pick(order);
+        pick(nodes);
+    }
+    if let Some(ScanRequest { points }) = &mut description.bounds.scan {
+        pick(points);
+    }
+}
+
+impl Kept {
+    fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, outputs: &[usize]) -> Self {
+        let mut has = |part: Part| !couplings.is_still(part) && set.is_some_and(|set| couplings.set(part) == set);
+        let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Part::Body(body))).collect();
+        let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Part::Joint(joint))).collect();
+        let effects: Vec<bool> = (0..d.effects.len()).map(|effect| has(Part::Effect(effect))).collect();
+        let effects: Vec<bool> = effects.iter().zip(&couplings.fields).map(|(has, field)| *has || *field).collect();
+        bodies[0] = true;
+
+        let chosen = |kept: &[bool]| (0..kept.len()).filter(|&index| kept[index]).collect::<Vec<_>>();
+        let mut named = Named::default();
+        outputs.iter().for_each(|&output| named.take(&couplings.outputs[output]));
+        chosen(&joints).into_iter().for_each(|joint| named.take(&couplings.joints[joint]));
+        chosen(&effects).into_iter().for_each(|effect| named.take(&couplings.effects[effect]));
+        // Bodies that are merged with the ground, as far as something is attached to them, with what they hang on.
+        while let Some(part) = named.parts.pop() {
+            let joint = match part {
+                Part::Body(body) if !bodies[body] => {
+                    bodies[body] = true;
+                    couplings.still[body]
+                }
+                Part::Joint(joint) => Some(joint),
+                _ => None,
+            };
+            if let Some(joint) = joint.filter(|&joint| !joints[joint]) {
+                joints[joint] = true;
+                named.take(&couplings.joints[joint]);
+            }
+        }
+
+        let mut kept =
+            Self { points: Vec::new(), parameters: vec![false; d.parameters.len()], bodies, joints, effects };
+        kept.points = kept.points(d, couplings, &named.points);
+        for index in chosen(&kept.bodies) {
+            let mut body = d.bodies[index].clone();
+            retain(&mut body.points, &kept.points[index]);
+            named.parameters.extend(Named::by(d, body.formulas()).parameters);
+        }
+        let starts = d.initial.iter().chain(&d.guess).filter(|value| kept.starts(value));
+        named.parameters.extend(Named::by(d, starts.flat_map(StartValue::formulas)).parameters);
+        named.parameters.iter().for_each(|&parameter| kept.parameters[parameter] = true);
+        // Each depends on earlier ones only.
+        for index in (0..d.parameters.len()).rev() {
+            if let (true, ParameterValue::Formula(formula)) = (kept.parameters[index], &d.parameters[index].value) {
+                Named::by(d, [formula]).parameters.iter().for_each(|&earlier| kept.parameters[earlier] = true);
+            }
+        }
+        kept
+    }
+
+    /// Points: all of bodies that move. Of those that do not, which may belong to many parts of the model, what is used here or nowhere.
+    fn points(&self, d: &Description, couplings: &Couplings, used: &[(usize, usize)]) -> Vec<Vec<bool>> {
+        let still = |body: usize| couplings.is_still(Part::Body(body));
+        let mut points: Vec<Vec<bool>> = d.bodies.iter().map(|body| vec![true; body.points.len()]).collect();
+        let joints = couplings.joints.iter().zip(&self.joints).filter(|(_, kept)| !**kept).map(|(named, _)| named);
+        let effects = couplings.effects.iter().zip(&self.effects).filter(|(_, kept)| !**kept).map(|(named, _)| named);
+        for &(body, point) in joints.chain(effects).chain(&couplings.outputs).flat_map(|named| &named.points) {
+            points[body][point] &= !still(body);
+        }
+        used.iter().for_each(|&(body, point)| points[body][point] = true);
+        points
+    }
+
+    /// Whether a value at the start is of something kept.
+    fn starts(&self, value: &StartValue) -> bool {
+        match value.clone().reference() {
+            Reference::Body(body) => self.bodies[*body],
+            Reference::Point(place) => self.bodies[place.body],
+            Reference::Joint(joint) => self.joints[*joint],
+        }
+    }
+}

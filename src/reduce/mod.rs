@@ -1,0 +1,144 @@
+//! Description → [`Reduction`]: what of a mechanism has to be simulated for the outputs that are asked for.
+//!
+//! - `welds`: bodies that are welded together become one, unless an output asks for the weld's reaction;
+//! - `couplings`: what hangs together; the ground does not connect;
+//! - what no output depends on is left out;
+//! - what hangs together is an island, a model of its own (`extract`), with those of the uncertain parameters that it names.
+//!
+//! A model of one island, of which nothing is left out, is itself.
+
+mod couplings;
+mod extract;
+mod sets;
+mod welds;
+
+use std::collections::HashSet;
+
+use crate::model::Description;
+
+use couplings::{Couplings, Part};
+
+pub use extract::narrow;
+pub use welds::Weld;
+
+/// What is done; everything by default.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choices {
+    /// Whether welded bodies are merged.
+    pub merge: bool,
+    /// Whether parts that no output depends on are left out.
+    pub prune: bool,
+    /// Whether islands are taken apart.
+    pub part: bool,
+}
+
+impl Default for Choices {
+    fn default() -> Self {
+        Self { merge: true, prune: true, part: true }
+    }
+}
+
+/// A part of a model that moves on its own.
+#[derive(Clone, Debug)]
+pub struct Island {
+    /// A model of its own, with the whole one's name.
+    pub description: Description,
+    /// Its outputs, by their numbers in the whole model.
+    pub outputs: Vec<usize>,
+    /// Its uncertain parameters, by their numbers among those of the whole model.
+    pub parameters: Vec<usize>,
+}
+
+/// What of a model is simulated.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// In the order of their first outputs.
+    pub islands: Vec<Island>,
+    /// Parts that no output depends on, by kind and name: `body pendulum`.
+    pub left_out: Vec<String>,
+    /// Fixed joints of what is simulated: their names, and why their bodies stay two if they do.
+    pub welds: Vec<(String, Option<String>)>,
+}
+
+impl Reduction {
+    /// Of a model.
+    pub fn of(description: &Description, choices: Choices) -> Self {
+        let mut whole = description.clone();
+        let welds = if choices.merge { welds::merge(&mut whole) } else { Vec::new() };
+        let mut couplings = Couplings::of(&whole);
+        let movable = couplings.movable();
+        let bodies: Vec<Part> = movable.iter().copied().filter(|part| matches!(part, Part::Body(_))).collect();
+        if bodies.is_empty() && choices.merge {
+            // Something has to have coordinates.
+            return Self::of(description, Choices { merge: false, ..choices });
+        }
+        let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
+        let mut needed: Vec<Part> = Vec::new();
+        for parts in &named {
+            couplings.together(parts);
+            needed.extend(parts.iter().filter(|&&part| !couplings.is_still(part)));
+        }
+        // To an energy everything adds; and where no output names anything that moves, nothing says what is of no use.
+        let all = couplings.outputs.iter().any(|named| named.everything) || needed.is_empty() || !choices.prune;
+        if all {
+            needed.clone_from(&movable);
+            couplings.together(&movable);
+        }
+        if !choices.part {
+            couplings.together(&needed);
+        }
+        let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
+        let moves = |couplings: &mut Couplings, part: &Part| moving.contains(&couplings.set(*part));
+        // What acts on nothing that moves goes with something that does.
+        let company = needed.iter().find(|part| moves(&mut couplings, part)).or(bodies.first()).copied();
+        let alone: Vec<Part> = needed.iter().filter(|part| !moves(&mut couplings, part)).copied().collect();
+        if let Some(company) = company.filter(|_| !alone.is_empty()) {
+            needed.push(company);
+            alone.into_iter().for_each(|part| _ = couplings.together(&[company, part]));
+        }
+
+        // What names nothing that moves goes with the first.
+        let first = needed.first().map(|&part| couplings.set(part));
+        let sets: Vec<Option<usize>> = named.iter().map(|parts| couplings.together(parts).or(first)).collect();
+        let mut islands: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
+        for (output, &set) in sets.iter().enumerate() {
+            match islands.iter_mut().find(|(known, _)| *known == set) {
+                Some((_, outputs)) => outputs.push(output),
+                None => islands.push((set, vec![output])),
+            }
+        }
+        let left_out: Vec<Part> = movable
+            .into_iter()
+            .filter(|&part| {
+                let set = couplings.set(part);
+                islands.iter().all(|(known, _)| *known != Some(set))
+            })
+            .collect();
+        if islands.is_empty() {
+            islands.push((first, Vec::new()));
+        }
+        let islands = islands.into_iter().map(|(set, outputs)| {
+            let (description, parameters) = extract::extract(&whole, &mut couplings, set, &outputs);
+            Island { description, outputs, parameters }
+        });
+        let islands: Vec<Island> = islands.collect();
+        let name = |part: &Part| match *part {
+            Part::Body(body) => format!("body {}", whole.bodies[body].name),
+            Part::Joint(joint) => format!("joint {}", whole.joints[joint].name),
+            Part::Effect(effect) => format!("effect {}", whole.effects[effect].name),
+        };
+        let simulated = |joint: &Weld| !left_out.contains(&Part::Joint(joint.joint));
+        let welds = welds.into_iter().filter(simulated);
+        Self {
+            left_out: left_out.iter().map(name).collect(),
+            welds: welds.map(|weld| (whole.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
+            islands,
+        }
+    }
+
+    /// What is simulated as one model.
+    pub fn joined(description: &Description) -> Island {
+        let mut islands = Self::of(description, Choices { part: false, ..Choices::default() }).islands;
+        islands.swap_remove(0)
+    }
+}
