@@ -72,9 +72,16 @@ impl Description {
             (owner, Some(member), Some(part), None) => self
                 .point_motion(owner, member, part)
                 .or_else(|| self.turning(owner, member, part))
-                .or_else(|| self.reaction(owner, member, Some(part))),
+                .or_else(|| self.reaction(owner, member, Some(part)))
+                .or_else(|| self.of_beam(name)),
             _ => None,
         }
+    }
+
+    /// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.
+    fn of_beam(&self, name: &str) -> Option<Referent> {
+        let (owner, member) = name.rsplit_once('.')?;
+        self.body_motion(owner, member).or_else(|| self.measure(owner, member))
     }
 
     /// A number of the URDF that is a parameter; `link.NAME.x` and `joint.NAME.angle`; or a part of the motion of a link
@@ -284,6 +291,10 @@ impl Description {
     }
 
     fn unknown_member(&self, name: &str, owner: &str, rest: &str, context: Context) -> NameError {
+        let known = |owner: &str| self.bodies.iter().any(|body| body.name == owner);
+        if let Some((node, member)) = name.rsplit_once('.').filter(|(node, _)| *node != owner && known(node)) {
+            return self.unknown_member(name, node, member, context);
+        }
         let body = self.bodies.iter().position(|body| body.name == owner);
         let joint = self.joints.iter().any(|joint| joint.name == owner);
         let after = owner.len() + 1;
@@ -356,6 +367,11 @@ impl Description {
                     help: (!measures.is_empty()).then(|| format!("it has {}", suggest::list(&measures))),
                 }
             }
+            (None, false) if !self.parts_of_beam(owner).is_empty() => NameError {
+                message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+                part: after..name.len(),
+                help: Some(format!("it has {}", suggest::list(&self.parts_of_beam(owner)))),
+            },
             (None, false) => {
                 let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
                 let joints = self.joints.iter().map(|joint| joint.name.as_str());
@@ -374,6 +390,13 @@ impl Description {
 }
 
 impl Description {
+    /// Nodes and elements of a beam; none where there is no beam of that name.
+    fn parts_of_beam(&self, name: &str) -> Vec<&str> {
+        let bodies = self.bodies.iter().map(|body| body.name.as_str());
+        let parts = bodies.chain(self.effects.iter().map(|effect| effect.name.as_str()));
+        parts.filter(|part| part.split_once('.').is_some_and(|(beam, _)| beam == name)).collect()
+    }
+
     /// What can be said of a joint.
     fn parts_of_joint(&self, name: &str) -> String {
         let mut parts = if self.space.spatial {
