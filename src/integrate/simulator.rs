@@ -114,10 +114,7 @@ fn assembly_message(
             amount.abs()
         )
     } else {
-        format!(
-            "the mechanism cannot be assembled{place}: {owner} gapes by {:.3e} in `{constraint}`",
-            amount.abs()
-        )
+        format!("the mechanism cannot be assembled{place}: {owner} gapes by {:.3e} in `{constraint}`", amount.abs())
     }
 }
 

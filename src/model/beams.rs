@@ -3,13 +3,12 @@
 
 use symdiff::{Binary, Formula};
 
-use super::description::{Coordinate, Effect, PointRef};
+use super::description::{Body, Coordinate, Description, Effect, PointRef};
 use super::effect_kinds::{Beam, EffectKind};
 use super::file;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::Reader;
-use super::suggest;
 use super::yaml::{Entry, Value};
 
 /// Elements of a beam that does not say how many.
@@ -98,11 +97,23 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
     }
 }
 
-impl Reader<'_> {
-    /// What to say of a name that is a beam's, where a body belongs.
-    pub fn nodes_of(&self, name: &str) -> Option<String> {
-        let of_beam = |body: &&str| body.split_once('.').is_some_and(|(beam, _)| beam == name);
-        let nodes: Vec<&str> = self.model.bodies.iter().map(|body| body.name.as_str()).filter(of_beam).collect();
-        (!nodes.is_empty()).then(|| format!("`{name}` is a beam; name one of its nodes, {}", suggest::list(&nodes)))
+impl Description {
+    /// Number of elements of a beam; `None` where there is none of that name.
+    pub(super) fn elements_of(&self, beam: &str) -> Option<usize> {
+        let of_beam = |body: &&Body| body.name.split_once('.').is_some_and(|(owner, _)| owner == beam);
+        self.bodies.iter().filter(of_beam).count().checked_sub(1)
+    }
+
+    /// What of a beam has a name of its own.
+    pub(super) fn parts_of_beam(&self, beam: &str) -> Option<String> {
+        let elements = self.elements_of(beam)?;
+        let inner = match elements {
+            1 => String::new(),
+            2 => format!(", `{beam}.node1`"),
+            _ => format!(", `{beam}.node1` to `{beam}.node{}`", elements - 1),
+        };
+        Some(format!(
+            "its nodes are `{beam}.start`{inner} and `{beam}.end`, its elements `{beam}.element1` to `{beam}.element{elements}`"
+        ))
     }
 }

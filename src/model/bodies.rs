@@ -336,9 +336,12 @@ impl Reader<'_> {
         if let Some(found) = bodies().position(|known| known == name) {
             return Some(found);
         }
-        let help = self.nodes_of(name).or_else(|| suggest::help(name, "bodies", bodies()));
+        let (message, help) = match self.model.parts_of_beam(name) {
+            Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
+            None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),
+        };
         let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, 0..name.len()));
-        self.error(place, format!("unknown body `{}`", clip(name)), help);
+        self.error(place, message, help);
         None
     }
 

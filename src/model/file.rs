@@ -526,7 +526,7 @@ grammar! {
         coordinate: Option<JointCoordinateName>,
         /// The coordinate over time, rad or m: a formula of t, twice differentiable.
         position: Option<Number>,
-        /// rad/s or m/s: from the beginning or, with a `profile`, from rest within the `duration`.
+        /// rad/s or m/s: from the beginning, also as a formula of t, or, with a `profile`, from rest within the `duration`.
         speed: Option<Number>,
         /// Where a move from rest to rest ends, rad or m.
         to: Option<Number>,

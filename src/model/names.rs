@@ -273,6 +273,10 @@ impl Description {
             };
             return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
         }
+        if self.elements_of(name).is_some() {
+            let message = format!("`{shown}` is a beam, not a number");
+            return NameError { message, part, help: self.parts_of_beam(name) };
+        }
         if self.joints.iter().any(|joint| joint.name == name) {
             let help =
                 (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
@@ -367,10 +371,15 @@ impl Description {
                     help: (!measures.is_empty()).then(|| format!("it has {}", suggest::list(&measures))),
                 }
             }
-            (None, false) if !self.parts_of_beam(owner).is_empty() => NameError {
+            (None, false) if known(name) => NameError {
+                message: format!("`{name}` is a node of a beam, not a number"),
+                part: 0..name.len(),
+                help: Some(format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
+            },
+            (None, false) if self.elements_of(owner).is_some() => NameError {
                 message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
                 part: after..name.len(),
-                help: Some(format!("it has {}", suggest::list(&self.parts_of_beam(owner)))),
+                help: self.parts_of_beam(owner),
             },
             (None, false) => {
                 let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
@@ -390,13 +399,6 @@ impl Description {
 }
 
 impl Description {
-    /// Nodes and elements of a beam; none where there is no beam of that name.
-    fn parts_of_beam(&self, name: &str) -> Vec<&str> {
-        let bodies = self.bodies.iter().map(|body| body.name.as_str());
-        let parts = bodies.chain(self.effects.iter().map(|effect| effect.name.as_str()));
-        parts.filter(|part| part.split_once('.').is_some_and(|(beam, _)| beam == name)).collect()
-    }
-
     /// What can be said of a joint.
     fn parts_of_joint(&self, name: &str) -> String {
         let mut parts = if self.space.spatial {

@@ -121,7 +121,8 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
     let closure = with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.position);
-    let motion_of_closure = with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.velocity);
+    let motion_of_closure =
+        with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.velocity);
     let rates = time_derivative(system, &mut graph, &motion_of_closure.0);
 
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, probe };
