@@ -98,17 +98,23 @@ fn a_cantilever_bends_far_like_the_elastica() {
             .collect();
         let orders: Vec<f64> = errors.windows(2).map(|pair| order(pair[0], pair[1])).collect();
         println!("P L²/EI = {load}: off by {errors:?}, orders {orders:.2?}");
+        assert!((orders[3] - 4.0).abs() < 0.2 && errors[3] < 4e-5, "{errors:?}");
     }
 }
 
 /// A moment alone bends it to an arc: π EI/L to half a circle.
 #[test]
 fn a_moment_bends_a_cantilever_to_a_circle() {
+    let mut errors = Vec::new();
     for elements in [2, 4, 8] {
         let bounds = rest(elements, 1e5, &format!("{{ torque: {{ on: rod.end, value: \"{PI}*min(t/8, 1)\" }} }}"));
         let off = [last(&bounds, "x"), last(&bounds, "y") - 2.0 / PI, last(&bounds, "angle") - PI];
         println!("{elements} elements: x, y, angle off by {off:?}");
+        // Each element has half of its angle at both ends, whatever its chord.
+        assert!(off[0].abs() < 1e-10 && off[2].abs() < 1e-10, "{off:?}");
+        errors.push(off[1].abs());
     }
+    assert!(order(errors[1], errors[2]) > 3.8 && errors[2] < 1e-5, "{errors:?}");
 }
 
 /// Circular frequencies of a beam of length 1, EI = 1, μ = 1, from M and K of the straight beam; `held` coordinates do not move.
@@ -168,6 +174,10 @@ fn natural_frequencies_are_those_of_the_textbook() {
         }
         let last: Vec<f64> = errors[3].iter().zip(&errors[4]).map(|(coarse, fine)| order(*coarse, *fine)).collect();
         println!("orders {last:.2?}");
+        // From above, as of every consistent mass.
+        assert!(errors.iter().flatten().all(|error| *error > 0.0));
+        assert!(last.iter().all(|order| (order - 4.0).abs() < 0.1), "{last:?}");
+        assert!(errors[2][0] < 3e-4 && errors[3].iter().all(|error| *error < 2e-3), "{errors:?}");
     }
 }
 
@@ -206,11 +216,9 @@ simulation: {{ duration: 3.6, step: 0.01, output_step: 0.1 }}
     let errors = runs.each_ref().map(|run| distance_from(&run.times, curve(run, "y"), exact) * omega / amplitude);
     let best = richardson(curve(&runs[1], "y"), curve(&runs[2], "y"));
     let left = distance_from(&runs[0].times, &best, exact) * omega / amplitude;
-    println!(
-        "off by {errors:?}, orders {:.2} {:.2}; extrapolated {left:.1e}",
-        order(errors[0], errors[1]),
-        order(errors[1], errors[2])
-    );
+    let orders = [order(errors[0], errors[1]), order(errors[1], errors[2])];
+    println!("off by {errors:?}, orders {orders:.2?}; extrapolated {left:.1e}");
+    assert!(orders.iter().all(|order| (order - 2.0).abs() < 0.15) && left < 5e-5, "{errors:?} {left:e}");
 }
 
 /// Free flight: the centre of mass moves straight on, the energy stays; turned at the start by any angle, no strain.
@@ -236,8 +244,11 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.01 }
         let energy = &curve(run, "energy")[60..];
         largest(energy.iter().map(|value| value - energy[0]))
     });
-    println!("energy {} J off by {drifts:?}, order {:.2}", curve(&runs[1], "energy")[100], order(drifts[0], drifts[1]));
-    println!("bends by {}", largest(curve(&runs[1], "bend").iter().copied()));
+    let energy = curve(&runs[1], "energy")[100];
+    println!("energy {energy} J off by {drifts:?}, order {:.2}", order(drifts[0], drifts[1]));
+    assert!((order(drifts[0], drifts[1]) - 2.0).abs() < 0.3 && drifts[1] < 1e-4 * energy, "{drifts:?}");
+    // It bends for all that.
+    assert!(largest(curve(&runs[1], "bend").iter().copied()) > 0.2);
     // Σ F t/m beyond the push: 4 √π/20 N s on 3 kg.
     let drift = |run: &Bounds| {
         let x = curve(run, "x");
@@ -245,14 +256,16 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.01 }
     };
     let drifts = runs.each_ref().map(drift);
     println!("the centre's x off by {drifts:?}, order {:.2}", order(drifts[0], drifts[1]));
+    assert!((order(drifts[0], drifts[1]) - 2.0).abs() < 0.1 && drifts[1] < 1e-6, "{drifts:?}");
     let y = curve(&runs[1], "y");
     let speed = (y[300] - y[100]) / 2.0;
     let expected = -0.3 + 1.1 * 2.5_f64.cos() + 4.0 * PI.sqrt() / 20.0 / 3.0;
     println!("its y velocity {speed:.9}, expected {expected:.9}");
+    assert!((speed - expected).abs() < 1e-6);
 }
 
 /// Kane, Ryan & Banerjee's and Simo & Vu-Quoc's manoeuvre (J. Appl. Mech. 53 (1986) 849): a beam is turned about its end from rest to
-/// 6 rad/s within 15 s. Its tip lags by 0.58 m, then swings about its place; the centrifugal force stretches it by
+/// 6 rad/s within 15 s. Its tip lags by 0.574 m (0.58 in their plots), then swings about its place; the centrifugal force stretches it by
 /// tan(kL)/k − L, k = ω √(μ/EA): 5.14e-4 m.
 #[test]
 fn a_beam_is_spun_up() {
@@ -271,25 +284,31 @@ joints:
 outputs:
   stretch: cos(pivot.angle)*arm.end.x + sin(pivot.angle)*arm.end.y - {length}
   lag: cos(pivot.angle)*arm.end.y - sin(pivot.angle)*arm.end.x
-  force: arm.element1.force
 simulation: {{ duration: 20, step: 5e-3, output_step: 0.05 }}
 "
         ))
     };
     let k = omega * (mass / axial).sqrt();
     let expected = (k * length).tan() / k - length;
+    let mut lags = Vec::new();
     for (elements, h) in [(1, 5e-3), (2, 5e-3), (4, 5e-3), (8, 5e-3), (4, 2.5e-3)] {
         let bounds = nominal(&description(elements).step(h));
         let (lag, stretch) = (curve(&bounds, "lag"), curve(&bounds, "stretch"));
         let most = lag.iter().copied().fold(0.0, f64::min);
         let steady = stretch[330..].iter().sum::<f64>() / (stretch.len() - 330) as f64;
-        let late = largest(lag[300..].iter().copied());
+        let swings = largest(lag[300..].iter().copied());
         println!(
-            "{elements} elements, h = {h:.1e}: lags by {most:.5}, stretched by {steady:.4e} (expected {expected:.4e}), swings by {late:.1e}, force {:.1} of {:.1}",
-            last(&bounds, "force"),
-            0.5 * mass * omega * omega * length * length
+            "{elements} elements, h = {h:.1e}: lags by {most:.5}, stretched by {steady:.4e} ({expected:.4e}), swings by {swings:.1e}"
         );
+        lags.push(-most);
+        assert!(swings < 5e-3, "{swings:e}");
+        if elements >= 4 {
+            assert!((most + 0.574).abs() < 1e-3, "{most}");
+            assert!((steady / expected - 1.0).abs() < 0.005, "{steady:e} {expected:e}");
+        }
     }
+    // Each time as many elements bring it nearer.
+    assert!((lags[3] - lags[2]).abs() < 0.1 * (lags[2] - lags[1]).abs(), "{lags:?}");
 }
 
 /// The stiffness uncertain: the tip of a cantilever that swings in its first mode.
@@ -318,5 +337,63 @@ bounds: { chebyshev: { order: 6 }, scan: { points: 15 } }
         let beyond = beyond.fold(0.0, f64::max);
         let error = largest(chebyshev.error.total.iter().copied());
         println!("{name}: widest {widest:.3e}, error {error:.1e}, scan beyond by {beyond:.1e}");
+        assert!(beyond == 0.0 && error < 0.01 * widest, "{name}: {beyond:e}, {error:e} of {widest:e}");
     }
+}
+
+/// Elements cost the same each.
+#[test]
+fn instructions_grow_with_the_elements() {
+    let weight = "{ gravity: { acceleration: [0, -9.81] } }";
+    let instructions = [8, 16, 32].map(|elements| {
+        let description = cantilever(elements, 1.0, 1e4, 0.0, weight, "duration: 1");
+        let simulator = mbint::batch::prepare(&description).unwrap();
+        simulator.program.factor().len() + simulator.program.correct().len()
+    });
+    println!("{instructions:?}");
+    let [small, middle, large] = instructions;
+    assert!(large - middle < 2 * (middle - small) + 100, "{instructions:?}");
+}
+
+/// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730² √(EI/μL⁴).
+/// Clamps that are too near to one another are told.
+#[test]
+fn a_beam_starts_straight_or_says_why_not() {
+    let clamped = |apart: f64| {
+        read(&format!(
+            "
+bodies: {{ rod: {{ beam: {{ length: 1, mass_per_length: 1, axial_stiffness: 1e5, bending_stiffness: 1, elements: 4 }} }} }}
+joints:
+  a: {{ fixed: [ground, rod.start] }}
+  b: {{ equation: rod.end.x = {apart} }}
+  c: {{ equation: rod.end.y = 0 }}
+  d: {{ equation: rod.end.angle = 0 }}
+effects: {{ push: {{ gravity: {{ acceleration: [0, -1e-3] }} }} }}
+outputs: {{ y: rod.node2.y }}
+simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
+"
+        ))
+    };
+    let bounds = nominal(&clamped(1.0));
+    let y = curve(&bounds, "y");
+    assert_eq!(y[0], 0.0);
+    // About q L⁴/384EI, mostly in the first mode: lowest after half a period, back after a whole one.
+    let lowest = y.iter().copied().fold(0.0, f64::min);
+    assert!((lowest / (-2.0e-3 / 384.0) - 1.0).abs() < 0.1, "{lowest:e}");
+    let period = std::f64::consts::TAU / 4.730_040_745_f64.powi(2);
+    let around = (750.0 * period) as usize..(1250.0 * period) as usize;
+    let back = around.max_by(|&a, &b| y[a].total_cmp(&y[b])).unwrap();
+    assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
+    let failure = mbint::batch::run(&clamped(0.99), mbint::batch::Options::default()).unwrap_err().to_string();
+    println!("{failure}");
+    assert!(failure.contains("beam `rod`, which starts straight unless `initial` has x, y and angle of all its nodes"));
+}
+
+/// Joint coordinates do not carry what bends.
+#[test]
+fn a_beam_has_absolute_coordinates() {
+    let run = "duration: 1, formulation: joint";
+    let description = cantilever(1, 1.0, 1e4, 0.0, "{ gravity: { acceleration: [0, -9.81] } }", run);
+    let failure = mechanics::build(&description).unwrap_err().to_string();
+    assert!(failure.contains("beam `rod` bends"), "{failure}");
 }
