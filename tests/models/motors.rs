@@ -92,7 +92,7 @@ fn motors_turn_at_a_speed_and_by_a_formula() {
 /// A speed by a formula is integrated by a formula: a ramp to 6 rad/s with a swing on top.
 #[test]
 fn a_motor_turns_at_a_speed_that_is_a_formula() {
-    let bounds = wheel("speed: 6*min(t/0.5, 1) + 0.5*sin(4*t), from: 1");
+    let bounds = wheel("speed: \"6*min(t/0.5, 1) + 0.5*sin(4*t)\", from: 1");
     let exact = |t: f64| {
         let ramp = if t < 0.5 { 6.0 * t * t } else { 1.5 + 6.0 * (t - 0.5) };
         1.0 + ramp + 0.125 * (1.0 - (4.0 * t).cos())
