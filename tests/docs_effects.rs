@@ -6,12 +6,15 @@ use mbint::{batch, model};
 
 const PAGE: &str = include_str!("../docs/effects.md");
 
-/// The first block is the mechanism; each other replaces or adds sections.
+/// The first block is the mechanism; each other replaces or adds sections, or is a model of its own.
 fn models() -> Vec<String> {
     let blocks: Vec<&str> =
         PAGE.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("yaml\n")).collect();
     let (mechanism, examples) = blocks.split_first().unwrap();
     let with = |example: &&str| {
+        if example.starts_with("bodies:") {
+            return (*example).to_owned();
+        }
         let replaced = example.starts_with("joints:");
         let kept: Vec<&str> = mechanism.lines().collect();
         let joints = kept.iter().position(|line| *line == "joints:").unwrap();

@@ -75,6 +75,7 @@ impl<'s> Closure<'s> {
         let kept = |symbols: &[symdiff::Expr]| (0..n).map(|i| independent.contains(&i).then_some(symbols[i])).collect();
         system.start.position = kept(&system.q);
         system.start.velocity = kept(&system.v);
+        system.start.conditions.clear();
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
             .map_err(|singular| simulator.singular(&singular))?;
         let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();

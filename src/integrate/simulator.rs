@@ -5,7 +5,7 @@ use symdiff::{Tile, WIDTHS};
 use super::assemble::{Assembly, Gap};
 use super::rank::dependent_rows;
 use super::reactions::undetermined_outputs;
-use crate::mechanics::System;
+use crate::mechanics::{StartCondition, System};
 use crate::program::{Layout, PROBES, Probe, Program, Scheme, Singular, StartProgram, compile, compile_start};
 
 /// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
@@ -55,9 +55,9 @@ pub struct Mobility {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// No consistent start.
-    #[error("{}", assembly_message(joint, constraint, *amount, *of_velocities, parameters))]
+    #[error("{}", assembly_message(owner, constraint, *amount, *of_velocities, parameters))]
     #[allow(missing_docs)]
-    Assembly { joint: String, constraint: String, amount: f64, of_velocities: bool, parameters: Vec<(String, f64)> },
+    Assembly { owner: String, constraint: String, amount: f64, of_velocities: bool, parameters: Vec<(String, f64)> },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
     #[allow(missing_docs)]
@@ -101,7 +101,7 @@ fn parameter_list(parameters: &[(String, f64)]) -> String {
 }
 
 fn assembly_message(
-    joint: &str,
+    owner: &str,
     constraint: &str,
     amount: f64,
     of_velocities: bool,
@@ -110,14 +110,11 @@ fn assembly_message(
     let place = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
     if of_velocities {
         format!(
-            "the initial velocities do not fit joint `{joint}`{place}: `{constraint}` opens at {:.3e} per second",
+            "the initial velocities do not fit {owner}{place}: `{constraint}` opens at {:.3e} per second",
             amount.abs()
         )
     } else {
-        format!(
-            "the mechanism cannot be assembled{place}: joint `{joint}` gapes by {:.3e} in `{constraint}`",
-            amount.abs()
-        )
+        format!("the mechanism cannot be assembled{place}: {owner} gapes by {:.3e} in `{constraint}`", amount.abs())
     }
 }
 
@@ -239,9 +236,29 @@ fn equation_names(system: &System, equations: &[usize]) -> Vec<String> {
 
 fn assembly_error(system: &System, gap: &Gap, parameters: &[f64]) -> SimulationError {
     let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+    let (owner, constraint) = match gap.constraint.checked_sub(system.constraints.len()) {
+        None => {
+            let info = &system.constraints[gap.constraint];
+            (format!("joint `{}`", info.joint), &info.name)
+        }
+        Some(place) => {
+            let of_kind = |condition: &&StartCondition| {
+                if gap.of_velocities { condition.velocity } else { condition.position }
+            };
+            let info = system.start.conditions.iter().filter(of_kind).nth(place).map(|condition| &condition.info);
+            // Rows of a gap beyond the constraints are those of the conditions of its kind.
+            let info = info.expect("a gap is of a row that there is");
+            let (what, names) = match gap.of_velocities {
+                false => ("straight", "x, y and angle"),
+                true => ("as a rigid body", "vx, vy and angular_velocity"),
+            };
+            let beam = &info.joint;
+            (format!("beam `{beam}`, which starts {what} unless `initial` has {names} of all its nodes,"), &info.name)
+        }
+    };
     SimulationError::Assembly {
-        joint: system.constraints[gap.constraint].joint.clone(),
-        constraint: system.constraints[gap.constraint].name.clone(),
+        owner,
+        constraint: constraint.clone(),
         amount: gap.amount,
         of_velocities: gap.of_velocities,
         parameters: names.zip(parameters.iter().copied()).collect(),
@@ -322,6 +339,7 @@ pub(super) fn slope_rows(system: &System, start: &StartProgram, state: &[f64]) -
 pub(super) fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
     let mut free = system.clone();
     free.start.position.fill(None);
+    free.start.conditions.clear();
     let start = compile_start(&free, &[], state).ok()?;
     let mut tile = Tile::new(1, start.slots(), start.constants());
     tile.values_mut()[..state.len()].copy_from_slice(state);

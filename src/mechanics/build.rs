@@ -138,6 +138,13 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
         }
         mass = mass_matrix(g, &inertia, &mechanism.w);
     }
+    if mechanism.flexible().is_some() {
+        for (total, part) in inertia.iter_mut().zip(mechanism.inertia_of_beams(g)?) {
+            *total = g.add(*total, part);
+        }
+        mass = mass_matrix(g, &inertia, &mechanism.w);
+        mechanism.bending = mechanism.kinetic_energy_of_beams(g)?;
+    }
     mechanism.potentials = loads.potentials;
     mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
 

@@ -26,6 +26,9 @@ pub enum BuildError {
         /// What is in the way.
         why: String,
     },
+    /// The speed of a motor has no integral that is known. The reader of model files lets none through.
+    #[error("a motor's speed cannot be integrated")]
+    Speed,
     /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
     #[error("`{name}` cannot stand in a formula of {allowed}")]
     Name {

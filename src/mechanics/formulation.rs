@@ -13,6 +13,9 @@ impl Mechanism<'_> {
         if self.tree.is_absolute() {
             return Some("no joint can carry a body".to_owned());
         }
+        if let Some(beam) = self.flexible() {
+            return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
+        }
         self.lost_start().or_else(|| self.loaded_friction(g)).or_else(|| self.lost_reaction())
     }
 

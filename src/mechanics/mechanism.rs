@@ -127,6 +127,8 @@ pub struct Mechanism<'d> {
     pub reactions: Vec<Reaction>,
     /// Potential energies of the effects built so far, J.
     pub potentials: Vec<Expr>,
+    /// Kinetic energy of what is no rigid body, J.
+    pub bending: Expr,
     /// What the effects built so far measure.
     pub measures: BTreeMap<(usize, Measure), Expr>,
 }
@@ -149,6 +151,7 @@ impl<'d> Mechanism<'d> {
             joint_coordinates: BTreeMap::new(),
             reactions: Vec::new(),
             potentials: Vec::new(),
+            bending: g.constant(0.0),
             measures: BTreeMap::new(),
         };
         for parameter in &description.parameters {

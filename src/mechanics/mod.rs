@@ -19,6 +19,7 @@ mod carried;
 mod coordinates;
 mod effects;
 mod error;
+mod flexible;
 mod formulation;
 mod inertia;
 mod joints;
@@ -41,5 +42,6 @@ pub use effects::{SHEETS, Sheet};
 pub use error::BuildError;
 pub use mechanism::Context;
 pub use system::{
-    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, Start, System, UncertainParameter,
+    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, Start, StartCondition, System,
+    UncertainParameter,
 };

@@ -78,8 +78,8 @@ impl Mechanism<'_> {
     }
 
     fn kinetic_energy(&self, g: &mut Graph) -> Expr {
-        let parts: Vec<Expr> = self.bodies.iter().map(|body| body.kinetic_energy(g)).collect();
-        g.sum(parts)
+        let bodies: Vec<Expr> = self.bodies.iter().map(|body| body.kinetic_energy(g)).collect();
+        g.sum(bodies.into_iter().chain([self.bending]))
     }
 
     /// All outputs of the description.

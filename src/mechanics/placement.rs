@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 
 use symdiff::{Expr, Graph};
 
-use crate::model::{Coordinate, JointCoordinate, JointKind, PointRef};
+use crate::model::{Beam, Coordinate, EffectKind, JointCoordinate, JointKind, PointRef};
 
 use super::body;
 use super::error::BuildError;
@@ -215,7 +215,7 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
     (distance(from, to) > 0.0).then(|| (to[1] - from[1]).atan2(to[0] - from[0]))
 }
 
-/// The joints of each body.
+/// The joints of each body, and the elements of beams, straight.
 fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
     for joint in &m.description.joints {
@@ -236,6 +236,14 @@ fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
         };
         let [here, there] = between.map(|point| local(g, m, point));
         let link = Link { here, there, other: between[1].body, kind };
+        links[between[0].body].push(link);
+        links[between[1].body].push(link.reversed(between[0].body));
+    }
+    for effect in &m.description.effects {
+        let EffectKind::Beam(Beam { between, length, mass_per_length: Some(_), .. }) = &effect.kind else { continue };
+        let length = m.formula(g, length, Context::Parameters)?;
+        let here = [m.nominal(g, &[length])[0], 0.0];
+        let link = Link { here, there: [0.0, 0.0], other: between[1].body, kind: LinkKind::Weld(0.0) };
         links[between[0].body].push(link);
         links[between[1].body].push(link.reversed(between[0].body));
     }

@@ -35,7 +35,8 @@ impl Mechanism<'_> {
         let placed = self.placed(g, &known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| g.constant(placed)));
         let guess = guess.collect();
-        Ok(Start { position, velocity, guess })
+        let conditions = self.start_of_beams(g)?;
+        Ok(Start { position, velocity, guess, conditions })
     }
 
     /// Where the joints put the coordinates.
@@ -140,6 +141,7 @@ impl Mechanism<'_> {
                 lengths.push(self.formula(g, length, Context::Time)?);
             }
         }
+        lengths.push(self.length_of_beams(g)?);
         let starts = self.description.initial.iter().chain(&self.description.guess);
         let formulas: Vec<&Formula> = starts
             .filter_map(|value| match value {

@@ -29,7 +29,7 @@ pub struct System {
     pub constraints: Vec<ConstraintInfo>,
     /// M(q)'s nonzero entries (row, column, value), both triangles.
     pub mass: Vec<(usize, usize, Expr)>,
-    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights.
+    /// M w, n; in joint coordinates with the velocity-dependent inertial forces and the weights, and with those forces of beams.
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
@@ -133,6 +133,21 @@ pub struct Start {
     pub velocity: Vec<Option<Expr>>,
     /// Where assembly begins to look, n.
     pub guess: Vec<Expr>,
+    /// What must hold then besides the constraints.
+    pub conditions: Vec<StartCondition>,
+}
+
+/// Ψ(q, t), which is zero at the start, or has the rate zero there, and is free afterwards.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartCondition {
+    /// What it is called, and the beam that it is of.
+    pub info: ConstraintInfo,
+    /// Ψ
+    pub value: Expr,
+    /// Whether Ψ = 0.
+    pub position: bool,
+    /// Whether Ψ̇ = 0.
+    pub velocity: bool,
 }
 
 impl System {

@@ -2,6 +2,7 @@
 
 use symdiff::Formula;
 
+use super::beams;
 use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
 use super::diagnostic::Diagnostic;
 use super::file;
@@ -41,6 +42,10 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
     reader.model.bodies.push(empty(GROUND));
     for entry in entries {
         reader.name(entry, "a body");
+        if let Some(elements) = beams::elements(entry).filter(|_| entry.key != GROUND) {
+            reader.model.bodies.extend(beams::nodes(&entry.key, elements).map(|name| empty(&name)));
+            continue;
+        }
         let mut body = empty(&entry.key);
         if let Value::Mapping(fields) = &entry.value.value
             && let Some(points) = fields.iter().find(|field| field.key == "points")
@@ -64,6 +69,9 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         if entry.key == GROUND {
             ground(reader, entry);
+        } else if let Some(elements) = beams::elements(entry) {
+            beams::read(reader, entry, next, elements);
+            next += elements + 1;
         } else {
             body(reader, entry, next);
             next += 1;
@@ -73,7 +81,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
 
 fn ground(reader: &mut Reader, entry: &Entry) {
     let Some(fields) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
-    for key in ["mass", "inertia", "center_of_mass", "coordinates", "held"] {
+    for key in ["mass", "inertia", "center_of_mass", "coordinates", "held", "beam"] {
         if fields.get(key).is_some() {
             let help = "the ground does not move; it can be given `points` only".to_owned();
             reader.error(fields.key_span(key), format!("the ground has no `{key}`"), help);
@@ -282,6 +290,9 @@ impl Reader<'_> {
     pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a body")?;
         let name = scalar.text.as_str();
+        if let Some(node) = self.model.bodies.iter().position(|body| body.name == name) {
+            return Some(node);
+        }
         let (body, rest) = name.split_once('.').unwrap_or((name, ""));
         let index = self.find_body(node, body)?;
         if !rest.is_empty() {
@@ -298,6 +309,9 @@ impl Reader<'_> {
         let text = &scalar.text;
         if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
             return Some(place);
+        }
+        if let Some(body) = self.model.bodies.iter().position(|body| body.name == *text) {
+            return Some(PointRef { body, point: None });
         }
         let Some((name, point)) = scalar.text.split_once('.') else {
             return Some(PointRef { body: self.find_body(node, &scalar.text)?, point: None });
@@ -322,9 +336,12 @@ impl Reader<'_> {
         if let Some(found) = bodies().position(|known| known == name) {
             return Some(found);
         }
-        let help = suggest::help(name, "bodies", bodies());
+        let (message, help) = match self.model.parts_of_beam(name) {
+            Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
+            None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),
+        };
         let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, 0..name.len()));
-        self.error(place, format!("unknown body `{}`", clip(name)), help);
+        self.error(place, message, help);
         None
     }
 

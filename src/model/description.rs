@@ -183,9 +183,9 @@ impl Inertia {
 pub struct Body {
     /// Its name.
     pub name: String,
-    /// kg; absent only where no declared coordinate needs it (ground).
+    /// kg; absent only where no declared coordinate needs it (ground), and of a beam's node, which its elements make heavy.
     pub mass: Option<Formula>,
-    /// Absent only where the body does not turn.
+    /// Absent only where the body does not turn, and of a beam's node.
     pub inertia: Option<Inertia>,
     /// Centre of mass in the body's frame, m; by default the origin.
     pub center_of_mass: Option<[Formula; 3]>,

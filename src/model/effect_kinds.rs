@@ -106,7 +106,7 @@ pub enum EffectKind {
     Backlash(Backlash),
     /// A constant tension.
     Preload(Preload),
-    /// A massless beam of the plane.
+    /// A beam of the plane: a massless one, or an element of a flexible body.
     Beam(Beam),
 }
 
@@ -335,7 +335,7 @@ pub enum Preloaded {
     Joint(OnJoint),
 }
 
-/// A massless beam of the plane between two bodies that turn about z.
+/// A beam of the plane between two bodies that turn about z.
 #[derive(Clone, Debug)]
 pub struct Beam {
     #[allow(missing_docs)]
@@ -350,6 +350,8 @@ pub struct Beam {
     pub bending_stiffness: Formula,
     /// τ, s
     pub damping: Formula,
+    /// μ, kg/m; absent where it is massless. The bodies of an element with mass need none of their own.
+    pub mass_per_length: Option<Formula>,
 }
 
 /// Something that an effect measures.
@@ -363,6 +365,7 @@ pub enum Measure {
     Load,
     Force,
     Torque,
+    StartTorque,
     Friction,
 }
 
@@ -385,6 +388,7 @@ impl Measure {
             Self::Load => "load",
             Self::Force => "force",
             Self::Torque => "torque",
+            Self::StartTorque => "start_torque",
             Self::Friction => "friction",
         }
     }
@@ -451,7 +455,7 @@ impl EffectKind {
             Self::Stop(Stop { on, .. }) | Self::Servo(Servo { on, .. }) => vec![effort(on.coordinate)],
             Self::Contact(_) | Self::ClearanceJoint(_) => vec![gap, speed, force, friction],
             Self::Drag(_) => vec![force],
-            Self::Beam(_) => vec![length, force, torque],
+            Self::Beam(_) => vec![length, force, torque, (Measure::StartTorque, Dimension::TORQUE)],
             Self::Gravity { .. }
             | Self::Force { .. }
             | Self::Torque { .. }
@@ -536,8 +540,9 @@ impl EffectKind {
                 vec![ratio, offset, backlash, stiffness, damping, transition]
             }
             Self::Preload(Preload { value, .. }) => vec![value],
-            Self::Beam(Beam { axis, length, axial_stiffness, bending_stiffness, damping, .. }) => {
-                axis.iter().chain([length, axial_stiffness, bending_stiffness, damping]).collect()
+            Self::Beam(Beam { axis, length, axial_stiffness, bending_stiffness, damping, mass_per_length, .. }) => {
+                let numbers = [length, axial_stiffness, bending_stiffness, damping];
+                axis.iter().chain(numbers).chain(mass_per_length).collect()
             }
         }
     }

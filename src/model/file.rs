@@ -398,6 +398,24 @@ grammar! {
         held: Option<Held>,
         /// Named points in the body's frame, m.
         points: Option<IndexMap<String, PointFile>>,
+        /// Instead of all that: a beam of the plane with mass, which bends. Its nodes `start`, `node1`, ..., `end` are bodies.
+        beam: Option<FlexibleBeam>,
+    }
+
+    /// A beam with mass.
+    FlexibleBeam is "a beam" {
+        /// Without tension, m.
+        length: Number,
+        /// kg/m
+        mass_per_length: Number,
+        /// EA, N
+        axial_stiffness: Number,
+        /// EI, N*m^2
+        bending_stiffness: Number,
+        /// Kelvin and Voigt's: stress by strain rate over stress by strain, s; by default 0.
+        damping: Option<Number>,
+        /// Between nodes, each of the same length; by default 4.
+        elements: Option<usize>,
     }
 
     /// A frame at a point.
@@ -580,7 +598,7 @@ grammar! {
         coordinate: Option<JointCoordinateName>,
         /// The coordinate over time, rad or m: a formula of t, twice differentiable.
         position: Option<Number>,
-        /// rad/s or m/s: from the beginning or, with a `profile`, from rest within the `duration`.
+        /// rad/s or m/s: from the beginning, also as a formula of t, or, with a `profile`, from rest within the `duration`.
         speed: Option<Number>,
         /// Where a move from rest to rest ends, rad or m.
         to: Option<Number>,

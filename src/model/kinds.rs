@@ -177,7 +177,7 @@ pub enum Prescribed {
     Speed {
         #[allow(missing_docs)]
         from: Formula,
-        #[allow(missing_docs)]
+        /// Of parameters and t; it has an integral ([`symdiff::Graph::integral`]).
         speed: Formula,
     },
     /// From rest to rest.

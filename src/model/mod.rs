@@ -23,6 +23,7 @@ mod quantity;
 mod file;
 mod reader;
 
+mod beams;
 mod bodies;
 mod bounds;
 mod effects;

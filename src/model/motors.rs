@@ -1,6 +1,8 @@
 //! What acts on a joint's coordinate: which one it is, and motors that prescribe it.
 
-use symdiff::Formula;
+use std::convert::Infallible;
+
+use symdiff::{Formula, Graph};
 
 use super::effect_kinds::OnJoint;
 use super::file;
@@ -13,6 +15,9 @@ use super::yaml::Node;
 
 /// Part of a trapezoidal profile's duration that each acceleration takes.
 const RAMP: f64 = 0.25;
+
+/// Keys of moves and run-ups.
+const PROFILED: [&str; 3] = ["start", "duration", "ramp"];
 
 /// The joint of `on`, and its coordinate.
 pub fn on_joint(reader: &mut Reader, fields: &Fields) -> Option<OnJoint> {
@@ -78,19 +83,20 @@ fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dim
         None => Some(Formula::number(0.0)),
     };
     let from = constant(reader, "from", place);
+    if *wanted == "speed" && fields.get("profile").is_none() {
+        for key in PROFILED.into_iter().filter(|key| fields.get(key).is_some()) {
+            reader.error(fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
+        }
+        return Some(Prescribed::Speed { from: from?, speed: integrable(reader, fields.get("speed")?, speed)? });
+    }
     let end = constant(reader, wanted, if *wanted == "speed" { speed } else { place });
     let Some(profile) = fields.get("profile") else {
-        for key in ["start", "duration", "ramp"] {
-            if fields.get(key).is_some() {
-                reader.error(fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
-            }
+        for key in PROFILED.into_iter().filter(|key| fields.get(key).is_some()) {
+            reader.error(fields.key_span(key), format!("`{key}` goes with a `profile`"), None);
         }
-        if *wanted == "to" {
-            let help = "cycloidal, quintic or trapezoidal".to_owned();
-            reader.error(fields.key_span("to"), "`to` needs a `profile` and a `duration`", help);
-            return None;
-        }
-        return Some(Prescribed::Speed { from: from?, speed: end? });
+        let help = "cycloidal, quintic or trapezoidal".to_owned();
+        reader.error(fields.key_span("to"), "`to` needs a `profile` and a `duration`", help);
+        return None;
     };
     let profile = read_profile(reader, fields, profile);
     let start = constant(reader, "start", Dimension::TIME);
@@ -102,6 +108,20 @@ fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dim
         "speed" => Prescribed::RunUp { profile, from, speed: end, start, duration },
         _ => Prescribed::Move { profile, from, to: end, start, duration },
     })
+}
+
+/// A formula of parameters and t that can be integrated.
+fn integrable(reader: &mut Reader, node: &Node, dimension: Dimension) -> Option<Formula> {
+    let formula = reader.formula(node, Context::Time, dimension)?;
+    let mut graph = Graph::new();
+    let time = graph.symbol("t");
+    let speed = formula.build(&mut graph, |graph, name| Ok::<_, Infallible>(graph.symbol(name)));
+    let integral = speed.ok().and_then(|speed| graph.integral(speed, time));
+    if integral.is_none() {
+        let help = "polynomials, sin, cos, exp, sqrt, min and max of straight lines, and their sums can be; or give it as `position`";
+        reader.error(node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());
+    }
+    integral.map(|_| formula)
 }
 
 fn read_profile(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Profile> {

@@ -72,9 +72,16 @@ impl Description {
             (owner, Some(member), Some(part), None) => self
                 .point_motion(owner, member, part)
                 .or_else(|| self.turning(owner, member, part))
-                .or_else(|| self.reaction(owner, member, Some(part))),
+                .or_else(|| self.reaction(owner, member, Some(part)))
+                .or_else(|| self.of_beam(name)),
             _ => None,
         }
+    }
+
+    /// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.
+    fn of_beam(&self, name: &str) -> Option<Referent> {
+        let (owner, member) = name.rsplit_once('.')?;
+        self.body_motion(owner, member).or_else(|| self.measure(owner, member))
     }
 
     /// A number of the URDF that is a parameter; `link.NAME.x` and `joint.NAME.angle`; or a part of the motion of a link
@@ -266,6 +273,10 @@ impl Description {
             };
             return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
         }
+        if self.elements_of(name).is_some() {
+            let message = format!("`{shown}` is a beam, not a number");
+            return NameError { message, part, help: self.parts_of_beam(name) };
+        }
         if self.joints.iter().any(|joint| joint.name == name) {
             let help =
                 (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
@@ -284,6 +295,10 @@ impl Description {
     }
 
     fn unknown_member(&self, name: &str, owner: &str, rest: &str, context: Context) -> NameError {
+        let known = |owner: &str| self.bodies.iter().any(|body| body.name == owner);
+        if let Some((node, member)) = name.rsplit_once('.').filter(|(node, _)| *node != owner && known(node)) {
+            return self.unknown_member(name, node, member, context);
+        }
         let body = self.bodies.iter().position(|body| body.name == owner);
         let joint = self.joints.iter().any(|joint| joint.name == owner);
         let after = owner.len() + 1;
@@ -356,6 +371,16 @@ impl Description {
                     help: (!measures.is_empty()).then(|| format!("it has {}", suggest::list(&measures))),
                 }
             }
+            (None, false) if known(name) => NameError {
+                message: format!("`{name}` is a node of a beam, not a number"),
+                part: 0..name.len(),
+                help: Some(format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
+            },
+            (None, false) if self.elements_of(owner).is_some() => NameError {
+                message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+                part: after..name.len(),
+                help: self.parts_of_beam(owner),
+            },
             (None, false) => {
                 let bodies = self.bodies.iter().skip(1).map(|body| body.name.as_str());
                 let joints = self.joints.iter().map(|joint| joint.name.as_str());

@@ -13,6 +13,8 @@
 //! A coordinate without inertia has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
 //! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
 //!
+//! For positions and velocities, Φ has further rows: what holds at the start alone ([`crate::mechanics::StartCondition`]).
+//!
 //! D = diag(1/scale²) makes the change of the coordinates that are not kept smallest; kept ones have no column. ε > 0 makes
 //! the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order exists, also
 //! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
@@ -23,7 +25,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
 use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
-use crate::mechanics::System;
+use crate::mechanics::{StartCondition, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
@@ -36,9 +38,9 @@ const RELAXATION: f64 = 1e6;
 pub struct StartProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Slots of Φ, m, after [`StartProgram::position`].
+    /// Slots of Φ, m and those of conditions on positions, after [`StartProgram::position`].
     pub constraint: Vec<usize>,
-    /// Slots of Φ̇, m, after [`StartProgram::velocity`].
+    /// Slots of Φ̇, m and those of conditions on velocities, after [`StartProgram::velocity`].
     pub constraint_rate: Vec<usize>,
     /// Slots of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
@@ -118,20 +120,27 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let (motion, slopes) = equations_of_motion(system, &mut graph);
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
+    let closure = with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.position);
+    let motion_of_closure =
+        with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.velocity);
+    let rates = time_derivative(system, &mut graph, &motion_of_closure.0);
 
-    let mut builder = Builder { system, graph, inputs: &inputs, slopes: &slopes, redundant, probe };
+    let mut builder = Builder { system, graph, inputs: &inputs, redundant, probe };
     let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
     let diagonal: Vec<(usize, usize, Expr)> =
         metric.iter().enumerate().map(|(i, &weight)| (i, i, builder.graph.constant(weight))).collect();
     let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
     let zero = vec![builder.graph.constant(0.0); system.q.len()];
     let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
-    let position = builder.correction(&diagonal, &none, &kept(&system.start.position), &zero, &system.constraint)?;
-    let velocity = builder.correction(&diagonal, &none, &kept(&system.start.velocity), &zero, &rate)?;
+    let (closure, slopes_of_closure) = closure;
+    let position =
+        builder.correction(&diagonal, &none, &slopes_of_closure, &kept(&system.start.position), &zero, &closure)?;
+    let velocity =
+        builder.correction(&diagonal, &none, &motion_of_closure.1, &kept(&system.start.velocity), &zero, &rates)?;
     let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
-    let (mass, motion) = builder.with_defined_coordinates(motion, &rate_of_rate);
+    let (mass, motion) = builder.with_defined_coordinates(&slopes, motion, &rate_of_rate);
     let free = vec![false; system.q.len()];
-    let acceleration = builder.correction(&mass, &by_multiplier, &free, &motion, &rate_of_rate)?;
+    let acceleration = builder.correction(&mass, &by_multiplier, &slopes, &free, &motion, &rate_of_rate)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
@@ -152,8 +161,8 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let kernels = [
         given,
         guess,
-        with(&position[..n], &system.constraint),
-        with(&velocity[..n], &rate),
+        with(&position[..n], &closure),
+        with(&velocity[..n], &rates),
         with(&acceleration, &[]),
         slopes.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
@@ -190,31 +199,46 @@ pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     inputs
 }
 
+/// Φ and Φ_q with the conditions of some kind below them.
+fn with_conditions(
+    system: &System,
+    graph: &mut Graph,
+    slopes: &SparseMatrix,
+    constraint: &[Expr],
+    kind: impl Fn(&StartCondition) -> bool,
+) -> (Vec<Expr>, SparseMatrix) {
+    let further: Vec<Expr> =
+        system.start.conditions.iter().filter(|condition| kind(condition)).map(|condition| condition.value).collect();
+    let mut all = slopes.clone();
+    all.rows.extend(graph.jacobian(&further, &system.q).rows);
+    (constraint.iter().copied().chain(further).collect(), all)
+}
+
 struct Builder<'s> {
     system: &'s System,
     graph: Graph,
     inputs: &'s [Input],
-    slopes: &'s SparseMatrix,
     redundant: &'s [usize],
     probe: &'s [f64],
 }
 
 impl Builder<'_> {
-    /// Solution of [metric Φ_qᵀ − `loaded`; Φ_q −ε] (δ, μ) = −(first, second), n + m; kept coordinates have δ = 0.
+    /// Solution of [metric Φ_qᵀ − `loaded`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; kept coordinates have δ = 0.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
         loaded: &SparseMatrix,
+        slopes: &SparseMatrix,
         kept: &[bool],
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, Singular> {
-        let (n, m) = (self.system.q.len(), self.system.lambda.len());
+        let (n, m) = (self.system.q.len(), slopes.rows.len());
         let (one, mut matrix) = (self.graph.constant(1.0), SparseMatrix::zero(n + m, n + m));
         for &(row, column, value) in metric.iter().filter(|(row, column, _)| !kept[*row] && !kept[*column]) {
             matrix.add(&mut self.graph, row, column, value);
         }
-        for (row, column, value) in self.slopes.entries().filter(|(_, column, _)| !kept[*column]) {
+        for (row, column, value) in slopes.entries().filter(|(_, column, _)| !kept[*column]) {
             matrix.add(&mut self.graph, n + row, column, value);
             matrix.add(&mut self.graph, column, n + row, value);
         }
@@ -253,6 +277,7 @@ impl Builder<'_> {
     /// defined coordinate about as heavy as those that define it.
     fn with_defined_coordinates(
         &mut self,
+        slopes: &SparseMatrix,
         mut motion: Vec<Expr>,
         rate_of_rate: &[Expr],
     ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {
@@ -264,7 +289,7 @@ impl Builder<'_> {
                 diagonal[row] = value;
             }
         }
-        for (constraint, slopes) in self.slopes.rows.iter().enumerate() {
+        for (constraint, slopes) in slopes.rows.iter().enumerate() {
             let defines = slopes.iter().any(|&(column, _)| diagonal[column] == 0.0);
             let weight = slopes.iter().fold(0.0, |heaviest: f64, &(column, _)| heaviest.max(diagonal[column]));
             if !defines || weight == 0.0 {

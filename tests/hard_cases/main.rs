@@ -7,6 +7,8 @@ mod benchmarks;
 #[path = "../models/common.rs"]
 #[allow(dead_code, reason = "shared with the tests of models")]
 mod common;
+mod dormand_prince;
+mod effects;
 mod events;
 mod positions;
 mod sweeps;

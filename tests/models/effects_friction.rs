@@ -39,44 +39,6 @@ simulation: {{ duration: 0.3, step: 1e-3, output_step: 0.01 }}
     }
 }
 
-/// A wheel braked by its own bearing: ω̇ = −μ r m g/J until it stands, and then it stands.
-#[test]
-fn a_journal_brakes_to_a_standstill() {
-    let (mu, r, m, g, inertia, omega) = (0.2, 0.02, 5.0, 9.81, 0.04, 3.0);
-    let description = read(&format!(
-        "
-bodies: {{ wheel: {{ mass: {m}, inertia: {inertia} }} }}
-joints: {{ shaft: {{ revolute: [ground, wheel] }} }}
-effects:
-  weight: {{ gravity: {{ acceleration: [0, -{g}] }} }}
-  journal: {{ joint_friction: {{ on: shaft, coefficient: {mu}, radius: {r} }} }}
-initial: {{ wheel.angle: 0, wheel.angular_velocity: {omega} }}
-outputs: {{ angle: wheel.angle, speed: wheel.angular_velocity, torque: journal.torque }}
-simulation: {{ duration: 2, step: 1e-3, output_step: 0.01 }}
-"
-    ));
-    let torque = mu * r * m * g;
-    let stop = omega * inertia / torque;
-    assert!(stop < 1.0);
-    let exact = |t: f64| {
-        let t = t.min(stop);
-        omega * t - 0.5 * torque / inertia * t * t
-    };
-    // The smooth law lasts longer by u₀ J/τ, and turns u₀² J/τ further: 4e-4 s and 4e-7 rad; while it turns, ½ (u₀/ω)² of τ.
-    let mut errors = Vec::new();
-    for h in [1e-3, 5e-4] {
-        let bounds = nominal(&description.clone().step(h));
-        let error = distance_from(&bounds.times, curve(&bounds, "angle"), exact);
-        println!("h = {h:e}: angle off by {error:.2e} rad");
-        errors.push(error);
-        let at_rest = &curve(&bounds, "speed")[row(&bounds, 1.2)..];
-        assert!(largest(at_rest.iter().copied()) < 1e-12, "{:e}", largest(at_rest.iter().copied()));
-        let moving = &curve(&bounds, "torque")[..row(&bounds, 0.2)];
-        assert!(largest(moving.iter().map(|value| value + torque)) < 1e-6);
-    }
-    assert!(errors.iter().all(|error| *error < 2e-5), "{errors:?}");
-}
-
 /// A pendulum whose pin rubs: the load hangs on the acceleration, which hangs on the friction. The same two equations,
 /// solved by iteration and integrated by Runge and Kutta's scheme.
 #[test]
@@ -187,59 +149,6 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.01 }}
     let error = distance_from(&runs[0].times, curve(&runs[0], "load"), |_| 2.0 * 9.81);
     findings.check(error < 1e-3, format_args!("load is off by {error:e}"));
     findings.none();
-}
-
-/// A mass on a moving belt, held by a spring: it sticks until the spring pulls by F_s, then slides to and fro about F_k/k.
-/// From F_s on, its amplitude is √((F_s − F_k)²/k² + (v/ω)²).
-#[test]
-fn a_mass_on_a_belt_sticks_and_slips() {
-    let (m, k, v, coulomb, breakaway) = (1.0_f64, 100.0_f64, 0.1_f64, 2.0_f64, 1.5_f64);
-    let with_stribeck = |fading: f64| {
-        read(&format!(
-        "
-bodies:
-  belt: {{ mass: 1, coordinates: [x] }}
-  block: {{ mass: {m}, inertia: 1 }}
-joints:
-  drive: {{ equation: belt.x = {v}*t }}
-  contact: {{ prismatic: {{ between: [belt, block], axis: x }} }}
-effects:
-  spring: {{ spring_damper: {{ between: [ground, block], along: x, stiffness: {k} }} }}
-  rubbing:
-    joint_friction:
-      {{ on: contact, coulomb: {coulomb}, breakaway: {breakaway}, stribeck_velocity: {fading}, transition_velocity: {} }}
-initial: {{ block.x: 0, block.vx: {v} }}
-outputs: {{ x: block.x, v: block.vx }}
-simulation: {{ duration: 2, step: 1e-4, output_step: 1e-3 }}
-",
-            0.01 * fading
-        ))
-    };
-    let description = with_stribeck(1e-3);
-    let omega = (k / m).sqrt();
-    let excess = coulomb * (breakaway - 1.0) / k;
-    let highest = coulomb / k + f64::hypot(excess, v / omega);
-    let mut found = Vec::new();
-    for h in [2e-4, 1e-4, 5e-5] {
-        let bounds = nominal(&description.clone().step(h));
-        let x = curve(&bounds, "x");
-        let sticking = row(&bounds, 0.25);
-        // It creeps against the belt by u₀ κ/√(1 − κ²).
-        assert!((x[sticking] - v * 0.25).abs() < 1e-4, "{}", x[sticking] - v * 0.25);
-        let top = largest(x.iter().copied());
-        println!("h = {h:e}: top {top:.6}, closed form {highest:.6}");
-        found.push(top);
-        // It sticks again and again.
-        let stuck = curve(&bounds, "v").iter().filter(|speed| (*speed - v).abs() < 1e-4).count();
-        assert!(stuck > bounds.times.len() / 3, "{stuck} of {}", bounds.times.len());
-    }
-    assert!((found[2] - found[1]).abs() < 2e-4 * highest, "{found:?}");
-    // The excess fades over a speed rather than at once; the closed form is the limit of small ones.
-    let sharp = nominal(&with_stribeck(1e-4).step(2e-5).duration(1.0));
-    let sharp = largest(curve(&sharp, "x").iter().copied());
-    let off = [found[2], sharp].map(|top| (top / highest - 1.0).abs());
-    println!("off the closed form by {off:?}");
-    assert!(off[1] < 0.003 && off[1] < 0.3 * off[0], "{off:?}");
 }
 
 /// The friction itself uncertain: expanded coordinates, with the load from the closure, and Taylor's polynomials agree with a

@@ -89,6 +89,21 @@ fn motors_turn_at_a_speed_and_by_a_formula() {
     assert!(torque < 1e-6, "{torque:e}");
 }
 
+/// A speed by a formula is integrated by a formula: a ramp to 6 rad/s with a swing on top.
+#[test]
+fn a_motor_turns_at_a_speed_that_is_a_formula() {
+    let bounds = wheel("speed: \"6*min(t/0.5, 1) + 0.5*sin(4*t)\", from: 1");
+    let exact = |t: f64| {
+        let ramp = if t < 0.5 { 6.0 * t * t } else { 1.5 + 6.0 * (t - 0.5) };
+        1.0 + ramp + 0.125 * (1.0 - (4.0 * t).cos())
+    };
+    assert!(distance_from(&bounds.times, curve(&bounds, "angle"), exact) < 1e-11);
+    let late = row(&bounds, 0.6);
+    let torque = |t: f64| 0.02 * 2.0 * (4.0 * t).cos();
+    let off = distance_from(&bounds.times[late..], &curve(&bounds, "torque")[late..], torque);
+    assert!(off < 1e-5, "{off:e}");
+}
+
 /// A lift that a motor raises along z: it carries the weight.
 #[test]
 fn a_motor_carries_what_it_moves_in_space() {

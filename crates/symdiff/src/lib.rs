@@ -6,6 +6,7 @@
 mod derivative;
 mod expr;
 pub mod formula;
+mod integral;
 pub mod interval;
 pub mod jet;
 mod jet_memory;

@@ -1,16 +1,19 @@
-//! A massless beam in the plane between two frames: Euler and Bernoulli's bending, with large rotations.
+//! An element of a beam in the plane between two frames: Euler and Bernoulli's bending, with large rotations.
 //!
 //! ```text
 //! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ          φᵢ: angle from c to the beam's axis aᵢ at its end, fixed in that end's body
-//! N = (EA/L) (ℓ − L + τ ℓ̇)
-//! M₁ = (EI/L) (4 φ₁ + 2 φ₂ + τ (4 φ̇₁ + 2 φ̇₂)),     M₂ = (EI/L) (2 φ₁ + 4 φ₂ + τ (2 φ̇₁ + 4 φ̇₂))          N m
+//! e = ℓ − L + L (2 φ₁² − φ₁ φ₂ + 2 φ₂²)/30     m
+//! N = (EA/L) (e + τ ė)
+//! M₁ = (EI/L) (4 φ₁ + 2 φ₂ + τ (4 φ̇₁ + 2 φ̇₂)) + N L (4 φ₁ − φ₂)/30          N m
+//! M₂ = (EI/L) (2 φ₁ + 4 φ₂ + τ (2 φ̇₁ + 4 φ̇₂)) + N L (4 φ₂ − φ₁)/30
 //! F_B = −N c + (M₁ + M₂)/ℓ c⊥,   F_A = −F_B,   −M₁ on the first body, −M₂ on the second
-//! V = ½ (EA/L) (ℓ − L)² + 2 (EI/L) (φ₁² + φ₁ φ₂ + φ₂²)          J
+//! V = ½ (EA/L) e² + 2 (EI/L) (φ₁² + φ₁ φ₂ + φ₂²)          J
 //! ```
 //!
-//! The element turns with its chord (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1 (1991), ch. 7): its
-//! cubic bends by small angles against that, so a slender beam that bends far is a chain of elements between bodies that
-//! carry its mass. L is its length, τ its damping (stiffness-proportional), φ between −π and π.
+//! The element turns with its chord (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1 (1991), ch. 7). Its
+//! cubic bends by small angles against that and is longer than the chord by ½ ∫ v'²: e is how much it is stretched, on
+//! average, so bending does not stretch it, and tension stiffens it. L is its length, τ Kelvin and Voigt's damping, φ between −π
+//! and π. A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
 use symdiff::{Binary, Expr, Formula, Graph};
 
@@ -25,7 +28,8 @@ use super::{Loads, Sheet};
 pub const SHEET: Sheet = Sheet {
     keyword: "beam",
     formulas: &[
-        "N = (EA/L) (ℓ − L), M₁ = (EI/L) (4 φ₁ + 2 φ₂), M₂ = (EI/L) (2 φ₁ + 4 φ₂), φ against the chord",
+        "N = EA e/L, e = ℓ − L + L (2 φ₁² − φ₁ φ₂ + 2 φ₂²)/30, φ against the chord",
+        "M₁ = (EI/L) (4 φ₁ + 2 φ₂) + N L (4 φ₁ − φ₂)/30, M₂ = (EI/L) (2 φ₁ + 4 φ₂) + N L (4 φ₂ − φ₁)/30",
         "with damping τ: of each number plus τ times its rate",
     ],
     source: "Crisfield, Non-linear Finite Element Analysis of Solids and Structures 1 (1991), ch. 7",
@@ -46,18 +50,35 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Re
     let turning = space::dot(g, across, growth);
     let turning = g.div(turning, length);
 
-    let stretch = g.sub(length, free);
-    let felt = delayed(g, damping, stretch, rate);
-    let tension = g.mul(axial, felt);
     let ends = beam.between.map(|point| bent(g, m, point, &beam.axis, line, turning));
     let [first, second] = ends;
     let [first, second] = [first?, second?];
+    // ∂e/∂φ₁, ∂e/∂φ₂
+    let thirtieth = g.scale(1.0 / 30.0, free);
+    let slopes = [(first, second), (second, first)].map(|((own, _), (other, _))| {
+        let own = g.scale(4.0, own);
+        let difference = g.sub(own, other);
+        g.mul(thirtieth, difference)
+    });
+    // A form of second degree is half of its slopes times what it is of.
+    let bow = g.dot(&slopes, &[first.0, second.0]);
+    let bow = g.scale(0.5, bow);
+    let straight = g.sub(length, free);
+    let stretch = g.add(straight, bow);
+    let bowing = g.dot(&slopes, &[first.1, second.1]);
+    let stretching = g.add(rate, bowing);
+    let felt = delayed(g, damping, stretch, stretching);
+    let tension = g.mul(axial, felt);
     let felt = [first, second].map(|(angle, rate)| delayed(g, damping, angle, rate));
-    let moments = [[4.0, 2.0], [2.0, 4.0]].map(|row| {
+    let mut moments = [[4.0, 2.0], [2.0, 4.0]].map(|row| {
         let (near, far) = (g.scale(row[0], felt[0]), g.scale(row[1], felt[1]));
         let sum = g.add(near, far);
         g.mul(bending, sum)
     });
+    for (moment, slope) in moments.iter_mut().zip(slopes) {
+        let stiffening = g.mul(tension, slope);
+        *moment = g.add(*moment, stiffening);
+    }
 
     let total = g.add(moments[0], moments[1]);
     let shear = g.div(total, length);
@@ -80,7 +101,9 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Re
     let bent = g.scale(2.0, bent);
     let potential = g.add(stretched, bent);
     loads.add_potential(g, m, &[axial, bending, free], potential);
-    for (measure, value) in [(Measure::Length, length), (Measure::Force, tension), (Measure::Torque, moments[1])] {
+    let at_start = g.neg(moments[0]);
+    let torques = [(Measure::Torque, moments[1]), (Measure::StartTorque, at_start)];
+    for (measure, value) in [(Measure::Length, length), (Measure::Force, tension)].into_iter().chain(torques) {
         loads.measure(measure, value);
     }
     Ok(())

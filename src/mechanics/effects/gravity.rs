@@ -4,6 +4,7 @@
 //! F = m g at the centre of mass,   V = −m g · r_c          N, J
 //! ```
 //!
+//! and on the mass along beams (`flexible`).
 //! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
 
 use symdiff::{Formula, Graph};
@@ -27,6 +28,7 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Fo
         let potential = g.neg(height);
         loads.add_potential(g, m, &weight, potential);
     }
+    m.weigh_beams(g, loads, acceleration)?;
     loads.add_field(g, acceleration);
     Ok(())
 }

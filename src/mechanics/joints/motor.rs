@@ -4,7 +4,7 @@
 //! Φ = s − s(t) = 0          1 row, rad or m
 //!
 //! position     s(t), a formula
-//! speed        s(t) = from + v t
+//! speed        s(t) = from + ∫ v(t) dt                                        where `Graph::integral` knows it
 //! move         s(t) = from + (to − from) σ(u)                                 u = (t − start)/duration, kept within 0 … 1
 //! run-up       s(t) = from + v [duration Σ(u) + ⟨t − start − duration⟩]       Σ = ∫σ, so that ṡ = v σ(u)
 //!
@@ -54,7 +54,7 @@ fn wanted(g: &mut Graph, m: &Mechanism, motion: &Prescribed) -> Result<Expr, Bui
         Prescribed::Position(position) => number(g, position),
         Prescribed::Speed { from, speed } => {
             let (from, speed) = (number(g, from)?, number(g, speed)?);
-            let way = g.mul(speed, m.time);
+            let way = g.integral(speed, m.time).ok_or(BuildError::Speed)?;
             Ok(g.add(from, way))
         }
         Prescribed::Move { profile, from, to, start, duration } => {

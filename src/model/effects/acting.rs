@@ -152,6 +152,7 @@ pub fn beam(reader: &mut Reader, node: &Node, at: Span) -> Option<Beam> {
         axial_stiffness: axial_stiffness?,
         bending_stiffness: bending_stiffness?,
         damping: damping?,
+        mass_per_length: None,
     })
 }
 

@@ -1,0 +1,119 @@
+//! `beam` among `bodies:`: a flexible body of the plane. It becomes bodies without mass, its nodes, and an element with mass
+//! between each two.
+
+use symdiff::{Binary, Formula};
+
+use super::description::{Body, Coordinate, Description, Effect, PointRef};
+use super::effect_kinds::{Beam, EffectKind};
+use super::file;
+use super::names::Context;
+use super::quantity::Dimension;
+use super::reader::Reader;
+use super::yaml::{Entry, Value};
+
+/// Elements of a beam that does not say how many.
+const USUAL: usize = 4;
+
+/// Most elements of a beam.
+const MOST: usize = 200;
+
+/// Keys of rigid bodies that mean nothing here.
+const RIGID: [&str; 6] = ["mass", "inertia", "center_of_mass", "coordinates", "held", "points"];
+
+/// Number of elements of the beam that a body's entry describes; `None` where it describes a rigid body.
+pub fn elements(entry: &Entry) -> Option<usize> {
+    let find = |value: &Value, key: &str| match value {
+        Value::Mapping(fields) => fields.iter().position(|field| field.key == key),
+        _ => None,
+    };
+    let Value::Mapping(fields) = &entry.value.value else { return None };
+    let beam = &fields[find(&entry.value.value, "beam")?].value;
+    let Value::Mapping(keys) = &beam.value else { return Some(USUAL) };
+    let count = find(&beam.value, "elements").and_then(|key| keys[key].value.scalar()?.text.parse().ok());
+    Some(count.filter(|count| (1..=MOST).contains(count)).unwrap_or(USUAL))
+}
+
+/// Names of the nodes: `rod.start`, `rod.node1`, …, `rod.end`.
+pub fn nodes(beam: &str, elements: usize) -> impl Iterator<Item = String> {
+    (0..=elements).map(move |node| match node {
+        0 => format!("{beam}.start"),
+        node if node == elements => format!("{beam}.end"),
+        node => format!("{beam}.node{node}"),
+    })
+}
+
+/// Reads a beam whose nodes were declared as the bodies from `first` on.
+pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
+    for node in &mut reader.model.bodies[first..=first + elements] {
+        node.coordinates = vec![Coordinate::X, Coordinate::Y, Coordinate::Angle];
+    }
+    let Some(body) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
+    for key in RIGID.into_iter().filter(|key| body.get(key).is_some()) {
+        let help = "its mass is along it (`mass_per_length`), and its nodes are its points; what is rigid is a body of its own, \
+                    joined to a node by `fixed`";
+        reader.error(body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
+    }
+    let (Some(node), at) = (body.get("beam"), body.key_span("beam")) else { return };
+    if reader.model.space.spatial {
+        let help = "in space, bend it at joints between rigid pieces, with a `bushing` or a spring in each".to_owned();
+        reader.error(at.clone(), "a beam bends in the plane, but the model is spatial", help);
+    }
+    let Some(fields) = reader.fields::<file::FlexibleBeam>(node, at) else { return };
+    if let Some(node) = fields.get("elements") {
+        reader.count(node, 1, MOST);
+    }
+    let mut number = |key: &str, dimension: Dimension| {
+        let node = reader.required(&fields, key)?;
+        reader.formula_that(node, Context::Constant, dimension, |value| value > 0.0, "must be positive")
+    };
+    let length = number("length", Dimension::LENGTH);
+    let mass_per_length = number("mass_per_length", Dimension::MASS.per(Dimension::LENGTH));
+    let axial_stiffness = number("axial_stiffness", Dimension::FORCE);
+    let bending_stiffness = number("bending_stiffness", Dimension::TORQUE.times(Dimension::LENGTH));
+    let damping = match fields.get("damping") {
+        Some(node) => {
+            let dimension = Dimension::TIME;
+            reader.formula_that(node, Context::Constant, dimension, |value| value >= 0.0, "must not be negative")
+        }
+        None => Some(Formula::number(0.0)),
+    };
+    let numbers = (length, mass_per_length, axial_stiffness, bending_stiffness, damping);
+    let (Some(length), Some(mass), Some(axial_stiffness), Some(bending_stiffness), Some(damping)) = numbers else {
+        return;
+    };
+    let share = Formula::number(1.0 / elements as f64).combined(Binary::Mul, &length);
+    for element in 0..elements {
+        let node = |node: usize| PointRef { body: first + node, point: None };
+        let kind = EffectKind::Beam(Beam {
+            between: [node(element), node(element + 1)],
+            axis: [1.0, 0.0, 0.0].map(Formula::number),
+            length: share.clone(),
+            axial_stiffness: axial_stiffness.clone(),
+            bending_stiffness: bending_stiffness.clone(),
+            damping: damping.clone(),
+            mass_per_length: Some(mass.clone()),
+        });
+        reader.model.effects.push(Effect { name: format!("{}.element{}", entry.key, element + 1), kind });
+    }
+}
+
+impl Description {
+    /// Number of elements of a beam; `None` where there is none of that name.
+    pub(super) fn elements_of(&self, beam: &str) -> Option<usize> {
+        let of_beam = |body: &&Body| body.name.split_once('.').is_some_and(|(owner, _)| owner == beam);
+        self.bodies.iter().filter(of_beam).count().checked_sub(1)
+    }
+
+    /// What of a beam has a name of its own.
+    pub(super) fn parts_of_beam(&self, beam: &str) -> Option<String> {
+        let elements = self.elements_of(beam)?;
+        let inner = match elements {
+            1 => String::new(),
+            2 => format!(", `{beam}.node1`"),
+            _ => format!(", `{beam}.node1` to `{beam}.node{}`", elements - 1),
+        };
+        Some(format!(
+            "its nodes are `{beam}.start`{inner} and `{beam}.end`, its elements `{beam}.element1` to `{beam}.element{elements}`"
+        ))
+    }
+}
