@@ -10,6 +10,7 @@ mod apportion;
 mod certify;
 mod compose;
 mod cost;
+mod effect_costs;
 mod feasible;
 mod finding;
 mod formulation;
@@ -28,6 +29,7 @@ use crate::report::Summary;
 use study::Study;
 
 pub use cost::{CostError, CostOptions, cost};
+pub use effect_costs::{effect_costs, language_costs};
 pub use feasible::{Place, Survey};
 
 /// How to run.

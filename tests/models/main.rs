@@ -18,6 +18,7 @@ mod effects_clearance;
 mod effects_contact;
 mod effects_drives;
 mod effects_friction;
+mod far;
 mod formulations;
 mod honesty;
 mod invariants;

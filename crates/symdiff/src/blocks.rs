@@ -167,12 +167,12 @@ impl Blocks {
         }
         // Blocks stand behind those that they are in.
         let mut kept: Vec<BlockId> = vec![OUTSIDE];
-        for block in 1..self.nested.len() {
+        for (block, &size) in sizes.iter().enumerate().skip(1) {
             let Nested { within, .. } = self.nested[block];
             let outer = kept[within];
             self.nested[block].within = outer;
             self.nested[block].depth = self.nested[outer].depth + 1;
-            if sizes[block] < LEAST {
+            if size < LEAST {
                 self.nested[block].guard = None;
                 kept.push(outer);
             } else {
