@@ -1,4 +1,5 @@
-//! What `docs/effects.md` shows is so: every example is assembled, and every effect and picture is there.
+//! What `docs/effects.md` shows is so: every example is assembled, every effect and picture is there, and what effects cost is
+//! about what is written.
 
 use std::path::Path;
 
@@ -49,4 +50,34 @@ fn every_effect_has_an_example_and_a_picture() {
         assert!(PAGE.contains(&picture), "{keyword}");
         assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(&picture).is_file(), "{picture}");
     }
+}
+
+/// Numbers of a row of the page's table of costs: an iteration, a factorisation, a step, and the same apart.
+fn written(keyword: &str) -> Option<Vec<i64>> {
+    let cells = PAGE.lines().filter_map(|line| line.strip_prefix(&format!("| `{keyword}` |")));
+    let numbers = cells.filter_map(|cells| {
+        let numbers = cells.split(['|', ',']).map(str::trim).filter(|cell| !cell.is_empty());
+        numbers.map(|number| number.parse().ok()).collect::<Option<Vec<i64>>>()
+    });
+    numbers.into_iter().next()
+}
+
+/// The table is counted, not estimated; a few instructions more or less come and go with the order of elimination.
+#[test]
+fn the_costs_of_effects_are_about_as_written() {
+    let mut table = String::new();
+    let mut wrong = Vec::new();
+    for (keyword, cost) in batch::language_costs().unwrap() {
+        let numbers = |part: mbint::report::StepInstructions| [part.iteration, part.factor, part.step];
+        let counted = [Some(cost.acting), cost.apart].into_iter().flatten().flat_map(numbers).collect::<Vec<_>>();
+        let cells: Vec<String> = counted.iter().map(i64::to_string).collect();
+        table += &format!("| `{keyword}` | {} | {} |\n", cells[..3].join(" | "), cells[3..].join(", "));
+        let near = |written: &i64, counted: &i64| (written - counted).abs() <= 5 + counted.abs() / 10;
+        match written(keyword) {
+            Some(numbers)
+                if numbers.len() == counted.len() && numbers.iter().zip(&counted).all(|(a, b)| near(a, b)) => {}
+            found => wrong.push((keyword, found, counted)),
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}\nThe table should be\n{table}");
 }

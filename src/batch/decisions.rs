@@ -3,6 +3,7 @@
 use symdiff::{Formula, Input, lower};
 
 use super::RunError;
+use super::effect_costs::effect_costs;
 use super::formulation::{compiled, instructions};
 use super::islands::{Prepared, prepare};
 use crate::model::{
@@ -23,7 +24,13 @@ const NAMED: usize = 8;
 /// Where it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let (reduction, prepared) = prepare(description, Choices::default())?;
-    let of_island = |island: &Prepared| Explanation::new(&description.name, &island.simulator);
+    let of_island = |Prepared { island, simulator }: &Prepared| {
+        let mut explanation = Explanation::new(&description.name, simulator);
+        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&island.description, simulator)) {
+            effect.adds = adds;
+        }
+        explanation
+    };
     let mut explanation = Explanation::of_islands(prepared.iter().map(of_island).collect());
     let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
     explanation.outputs.sort_by_key(place);

@@ -12,6 +12,7 @@ mod certify;
 mod compose;
 mod cost;
 mod decisions;
+mod effect_costs;
 mod feasible;
 mod finding;
 mod formulation;
@@ -33,6 +34,7 @@ use islands::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
 pub use decisions::explain;
+pub use effect_costs::language_costs;
 pub use feasible::{Place, Survey};
 
 /// How to run.

@@ -2,10 +2,13 @@
 
 use serde::Serialize;
 
+use super::Failure;
 use super::console::BOLD;
 use super::table::{Align, Table};
+use crate::batch::language_costs;
 use crate::mechanics::SHEETS;
 use crate::model::{Key, effect_grammar};
+use crate::report::EffectCost;
 
 /// What there is to tell of an effect.
 #[derive(Debug, Serialize)]
@@ -15,22 +18,50 @@ pub(super) struct EffectSheet {
     formulas: &'static [&'static str],
     source: &'static str,
     keys: Vec<Key>,
+    /// In a small mechanism of the plane.
+    adds: Option<EffectCost>,
 }
 
 /// All effects.
-pub(super) fn all() -> Vec<EffectSheet> {
+///
+/// # Errors
+/// Never, but for a defect of the examples that are counted.
+pub(super) fn all() -> Result<Vec<EffectSheet>, Failure> {
+    let costs = language_costs().map_err(|error| Failure::Wrong(error.to_string()))?;
     let sheets = SHEETS.iter().filter_map(|sheet| {
         let (description, keys) = effect_grammar(sheet.keyword)?;
         let (keyword, formulas, source) = (sheet.keyword, sheet.formulas, sheet.source);
-        Some(EffectSheet { keyword, description, formulas, source, keys })
+        let adds = costs.iter().find(|(known, _)| *known == keyword).map(|(_, cost)| *cost);
+        Some(EffectSheet { keyword, description, formulas, source, keys, adds })
     });
-    sheets.collect()
+    Ok(sheets.collect())
+}
+
+/// What an effect adds to the instructions of a step.
+pub(super) fn adds(cost: &EffectCost) -> String {
+    let EffectCost { acting, apart } = cost;
+    let always =
+        format!("adds {} an iteration, {} a factorisation, {} a step", acting.iteration, acting.factor, acting.step);
+    match apart {
+        Some(apart) => format!("{always}; apart {}, {}, {}", apart.iteration, apart.factor, apart.step),
+        None => always,
+    }
 }
 
 /// All effects, for people.
-pub(super) fn text() -> String {
+///
+/// # Errors
+/// As [`all`].
+pub(super) fn text() -> Result<String, Failure> {
     let mut text = String::new();
-    for sheet in all() {
+    let mut costs = Table::new([
+        ("instructions that it adds", Align::Left),
+        ("an iteration", Align::Right),
+        ("a factorisation", Align::Right),
+        ("a step", Align::Right),
+        ("while apart", Align::Right),
+    ]);
+    for sheet in all()? {
         if !text.is_empty() {
             text.push('\n');
         }
@@ -44,8 +75,17 @@ pub(super) fn text() -> String {
             add(&mut keys, "", key);
         }
         text += &keys.render(4);
+        if let Some(EffectCost { acting, apart }) = sheet.adds {
+            let number = |number: i64| number.to_string();
+            let apart =
+                apart.map_or(String::new(), |apart| format!("{}, {}, {}", apart.iteration, apart.factor, apart.step));
+            let [iteration, factor, step] = [acting.iteration, acting.factor, acting.step].map(number);
+            costs.row([sheet.keyword.to_owned(), iteration, factor, step, apart]);
+        }
     }
-    text
+    text += "\nWhat one of each adds to a small mechanism of the plane in absolute coordinates. Apart: where no sample of a tile touches.\n";
+    text += &costs.render(2);
+    Ok(text)
 }
 
 /// A key, and those within it.
@@ -61,9 +101,9 @@ mod tests {
 
     #[test]
     fn every_effect_of_the_grammar_is_told_with_all_that_there_is() {
-        let told: Vec<&str> = all().iter().map(|sheet| sheet.keyword).collect();
+        let told: Vec<&str> = all().unwrap().iter().map(|sheet| sheet.keyword).collect();
         assert_eq!(told, crate::model::effect_keywords());
-        for sheet in all() {
+        for sheet in all().unwrap() {
             assert!(!sheet.description.is_empty() && !sheet.formulas.is_empty() && !sheet.source.is_empty());
             assert!(!sheet.keys.is_empty(), "{}", sheet.keyword);
             assert!(sheet.keys.iter().all(|key| !key.description.is_empty()), "{}", sheet.keyword);
@@ -72,7 +112,7 @@ mod tests {
 
     #[test]
     fn an_effect_reads_well() {
-        let plain = anstream::adapter::strip_str(&text()).to_string();
+        let plain = anstream::adapter::strip_str(&text().unwrap()).to_string();
         let stop = plain.split("\n\n").find(|part| part.starts_with("stop ")).unwrap();
         insta::assert_snapshot!(stop, @r"
         stop  Stops at the ends of a joint's way.

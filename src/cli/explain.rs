@@ -3,37 +3,29 @@
 use super::args::{ExplainArgs, Format};
 use super::check::to_json;
 use super::console::{BOLD, Console, count};
+use super::effects::adds;
 use super::table::{Align, Table};
 use super::{Failure, Status, effects, load};
-use crate::batch::{self, RunError};
-use crate::model::Description;
+use crate::batch;
 use crate::report::{Decision, Explanation};
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
         console.print(&match args.format {
-            Format::Text => effects::text(),
-            Format::Json => to_json(&effects::all())?,
+            Format::Text => effects::text()?,
+            Format::Json => to_json(&effects::all()?)?,
         })?;
         return Ok(Status::Done);
     };
     let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let explanation = explain_model(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+    let explanation = batch::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,
     })?;
     Ok(Status::Done)
-}
-
-/// What a model is compiled to.
-///
-/// # Errors
-/// What is wrong with the mechanism as a whole: it cannot be built or assembled.
-fn explain_model(model: &Description) -> Result<Explanation, RunError> {
-    batch::explain(model)
 }
 
 /// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
@@ -60,17 +52,21 @@ fn text(explanation: &Explanation) -> String {
     section(count(e.parameters.len(), "uncertain parameter", "uncertain parameters"), list(&e.parameters));
     section(count(e.outputs.len(), "output", "outputs"), list(&e.outputs));
 
-    let mut effects = Table::new([("", Align::Left), ("", Align::Left), ("", Align::Left), ("", Align::Left)]);
+    let mut effects = Table::new([("", Align::Left); 5]);
     for effect in &e.effects {
         let expressions = count(effect.expressions, "expression", "expressions");
         let forces = format!("on {}", count(effect.forces, "coordinate", "coordinates"));
-        effects.row([effect.name.clone(), effect.kind.clone(), forces, expressions]);
+        let adds = effect.adds.as_ref().map_or(String::new(), adds);
+        effects.row([effect.name.clone(), effect.kind.clone(), forces, expressions, adds]);
     }
     section(count(e.effects.len(), "effect", "effects"), effects.render(2));
 
     let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     for (stage, when, instructions) in e.instructions.stages() {
-        stages.row([stage.to_owned(), instructions.to_string(), when.to_owned()]);
+        let apart = e.apart.as_ref().and_then(|apart| apart.stages().into_iter().find(|other| other.0 == stage));
+        let apart = apart.filter(|apart| apart.2 != instructions);
+        let apart = apart.map_or(String::new(), |(_, _, fewer)| format!(", {fewer} while nothing touches"));
+        stages.row([stage.to_owned(), instructions.to_string(), format!("{when}{apart}")]);
     }
     let total: usize = e.instructions.stages().iter().map(|stage| stage.2).sum();
     section(count(total, "instruction", "instructions"), stages.render(2));
@@ -133,10 +129,18 @@ fn indented(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Each, EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix, Saving};
+    use crate::report::{
+        Each, EffectCost, EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix, Saving, StepInstructions,
+    };
 
     #[test]
     fn an_explanation_reads_well() {
+        let added = |step, factor, iteration| StepInstructions { step, factor, iteration };
+        let effect =
+            |name: &str, kind: &str, expressions, adds: Option<(StepInstructions, Option<StepInstructions>)>| {
+                let adds = adds.map(|(acting, apart)| EffectCost { acting, apart });
+                EffectExplanation { name: name.into(), kind: kind.into(), forces: 1, expressions, adds }
+            };
         let names = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<_>>();
         let explanation = Explanation {
             model: "slider_crank".into(),
@@ -150,8 +154,9 @@ mod tests {
             undetermined_outputs: vec![],
             parameters: names("l1 tau"),
             effects: vec![
-                EffectExplanation { name: "drive".into(), kind: "torque".into(), forces: 1, expressions: 1 },
-                EffectExplanation { name: "spring".into(), kind: "spring_damper".into(), forces: 1, expressions: 9 },
+                effect("drive", "torque", 1, None),
+                effect("spring", "spring_damper", 9, Some((added(2, 0, 4), None))),
+                effect("floor", "contact", 40, Some((added(0, -3, 30), Some(added(0, -5, 2))))),
             ],
             outputs: names("x3"),
             instructions: InstructionCounts {
@@ -163,6 +168,15 @@ mod tests {
                 advance: 40,
                 observe: 2,
             },
+            apart: Some(InstructionCounts {
+                sample: 21,
+                step_size: 4,
+                step: 30,
+                factor: 90,
+                correct: 94,
+                advance: 40,
+                observe: 2,
+            }),
             newton: NewtonMatrix { size: 13, nonzeros: 43, factor_nonzeros: 51, fill: 8, pivots: vec![(0, 7), (7, 0)] },
             left_out: vec![LeftOut { what: "parameter m4".into(), why: "nothing depends on it".into() }],
             decisions: vec![Decision {
@@ -189,16 +203,17 @@ mod tests {
         1 output
           x3
 
-        2 effects
+        3 effects
           drive   torque         on 1 coordinate  1 expression
-          spring  spring_damper  on 1 coordinate  9 expressions
+          spring  spring_damper  on 1 coordinate  9 expressions   adds 4 an iteration, 0 a factorisation, 2 a step
+          floor   contact        on 1 coordinate  40 expressions  adds 30 an iteration, -3 a factorisation, 0 a step; apart 2, -5, 0
 
         313 instructions
           sample      21  once a sample
           step size    4  once a step size
           step        30  once a step
-          factor      94  when the Newton matrix is factored
-          correct    122  every Newton iteration
+          factor      94  when the Newton matrix is factored, 90 while nothing touches
+          correct    122  every Newton iteration, 94 while nothing touches
           advance     40  once a step, at its end
           observe      2  once a row of output
 

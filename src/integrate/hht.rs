@@ -88,8 +88,12 @@ impl<'p> Stepper<'p> {
 
     /// Largest |1/pivot| of a lane's last factors, over what is trusted.
     pub(super) fn pivot_strain(&self, lane: usize) -> f64 {
+        let value = |slot: usize| self.tile.lane(slot)[lane];
         let watched = self.program.watched.iter();
-        watched.map(|pivot| self.tile.lane(pivot.slot)[lane].abs() / pivot.largest_inverse).fold(0.0, f64::max)
+        let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.slot))));
+        used.flat_map(|watched| &watched.pivots)
+            .map(|pivot| self.tile.lane(pivot.slot)[lane].abs() / pivot.largest_inverse)
+            .fold(0.0, f64::max)
     }
 
     /// Number of coordinates, n.

@@ -9,7 +9,7 @@ use symdiff::{Tile, Vectorise, vectorised};
 
 use super::assemble::allowed_gap;
 use super::rank::solve_whatever_rank;
-use crate::program::{Program, WatchedPivot};
+use crate::program::{Program, Watched};
 
 /// Corrections with the step's first factorisation before each gets its own.
 const FROZEN_CORRECTIONS: usize = 4;
@@ -249,7 +249,7 @@ impl Vectorise for Predict<'_> {
 
 /// Lanes with a pivot that has become too small are solved by the rank-revealing solve.
 struct Watch<'a> {
-    watched: &'a [WatchedPivot],
+    watched: &'a [Watched],
     tile: &'a Tile,
     singular: &'a mut [bool],
 }
@@ -259,10 +259,26 @@ impl Vectorise for Watch<'_> {
 
     #[inline(always)]
     fn run(self) {
-        for watched in self.watched {
-            for (singular, inverse) in self.singular.iter_mut().zip(self.tile.lane(watched.slot)) {
-                // Not a number is not trusted either.
-                *singular |= inverse.is_nan() || inverse.abs() > watched.largest_inverse;
+        let Self { watched, tile, singular } = self;
+        // Not a number is not trusted either.
+        let lost = |inverse: f64, largest: f64| inverse.is_nan() || inverse.abs() > largest;
+        for Watched { mode, pivots } in watched {
+            match mode {
+                None => pivots.iter().for_each(|pivot| {
+                    for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.slot)) {
+                        *singular |= lost(inverse, pivot.largest_inverse);
+                    }
+                }),
+                // Factors of lanes that do not use them are anything.
+                Some(mode) if tile.lane(mode.slot).iter().any(|&value| mode.holds(value)) => {
+                    for pivot in pivots {
+                        let lanes = singular.iter_mut().zip(tile.lane(pivot.slot)).zip(tile.lane(mode.slot));
+                        for ((singular, &inverse), &value) in lanes {
+                            *singular |= mode.holds(value) & lost(inverse, pivot.largest_inverse);
+                        }
+                    }
+                }
+                Some(_) => {}
             }
         }
     }

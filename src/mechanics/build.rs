@@ -1,7 +1,7 @@
 //! The equations of motion of a description.
 
 use symdiff::taylor_model::encloses;
-use symdiff::{Expr, Graph};
+use symdiff::{Binary, Expr, Graph};
 
 use crate::model::{Description, Formulation};
 
@@ -122,6 +122,17 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
     }
     let mut mass = Vec::new();
     let mut force = loads.generalised(g, &mechanism);
+    // What acts only sometimes is summed apart, so that nothing of it is computed where nothing acts.
+    let touching = loads.conditions().into_iter().reduce(|a, b| g.binary(Binary::Max, a, b));
+    let mut sometimes = vec![g.constant(0.0); force.len()];
+    if let Some(touching) = touching {
+        let guarded = loads.guarded(g).generalised(g, &mechanism);
+        sometimes = g.assume(&guarded, touching, true);
+        for (total, &part) in force.iter_mut().zip(&sometimes) {
+            let part = g.only_where(touching, part);
+            *total = g.add(*total, part);
+        }
+    }
     for body in &mechanism.bodies {
         body.add_inertia(g, &mut mass, &mut force);
     }
@@ -132,7 +143,8 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
     }
     if !mechanism.tree.is_absolute() {
         let carried = recursion::inertial_forces(g, &mechanism, loads.field);
-        mechanism.react(g, &loads, &carried, &closures);
+        let all = loads.with_guarded(g);
+        mechanism.react(g, &all, &carried, &closures);
         for (total, part) in inertia.iter_mut().zip(carried.generalised) {
             *total = g.add(*total, part);
         }
@@ -167,6 +179,8 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
         mass,
         inertia,
         force,
+        touching,
+        sometimes,
         constraint: constraints.values,
         outputs,
         length,

@@ -33,6 +33,10 @@ pub struct System {
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
+    /// Where it is not positive, no effect acts that acts only sometimes (a contact, a stop).
+    pub touching: Option<Expr>,
+    /// What these add to Q where it is positive, n; it is in `force`, under that condition.
+    pub sometimes: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
     /// What is observed, over t, q, v, w, λ and the parameters.

@@ -1,15 +1,13 @@
 //! System → [`Program`]: the step's tapes.
 
-use symdiff::{Expr, Graph, Input, Lowered, Stages, Tape, lower};
+use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower_where};
 
+use super::elimination::{Choice, Elimination, is_worth_it};
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::scheme::{Coefficients, Scheme};
-use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
+use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular};
 use crate::mechanics::System;
-
-/// Where numbers grow more than this in the elimination, pivots are chosen anew, fewer of them.
-const MOST_GROWTH: f64 = 1e4;
 
 /// A state that guides the choice of pivots: values of the layout's first slots (parameters to λ), at a step size.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,13 +25,31 @@ pub struct WatchedPivot {
     pub largest_inverse: f64,
 }
 
-/// A pivot may fall this far below its size at the probes: the corrections then still have some six digits, which is
-/// all that Newton's iteration needs of them.
-const PIVOT_LOSS: f64 = 1e-10;
+/// Which lanes solve with a version of the factors, told by what is kept of the iterate at which they were made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Slot of what decides.
+    pub slot: usize,
+    /// Whether it is those where it is not positive.
+    pub elsewhere: bool,
+}
 
-/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. What the constraint asks for
-/// the others see to, so its multiplier stays near the zero from which every step starts it.
-const REDUNDANT_WEIGHT: f64 = 1.0;
+impl Mode {
+    /// Whether a lane with this value is one of them.
+    #[inline(always)]
+    pub fn holds(&self, value: f64) -> bool {
+        (value <= 0.0) == self.elsewhere
+    }
+}
+
+/// The pivots of one version of the factors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watched {
+    /// Which lanes use it; all, where there is one version.
+    pub mode: Option<Mode>,
+    /// Its pivots that can change.
+    pub pivots: Vec<WatchedPivot>,
+}
 
 /// Compiled form of a system for one scheme. A tile of samples has [`Program::slots`] slots.
 #[derive(Clone, Debug)]
@@ -53,7 +69,7 @@ pub struct Program {
     /// Slots of the multipliers of redundant constraints: reactions that equilibrium does not determine, taken as zero.
     pub redundant: Vec<usize>,
     /// Pivots that can become small.
-    pub watched: Vec<WatchedPivot>,
+    pub watched: Vec<Watched>,
     /// Symmetric scaling that equilibrates the Newton matrix, n + m.
     pub equilibration: Vec<f64>,
     /// Nonzeros of the Newton matrix and of its factors.
@@ -148,79 +164,33 @@ pub fn compile(
     let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
-    let mut numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
+    let numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
     let mut heavy = vec![false; n];
     system.mass.iter().filter(|(row, column, _)| row == column).for_each(|&(row, _, _)| heavy[row] = true);
     let equilibration = equilibrate(&newton, &numbers, &heavy);
 
-    // A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.
-    let mut regular = newton.matrix.clone();
-    for &constraint in redundant {
-        let row = n + constraint;
-        let weight = REDUNDANT_WEIGHT / (equilibration[row] * equilibration[row]);
-        let place = newton.matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
-        let offset = regular.nonzeros() - newton.matrix.nonzeros();
-        let value = graph.constant(-weight);
-        debug_assert!(
-            regular.rows[row].iter().all(|&(column, _)| column < row),
-            "a constraint's row ends before its own multiplier"
-        );
-        regular.rows[row].push((row, value));
-        numbers.insert(place + offset, [-weight; PROBES]);
-    }
-
     let blocks = mass_blocks(system);
     let symmetric = Pivoting::Symmetric { heavy: &heavy, blocks: &blocks };
-    let plan = |graph: &mut Graph, pivoting: Pivoting| {
-        let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
-            factorise(graph, &regular, numbers, &equilibration, Stages::new(&inputs), ITERATION, pivoting)
-        };
-        // A start in a singular configuration has no pivots of its own: then states in general position decide.
-        factorised(graph, &numbers).or_else(|_| {
-            let mut apart = numbers.clone();
-            apart.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
-            factorised(graph, &apart)
-        })
-    };
-    let factors = match plan(&mut graph, if system.space.spatial { symmetric } else { Pivoting::Any }) {
-        Ok(factors) if factors.growth <= MOST_GROWTH || system.space.spatial => factors,
-        // In a long chain free choice hands errors on from body to body, each time larger.
-        free => plan(&mut graph, symmetric).or(free)?,
-    };
-    let mut stages = Stages::new(&inputs);
-    stages.update(&graph);
-
-    // What the iteration changes is frozen between factorisations: the correction sees it through symbols of its own.
-    let mut frozen: Vec<(Expr, Option<u32>)> = Vec::new();
-    let mut next = layout.slots() as u32;
-    let mut symbol_of = rustc_hash::FxHashMap::default();
-    let mut slot_of = rustc_hash::FxHashMap::default();
-    let mut watched = Vec::new();
-    let substituted = factors.map(|value| {
-        if stages.of(value) != Some(ITERATION) {
-            return value;
-        }
-        *symbol_of.entry(value).or_insert_with(|| {
-            let symbol = graph.symbol(&format!("factor:{}", frozen.len()));
-            inputs.push(Input { symbol, stage: ITERATION, slot: next });
-            frozen.push((value, Some(next)));
-            slot_of.insert(value, next as usize);
-            next += 1;
-            symbol
-        })
+    let choice = Choice { redundant, equilibration: &equilibration, symmetric, spatial: system.space.spatial, n };
+    let versions = versions(&mut graph, &newton, &numbers, &inputs).and_then(|[all, apart]| {
+        let apart_numbers = probe_numbers(&graph, &apart.0, &inputs, probes);
+        // Where elimination needs what touches, there is no other version.
+        let all = choice.factorise(&mut graph, &all.0, &all.1, &inputs).ok()?;
+        let apart = choice.factorise(&mut graph, &apart.0, &apart_numbers, &inputs).ok()?;
+        is_worth_it(&graph, &inputs, &all, &apart).then_some((all, apart))
     });
-    for pivot in &factors.pivots {
-        if let Some(&slot) = slot_of.get(&pivot.inverse) {
-            let smallest = pivot.magnitude.into_iter().fold(f64::INFINITY, f64::min)
-                / (equilibration[pivot.row] * equilibration[pivot.column]);
-            watched.push(WatchedPivot { slot, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
-        }
-    }
+    let (factors, apart) = match (versions, newton.touching) {
+        (Some((all, apart)), Some(touching)) => (all, Some((touching, apart))),
+        _ => (choice.factorise(&mut graph, &newton.matrix, &numbers, &inputs)?, None),
+    };
+    let mut next = layout.slots() as u32;
+    let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, &equilibration, factors, apart);
+
     let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
-    let correction = substituted.solve(&mut graph, &opposite);
+    let correction = elimination.solve(&mut graph, &opposite);
     let mut changes = newton.inertial_change.clone();
     changes.resize(n + m, graph.constant(0.0));
-    let moving = substituted.solve(&mut graph, &changes);
+    let moving = elimination.solve(&mut graph, &changes);
 
     let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
         values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
@@ -235,7 +205,10 @@ pub fn compile(
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
 
     let estimate = at(&moving[..n], layout.correction.start);
-    let lowered = lower(&graph, &inputs, ITERATION, next, &[frozen, correct, advance, observe, matrix, estimate]);
+    let Elimination { frozen, guards, watched, factors, .. } = elimination;
+    let guards = guards.into_iter().map(|(value, guard)| ((FACTOR, value), guard)).collect();
+    let kernels = [frozen, correct, advance, observe, matrix, estimate];
+    let lowered = lower_where(&graph, &inputs, ITERATION, next, &kernels, &guards);
     debug_assert_eq!(lowered.stages.len(), STEP_SIZE + 2);
     let nonzeros = newton.matrix.nonzeros();
     let places = &lowered.outputs[MATRIX];
@@ -257,6 +230,32 @@ pub fn compile(
     })
 }
 
+/// The Newton matrix where something touches, with its numbers, and where nothing does, if that is another one.
+fn versions(
+    graph: &mut Graph,
+    newton: &NewtonSystem,
+    numbers: &[Numbers],
+    inputs: &[Input],
+) -> Option<[(SparseMatrix, Vec<Numbers>); 2]> {
+    let mut stages = Stages::new(inputs);
+    stages.update(graph);
+    // What the iteration does not change needs no elimination that tells one from the other while it runs.
+    let touching = newton.touching.filter(|&touching| stages.of(touching) == Some(ITERATION))?;
+    let values: Vec<Expr> = newton.matrix.entries().map(|(_, _, value)| value).collect();
+    let versions = [true, false].map(|holds| {
+        let (mut matrix, mut kept) = (SparseMatrix::zero(newton.matrix.rows.len(), newton.matrix.columns), Vec::new());
+        let values = graph.assume(&values, touching, holds);
+        for (((row, column, _), value), numbers) in newton.matrix.entries().zip(values).zip(numbers) {
+            if !graph.is_zero(value) {
+                matrix.rows[row].push((column, value));
+                kept.push(*numbers);
+            }
+        }
+        (matrix, kept)
+    });
+    (versions[0].0 != versions[1].0).then_some(versions)
+}
+
 /// By coordinate, the first of those that M couples it with: of a body with coordinates of its own, or of a tree.
 fn mass_blocks(system: &System) -> Vec<usize> {
     let mut coupled: Vec<Vec<usize>> = vec![Vec::new(); system.q.len()];
@@ -275,12 +274,7 @@ fn mass_blocks(system: &System) -> Vec<usize> {
 }
 
 /// Values of the matrix's entries at each probe.
-fn probe_numbers(
-    graph: &Graph,
-    matrix: &symdiff::SparseMatrix,
-    inputs: &[Input],
-    probes: &[Probe; PROBES],
-) -> Vec<Numbers> {
+fn probe_numbers(graph: &Graph, matrix: &SparseMatrix, inputs: &[Input], probes: &[Probe; PROBES]) -> Vec<Numbers> {
     let slot_of: rustc_hash::FxHashMap<Expr, usize> =
         inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();

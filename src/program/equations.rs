@@ -7,7 +7,12 @@ use crate::mechanics::System;
 /// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();
-    let mut rows: Vec<Expr> = system.force.iter().map(|&force| graph.neg(force)).collect();
+    // What acts only sometimes comes last: without it the rows are those of a system that does not have it.
+    let force = match system.touching {
+        Some(touching) => graph.assume(&system.force, touching, false),
+        None => system.force.clone(),
+    };
+    let mut rows: Vec<Expr> = force.into_iter().map(|force| graph.neg(force)).collect();
     debug_assert_eq!(rows.len(), n);
     let slopes = graph.jacobian(&system.constraint, &system.q);
     for (constraint, coordinate, slope) in slopes.entries() {
@@ -16,6 +21,12 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
     }
     for (row, &inertia) in rows.iter_mut().zip(&system.inertia) {
         *row = graph.add(*row, inertia);
+    }
+    if let Some(touching) = system.touching {
+        for (row, &part) in rows.iter_mut().zip(&system.sometimes) {
+            let all = graph.sub(*row, part);
+            *row = graph.select(touching, all, *row);
+        }
     }
     (rows, slopes)
 }

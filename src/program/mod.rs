@@ -1,6 +1,7 @@
 //! System → [`Program`]: tapes for the start, for one step of a scheme, and for what is observed.
 
 mod compile;
+mod elimination;
 mod equation_tapes;
 mod equations;
 mod layout;
@@ -9,7 +10,7 @@ mod scheme;
 mod sparse_lu;
 mod start;
 
-pub use compile::{Probe, Program, WatchedPivot, compile};
+pub use compile::{Mode, Probe, Program, Watched, WatchedPivot, compile};
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use layout::Layout;
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};

@@ -48,6 +48,8 @@ pub struct NewtonSystem {
     pub acceleration: Vec<Expr>,
     /// M(q₊) (a₊ − a), n: what local errors are made of.
     pub inertial_change: Vec<Expr>,
+    /// Where it is not positive, nothing acts that acts only sometimes.
+    pub touching: Option<Expr>,
 }
 
 /// The symbols of a step that the system does not have: the state at its beginning, h and the iterate.
@@ -194,9 +196,12 @@ pub fn newton_system(
     for entry in matrix.rows.iter_mut().flatten() {
         entry.1 = values.next().expect("one value an entry");
     }
+    let touching = system.touching.map(|touching| graph.substitute(&[touching], &at_end)[0]);
     let inputs = symbols.inputs(layout, system);
     let acceleration = symbols.x;
-    (NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration, inertial_change }, inputs)
+    let system =
+        NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration, inertial_change, touching };
+    (system, inputs)
 }
 
 #[cfg(test)]

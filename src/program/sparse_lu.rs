@@ -478,6 +478,14 @@ impl Factors {
         self.pivots.iter().map(|pivot| 1 + pivot.lower.len() + pivot.upper.len()).sum()
     }
 
+    /// All values of the factors.
+    pub fn values(&self) -> impl Iterator<Item = Expr> {
+        self.pivots.iter().flat_map(|pivot| {
+            let entries = pivot.lower.iter().chain(&pivot.upper).map(|&(_, value)| value);
+            entries.chain(std::iter::once(pivot.inverse))
+        })
+    }
+
     /// The same factors with every value replaced by `replace`.
     pub fn map(&self, mut replace: impl FnMut(Expr) -> Expr) -> Self {
         let mut pivots = self.pivots.clone();

@@ -82,19 +82,17 @@ impl Explanation {
                 Some(known) => {
                     known.forces += effect.forces;
                     known.expressions += effect.expressions;
+                    known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| ours.and(&theirs));
                 }
                 None => self.effects.push(effect),
             }
         }
         self.outputs.extend(other.outputs);
-        let (ours, theirs) = (&mut self.instructions, other.instructions);
-        ours.sample += theirs.sample;
-        ours.step_size += theirs.step_size;
-        ours.step += theirs.step;
-        ours.factor += theirs.factor;
-        ours.correct += theirs.correct;
-        ours.advance += theirs.advance;
-        ours.observe += theirs.observe;
+        if self.apart.is_some() || other.apart.is_some() {
+            let apart = self.apart.get_or_insert_with(|| self.instructions.clone());
+            apart.add(other.apart.as_ref().unwrap_or(&other.instructions));
+        }
+        self.instructions.add(&other.instructions);
         // The islands' matrices are blocks on one diagonal.
         let (ours, theirs) = (&mut self.newton, other.newton);
         let first = ours.size;

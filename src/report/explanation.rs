@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::Decision;
+use super::effect_cost::EffectCost;
 use crate::integrate::Simulator;
+use crate::program::Program;
 
 /// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -32,8 +34,10 @@ pub struct Explanation {
     pub effects: Vec<EffectExplanation>,
     /// Outputs by name.
     pub outputs: Vec<String>,
-    /// How the work is divided.
+    /// How the work is divided; where effects act only sometimes, with all of them acting.
     pub instructions: InstructionCounts,
+    /// The same where none of them acts in any sample of a tile, if that is less.
+    pub apart: Option<InstructionCounts>,
     /// The matrix of Newton's method.
     pub newton: NewtonMatrix,
     /// What the model says and the program does not hold.
@@ -71,18 +75,13 @@ impl Explanation {
                     kind: effect.kind.to_owned(),
                     forces: effect.forces,
                     expressions: effect.expressions,
+                    adds: None,
                 })
                 .collect(),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
-            instructions: InstructionCounts {
-                sample: program.sample().len(),
-                step_size: program.step_size().len(),
-                step: program.step().len(),
-                factor: program.factor().len(),
-                correct: program.correct().len(),
-                advance: program.advance().len(),
-                observe: program.observe().len(),
-            },
+            instructions: InstructionCounts::of(program, true),
+            apart: Some(InstructionCounts::of(program, false))
+                .filter(|apart| *apart != InstructionCounts::of(program, true)),
             newton: NewtonMatrix {
                 size: program.residual.len(),
                 nonzeros,
@@ -115,6 +114,8 @@ pub struct EffectExplanation {
     pub forces: usize,
     /// Nodes of its expressions, before they are shared with others.
     pub expressions: usize,
+    /// What it adds to the instructions of a step, where that was asked for.
+    pub adds: Option<EffectCost>,
 }
 
 /// Instructions by how often they are run, seldom to often.
@@ -137,6 +138,31 @@ pub struct InstructionCounts {
 }
 
 impl InstructionCounts {
+    /// Of a program, where everything touches that can, or nothing does.
+    fn of(program: &Program, touching: bool) -> Self {
+        let count = |tape: &symdiff::Tape| tape.len_where(touching);
+        Self {
+            sample: count(program.sample()),
+            step_size: count(program.step_size()),
+            step: count(program.step()),
+            factor: count(program.factor()),
+            correct: count(program.correct()),
+            advance: count(program.advance()),
+            observe: count(program.observe()),
+        }
+    }
+
+    /// Adds those of another program.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.sample += other.sample;
+        self.step_size += other.step_size;
+        self.step += other.step;
+        self.factor += other.factor;
+        self.correct += other.correct;
+        self.advance += other.advance;
+        self.observe += other.observe;
+    }
+
     /// Stages by name, with when they run and how many instructions they have.
     pub fn stages(&self) -> [(&'static str, &'static str, usize); 7] {
         [

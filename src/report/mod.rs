@@ -6,6 +6,7 @@ mod contributions;
 mod cost;
 mod csv;
 mod decisions;
+mod effect_cost;
 mod explanation;
 mod figure;
 mod files;
@@ -24,6 +25,7 @@ pub use cost::{
     CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_csv, cost_curves, cost_svg, pareto, write_cost,
 };
 pub use decisions::{Decision, Each, Saving};
+pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use files::{ReportError, file_stem, write_results};
 pub use folder::prepare_folder;

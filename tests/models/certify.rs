@@ -121,7 +121,8 @@ fn what_cannot_be_certified_is_refused() {
     assert!(refused(&controlled).starts_with("certified bounds need a fixed `step`"));
 }
 
-/// An effect without an enclosure is named; one with friction proportional to its reaction has one.
+/// An effect without an enclosure is named; one with friction proportional to its reaction has one, and a stop as long as the
+/// whole box is away from it.
 #[test]
 fn an_effect_that_has_no_enclosure_is_named() {
     let text = |effect: &str| {
@@ -139,14 +140,17 @@ simulation: {{ duration: 0.02, step: 1e-3 }}
 "
         ))
     };
-    let (bounds, failure) = certify(text("{ stop: { on: hinge, upper: 1, impact: { stiffness: 1e4 } } }").scan(11));
+    let (bounds, failure) =
+        certify(text("{ stop: { on: hinge, upper: 1, impact: { stiffness: 1e4, exponent: 1.3 } } }").scan(11));
     assert_eq!(failure.as_deref(), Some("not supported with --certify: effect extra (stop)"));
     assert!(band(&bounds.outputs[0], Method::Certified).upper.iter().all(|value| value.is_nan()));
     let friction = "{ joint_friction: { on: hinge, coefficient: 0.2, radius: 0.01, transition_velocity: 0.5 } }";
-    let (bounds, failure) = certify(text(friction).scan(11));
-    assert_eq!(failure, None);
-    let [scan, certified] = [Method::Scan, Method::Certified].map(|method| band(&bounds.outputs[0], method));
-    for row in 0..bounds.times.len() {
-        assert!(certified.lower[row] <= scan.lower[row] && scan.upper[row] <= certified.upper[row], "row {row}");
+    for effect in [friction, "{ stop: { on: hinge, upper: 1, impact: { stiffness: 1e4 } } }"] {
+        let (bounds, failure) = certify(text(effect).scan(11));
+        assert_eq!(failure, None);
+        let [scan, certified] = [Method::Scan, Method::Certified].map(|method| band(&bounds.outputs[0], method));
+        for row in 0..bounds.times.len() {
+            assert!(certified.lower[row] <= scan.lower[row] && scan.upper[row] <= certified.upper[row], "row {row}");
+        }
     }
 }

@@ -19,6 +19,7 @@ mod effects_contact;
 mod effects_drives;
 mod effects_friction;
 mod flexible_beam;
+mod far;
 mod formulations;
 mod honesty;
 mod invariants;

@@ -51,7 +51,8 @@ impl SparseMatrix {
 }
 
 impl Graph {
-    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken.
+    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken;
+    /// a guarded value is taken to be continuous where its condition changes sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
         let order = self.reachable(&[of]);
         self.derivative_along(&order, of, by)
@@ -191,6 +192,7 @@ impl Graph {
                 let square = self.add(aa, bb);
                 self.div(numerator, square)
             }
+            Binary::Where | Binary::Elsewhere => self.binary(function, a, db),
             // max = (a + b + |a - b|)/2 and min = (a + b - |a - b|)/2, differentiated.
             Binary::Min | Binary::Max => {
                 let gap = self.sub(a, b);

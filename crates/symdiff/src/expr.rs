@@ -52,6 +52,11 @@ pub enum Binary {
     Atan2,
     Min,
     Max,
+    /// b where a is positive (or not a number), 0 elsewhere. What is needed for such b alone is not computed where no sample
+    /// of a tile has a positive a.
+    Where,
+    /// b where a ≤ 0, 0 elsewhere: together with [`Where`](Self::Where) one of both, always.
+    Elsewhere,
 }
 
 /// What a node is.
@@ -77,6 +82,14 @@ impl Node {
         };
         a.into_iter().chain(b)
     }
+}
+
+/// A sum of something under a condition and something elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    pub condition: Expr,
+    /// Both summands, and what they guard: wanted where the condition is positive, and elsewhere.
+    pub halves: [(Expr, Expr); 2],
 }
 
 /// An arena of expressions. Constant folding and the algebraic identities are applied as nodes are made.
@@ -209,6 +222,7 @@ impl Graph {
             Binary::Min | Binary::Max if a == b => a,
             Binary::Min | Binary::Max => self.intern(Node::Binary(function, a.min(b), a.max(b))),
             Binary::Atan2 => self.intern(Node::Binary(function, a, b)),
+            Binary::Where | Binary::Elsewhere => self.guard_nodes(function, a, b),
         }
     }
 
@@ -312,6 +326,68 @@ impl Graph {
             Some(exponent) if exponent.fract() == 0.0 && exponent.abs() <= 32.0 => self.powi(a, exponent as i32),
             _ => self.intern(Node::Binary(Binary::Pow, a, b)),
         }
+    }
+
+    /// `function` is one of the two.
+    fn guard_nodes(&mut self, function: Binary, condition: Expr, value: Expr) -> Expr {
+        if self.is_zero(value) {
+            return value;
+        }
+        if let Some(number) = self.as_constant(condition) {
+            let kept = (number <= 0.0) == (function == Binary::Elsewhere);
+            return if kept { value } else { self.constant(0.0) };
+        }
+        match self.node(value) {
+            Node::Binary(inner, same, _) if inner == function && same == condition => value,
+            Node::Binary(Binary::Where | Binary::Elsewhere, same, _) if same == condition => self.constant(0.0),
+            _ => self.intern(Node::Binary(function, condition, value)),
+        }
+    }
+
+    /// `value` where `condition` is positive, exactly 0 elsewhere, whatever `value` is there: [`Binary::Where`].
+    pub fn only_where(&mut self, condition: Expr, value: Expr) -> Expr {
+        self.binary(Binary::Where, condition, value)
+    }
+
+    /// `a` where `condition` is positive, `b` elsewhere.
+    pub fn select(&mut self, condition: Expr, a: Expr, b: Expr) -> Expr {
+        // A choice under the same condition has been made.
+        let half = |expr: Expr, which: usize| match self.node(expr) {
+            Node::Binary(Binary::Add, x, y) => match self.choice(x, y) {
+                Some(choice) if choice.condition == condition => choice.halves[which].1,
+                _ => expr,
+            },
+            _ => expr,
+        };
+        let (a, b) = (half(a, 0), half(b, 1));
+        if a == b {
+            return a;
+        }
+        let (a, b) = (self.binary(Binary::Where, condition, a), self.binary(Binary::Elsewhere, condition, b));
+        self.add(a, b)
+    }
+
+    /// What `x + y` is where it is a [choice](Self::select).
+    pub(crate) fn choice(&self, x: Expr, y: Expr) -> Option<Choice> {
+        let half = |wanted: Binary, expr: Expr| match self.node(expr) {
+            Node::Binary(function, condition, value) if function == wanted => Some((condition, value)),
+            _ => None,
+        };
+        [(x, y), (y, x)].into_iter().find_map(|(x, y)| {
+            let ((condition, a), (same, b)) = (half(Binary::Where, x)?, half(Binary::Elsewhere, y)?);
+            (condition == same).then_some(Choice { condition, halves: [(x, a), (y, b)] })
+        })
+    }
+
+    /// `roots` as they are where `condition` is positive (`holds`), or where it is not.
+    pub fn assume(&mut self, roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr> {
+        let zero = self.constant(0.0);
+        self.rebuild(roots, |_, node, image| match node {
+            Node::Binary(function @ (Binary::Where | Binary::Elsewhere), given, value) if given == condition => {
+                Some(if holds == (function == Binary::Where) { image[&value] } else { zero })
+            }
+            _ => None,
+        })
     }
 
     /// `a` to a whole power, by repeated squaring.
@@ -425,10 +501,20 @@ impl Graph {
 
     /// `roots` with every key of `replacements` replaced by its value.
     pub fn substitute(&mut self, roots: &[Expr], replacements: &FxHashMap<Expr, Expr>) -> Vec<Expr> {
+        self.rebuild(roots, |expr, _, _| replacements.get(&expr).copied())
+    }
+
+    /// `roots` anew, with those nodes replaced for which there is something else, by the images of what is below them.
+    fn rebuild(
+        &mut self,
+        roots: &[Expr],
+        replaced: impl Fn(Expr, Node, &FxHashMap<Expr, Expr>) -> Option<Expr>,
+    ) -> Vec<Expr> {
         let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
         for expr in self.reachable(roots) {
-            let new = match (replacements.get(&expr), self.node(expr)) {
-                (Some(&replacement), _) => replacement,
+            let node = self.node(expr);
+            let new = match (replaced(expr, node, &image), node) {
+                (Some(replacement), _) => replacement,
                 (None, Node::Constant(_) | Node::Symbol(_)) => expr,
                 (None, Node::Unary(function, a)) => self.unary(function, image[&a]),
                 (None, Node::Binary(function, a, b)) => self.binary(function, image[&a], image[&b]),
@@ -447,6 +533,11 @@ impl Graph {
                 Node::Constant(bits) => f64::from_bits(bits),
                 Node::Symbol(_) => value_of(expr),
                 Node::Unary(function, a) => scalar::unary(function, values[&a]),
+                // A sum would lose the sign of zero, which instructions keep.
+                Node::Binary(Binary::Add, x, y) if let Some(choice) = self.choice(x, y) => {
+                    let [(_, a), (_, b)] = choice.halves;
+                    scalar::select(values[&choice.condition], values[&a], values[&b])
+                }
                 Node::Binary(function, a, b) => scalar::binary(function, values[&a], values[&b]),
             };
             values.insert(expr, value);
@@ -486,6 +577,31 @@ mod tests {
         assert_eq!(c, g.cos(x));
         assert_eq!(g.div(x, two), g.scale(0.5, x));
         assert_eq!(g.add(two, one), g.constant(3.0));
+    }
+
+    #[test]
+    fn guards_fold_and_can_be_assumed() {
+        let mut g = Graph::new();
+        let (c, x, y, zero, one) = (g.symbol("c"), g.symbol("x"), g.symbol("y"), g.constant(0.0), g.constant(1.0));
+        assert_eq!((g.only_where(one, x), g.only_where(zero, x)), (x, zero));
+        let guarded = g.only_where(c, x);
+        assert_eq!(g.only_where(c, guarded), guarded);
+        assert_eq!(g.binary(Binary::Elsewhere, c, guarded), zero);
+        assert_eq!(g.select(c, x, x), x);
+        let [one_way, other_way] = [g.select(c, x, y), g.select(c, y, x)];
+        assert_eq!(g.select(c, one_way, other_way), x);
+        let either = g.select(c, x, y);
+        let square = g.mul(either, guarded);
+        assert_eq!(g.assume(&[square, either], c, true), [g.mul(x, x), x]);
+        assert_eq!(g.assume(&[square, either], c, false), [zero, y]);
+        let values = |condition: f64| {
+            let value = |symbol: Expr| if symbol == c { condition } else { f64::from(symbol.index() as u32) };
+            g.evaluate(&[either, guarded], value)
+        };
+        let [x, y] = [x, y].map(|symbol| symbol.index() as f64);
+        assert_eq!(values(1e-300), [x, x]);
+        assert_eq!(values(0.0), [y, 0.0]);
+        assert_eq!(values(f64::NAN), [x, x]);
     }
 
     #[test]

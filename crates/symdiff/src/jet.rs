@@ -286,6 +286,10 @@ impl JetSpace {
                 }
                 out[0] = scalar::binary(function, a[0], b[0]);
             }
+            Binary::Where | Binary::Elsewhere if (a[0] <= 0.0) == (function == Binary::Elsewhere) => {
+                out.copy_from_slice(b);
+            }
+            Binary::Where | Binary::Elsewhere => out.fill(0.0),
         }
     }
 

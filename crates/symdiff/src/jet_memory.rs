@@ -1,7 +1,7 @@
 //! The evaluator over jets: the same tapes, with a truncated polynomial in every slot.
 
 use crate::jet::{JetScratch, JetSpace};
-use crate::tape::{Op, Operands, Tape};
+use crate::tape::{Op, Operands, Part, Tape};
 
 /// Memory of a program for one sample whose values are polynomials in the uncertain parameters.
 #[derive(Clone, Debug)]
@@ -51,7 +51,16 @@ impl<'s> JetMemory<'s> {
     pub fn run(&mut self, tape: &Tape) {
         let length = self.space.len();
         let Self { space, scratch, values, first, second } = self;
-        for (op, operands) in tape.runs() {
+        let mut place = 0;
+        while let Some(part) = tape.part(&mut place) {
+            let (op, operands) = match part {
+                Part::Run(op, operands) => (op, operands),
+                Part::Block(block) => {
+                    let condition = values[block.condition as usize * length];
+                    block.skip_unless(block.wants(condition), &mut place);
+                    continue;
+                }
+            };
             for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
                 let jet = |slot: u32| &values[slot as usize * length..][..length];
                 let (a, b, c) = (jet(operand.a), jet(operand.b), jet(operand.c));
@@ -60,6 +69,7 @@ impl<'s> JetMemory<'s> {
                     Op::MulAdd => space.mul_add(a, b, c, first),
                     Op::MulSub => space.mul_sub(a, b, c, first),
                     Op::NegMulAdd => space.sub_mul(a, b, c, first),
+                    Op::Select => first.copy_from_slice(if a[0] <= 0.0 { c } else { b }),
                     Op::Unary(function) => space.unary(function, a, first, scratch),
                     Op::Binary(function) => space.binary(function, a, b, first, scratch),
                     Op::SinCos => {

@@ -6,7 +6,7 @@
 use crate::expr::{Binary, Unary};
 use crate::scalar;
 use crate::sincos;
-use crate::tape::{Op, Operands, Tape};
+use crate::tape::{Block, Op, Operands, Part, Tape};
 use crate::vectorised::{InstructionSet, Vectorise};
 
 /// Widths that a tile can have.
@@ -125,7 +125,16 @@ impl<const W: usize, const C: usize> Vectorise for Interpretation<'_, W, C> {
 /// an operand.
 #[inline(always)]
 unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f64) {
-    for (op, operands) in tape.runs() {
+    let mut place = 0;
+    while let Some(part) = tape.part(&mut place) {
+        let (op, operands) = match part {
+            Part::Run(op, operands) => (op, operands),
+            Part::Block(block) => {
+                // SAFETY: the caller's.
+                block.skip_unless(unsafe { wanted::<W>(block, memory) }, &mut place);
+                continue;
+            }
+        };
         // SAFETY: the caller's.
         unsafe {
             match op {
@@ -136,6 +145,11 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
                 Op::Binary(Binary::Add) => each::<W, C, 3>(operands, memory, |a, b, _| a + b),
                 Op::Binary(Binary::Sub) => each::<W, C, 3>(operands, memory, |a, b, _| a - b),
                 Op::Binary(Binary::Mul) => each::<W, C, 3>(operands, memory, |a, b, _| a * b),
+                Op::Select => each::<W, C, 4>(operands, memory, scalar::select),
+                Op::Binary(Binary::Where) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::select(a, b, 0.0)),
+                Op::Binary(Binary::Elsewhere) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::select(a, 0.0, b)),
+                Op::Binary(Binary::Min) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::min(a, b)),
+                Op::Binary(Binary::Max) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::max(a, b)),
                 Op::Binary(Binary::Div) => each::<W, C, 3>(operands, memory, |a, b, _| a / b),
                 Op::Unary(Unary::Neg) => each::<W, C, 2>(operands, memory, |a, _, _| -a),
                 Op::Unary(Unary::Abs) => each::<W, C, 2>(operands, memory, |a, _, _| a.abs()),
@@ -172,6 +186,14 @@ unsafe fn each<const W: usize, const C: usize, const A: usize>(
             lane += C;
         }
     }
+}
+
+/// Whether any lane wants a block.
+#[inline(always)]
+unsafe fn wanted<const W: usize>(block: &Block, memory: *mut f64) -> bool {
+    // SAFETY: slots are in range (the caller's promise).
+    let condition = unsafe { memory.add(block.condition as usize * W).cast::<[f64; W]>().read() };
+    condition.iter().fold(false, |wanted, &condition| wanted | block.wants(condition))
 }
 
 /// `d = sin a`, `b = cos a` for each instruction and lane.

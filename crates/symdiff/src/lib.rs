@@ -3,6 +3,7 @@
 //! The way through: [`formula`] text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s →
 //! numbers in a [`Tile`]. The crate knows no mechanics.
 
+mod blocks;
 mod derivative;
 mod expr;
 pub mod formula;
@@ -15,8 +16,10 @@ mod model_memory;
 mod scalar;
 mod schedule;
 pub mod sincos;
+mod slots;
 mod spline;
 mod stages;
+mod steps;
 mod tape;
 pub mod taylor_model;
 mod vectorised;
@@ -28,8 +31,8 @@ pub use interval::Interval;
 pub use jet_memory::JetMemory;
 pub use lanes::{Tile, WIDTHS};
 pub use model_memory::ModelMemory;
-pub use schedule::{Lowered, Outputs, lower};
+pub use schedule::{Lowered, Outputs, lower, lower_where};
 pub use spline::{Spline, SplineError};
 pub use stages::{Input, Stages};
-pub use tape::{Op, Operands, Tape};
+pub use tape::{Guard, Op, Operands, Tape};
 pub use vectorised::{Vectorise, vectorised};

@@ -2,7 +2,7 @@
 
 use crate::expr::{Binary, Unary};
 use crate::interval::Interval;
-use crate::tape::{Op, Operands, Tape};
+use crate::tape::{Op, Operands, Part, Tape};
 use crate::taylor_model::{ModelScratch, ModelSpace};
 
 /// Memory of a program whose values are enclosed over a whole box of parameters.
@@ -47,7 +47,17 @@ impl<'s> ModelMemory<'s> {
     pub fn run(&mut self, tape: &Tape) {
         let size = self.space.size();
         let Self { space, scratch, values, first, second } = self;
-        for (op, operands) in tape.runs() {
+        let mut place = 0;
+        while let Some(part) = tape.part(&mut place) {
+            let (op, operands) = match part {
+                Part::Run(op, operands) => (op, operands),
+                Part::Block(block) => {
+                    // Undecided is neither.
+                    let sign = space.sign(&values[block.condition as usize * size..][..size]);
+                    block.skip_unless(sign.is_none_or(|sign| block.wants(sign)), &mut place);
+                    continue;
+                }
+            };
             for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
                 let model = |slot: u32| &values[slot as usize * size..][..size];
                 let (a, b, c) = (model(operand.a), model(operand.b), model(operand.c));
@@ -61,6 +71,10 @@ impl<'s> ModelMemory<'s> {
                             _ => space.sub(c, second, first),
                         }
                     }
+                    Op::Select => match space.sign(a) {
+                        Some(sign) => first.copy_from_slice(if sign <= 0.0 { c } else { b }),
+                        None => space.unknown(first),
+                    },
                     Op::Unary(Unary::Tan) => {
                         let mut cosine = vec![0.0; size];
                         space.sin_cos(a, second, &mut cosine, scratch);

@@ -36,7 +36,15 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
         Binary::Atan2 => libm::atan2(a, b),
         Binary::Min => min(a, b),
         Binary::Max => max(a, b),
+        Binary::Where => select(a, b, 0.0),
+        Binary::Elsewhere => select(a, 0.0, b),
     }
+}
+
+/// b where a is positive or not a number, else c.
+#[inline(always)]
+pub fn select(a: f64, b: f64, c: f64) -> f64 {
+    if a <= 0.0 { c } else { b }
 }
 
 /// −1, 0 or 1; unlike `f64::signum`, zero at zero. Not a number stays so.

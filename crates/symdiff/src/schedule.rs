@@ -6,13 +6,12 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::expr::{Binary, Expr, Graph, Node, Unary};
+use crate::blocks::Blocks;
+use crate::expr::{Binary, Choice, Expr, Graph, Node, Unary};
+use crate::slots::allocate;
 use crate::stages::{Input, Stages, UNKNOWN};
-use crate::tape::{Op, Operands, Tape};
-
-/// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit keeps what
-/// is alive within the first-level cache.
-const WINDOW: usize = 256;
+use crate::steps::{Pending, in_blocks};
+use crate::tape::{Guard, Op, Tape};
 
 /// What a kernel computes: expressions, each with the slot that it must end up in or `None` for any.
 pub type Outputs = Vec<(Expr, Option<u32>)>;
@@ -37,6 +36,21 @@ pub struct Lowered {
 /// # Panics
 /// If a kernel depends on a symbol that is not among `inputs`: a defect of the caller.
 pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kernels: &[Outputs]) -> Lowered {
+    lower_where(graph, inputs, shared, reserved, kernels, &FxHashMap::default())
+}
+
+/// The same, where some outputs (by their kernel) matter only under a guard: elsewhere they are anything.
+///
+/// # Panics
+/// As [`lower`].
+pub fn lower_where(
+    graph: &Graph,
+    inputs: &[Input],
+    shared: usize,
+    reserved: u32,
+    kernels: &[Outputs],
+    guards: &FxHashMap<(usize, Expr), Guard>,
+) -> Lowered {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
     let mut lowering = Lowering {
@@ -49,18 +63,22 @@ pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kern
     // From the last stage down: what a stage needs of the ones below is pinned there.
     let mut pinned: Vec<FxHashSet<Expr>> = vec![FxHashSet::default(); shared];
     let mut bodies = Vec::with_capacity(kernels.len());
-    for outputs in kernels {
-        let wanted: Vec<Expr> = outputs.iter().map(|&(expr, _)| expr).collect();
+    for (kernel, outputs) in kernels.iter().enumerate() {
+        let mut wanted: Vec<Expr> = outputs.iter().map(|&(expr, _)| expr).collect();
+        let conditions = wanted.iter().filter_map(|&expr| guards.get(&(kernel, expr))).map(|guard| guard.condition);
+        let conditions: FxHashSet<Expr> = conditions.collect();
+        wanted.extend(conditions);
         bodies.push(lowering.body(shared, &wanted, &mut pinned));
     }
     let mut stage_bodies = Vec::with_capacity(shared);
     for stage in (0..shared).rev() {
         let mut wanted: Vec<Expr> = pinned[stage].iter().copied().collect();
         wanted.sort_unstable();
-        stage_bodies.push(lowering.body(stage, &wanted, &mut pinned));
+        let body = lowering.body(stage, &wanted, &mut pinned);
         for &expr in &wanted {
             lowering.pin(expr);
         }
+        stage_bodies.push((body, wanted));
     }
     // All kept values have their slots now; every tape may use what lies above as scratch.
     let mut lowered = Lowered::default();
@@ -71,11 +89,12 @@ pub fn lower(graph: &Graph, inputs: &[Input], shared: usize, reserved: u32, kern
             |&(expr, slot): &(Expr, Option<u32>)| (expr, slot.unwrap_or_else(|| lowering.keep(expr, &replaced)));
         targets.push(outputs.iter().map(target).collect::<Vec<_>>());
     }
-    for body in stage_bodies.iter().rev() {
-        lowered.stages.push(lowering.emit(body, &[]));
+    for (body, wanted) in stage_bodies.iter().rev() {
+        lowered.stages.push(lowering.emit(body, wanted.iter().map(|&expr| (expr, None)), &[]));
     }
-    for (body, targets) in bodies.iter().zip(&targets) {
-        lowered.kernels.push(lowering.emit(body, targets));
+    for (kernel, (body, targets)) in bodies.iter().zip(&targets).enumerate() {
+        let wanted = targets.iter().map(|&(expr, _)| (expr, guards.get(&(kernel, expr)).copied()));
+        lowered.kernels.push(lowering.emit(body, wanted, targets));
         lowered.outputs.push(targets.iter().map(|&(_, slot)| slot).collect());
     }
     let highest = lowered.stages.iter().chain(&lowered.kernels).map(Tape::slots).max().unwrap_or(0);
@@ -156,15 +175,22 @@ impl Lowering<'_> {
         order
     }
 
-    /// One tape: fused, grouped, with slots.
-    fn emit(&self, body: &[Expr], targets: &[(Expr, u32)]) -> Tape {
+    /// One tape: fused, in blocks, grouped, with slots. `wanted` are the nodes that are used outside, some under a guard only.
+    fn emit(
+        &self,
+        body: &[Expr],
+        wanted: impl Iterator<Item = (Expr, Option<Guard>)>,
+        targets: &[(Expr, u32)],
+    ) -> Tape {
+        let blocks = Blocks::new(self.graph, body, wanted);
         let wanted: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
-        self.allocate(&group(self.fuse(body, &wanted)), targets)
+        let pending = self.fuse(body, &wanted, &blocks);
+        allocate(&in_blocks(pending, &blocks), targets, &self.slot_of, self.next)
     }
 
     /// Nodes → operations: a product that a single sum needs becomes part of it, and sine and cosine of one argument
     /// are found together.
-    fn fuse(&self, body: &[Expr], wanted: &FxHashSet<Expr>) -> Vec<Pending> {
+    fn fuse(&self, body: &[Expr], wanted: &FxHashSet<Expr>, blocks: &Blocks) -> Vec<Pending> {
         let inside: FxHashSet<Expr> = body.iter().copied().collect();
         let mut uses: FxHashMap<Expr, usize> = FxHashMap::default();
         let mut circular: FxHashMap<Expr, [Option<Expr>; 2]> = FxHashMap::default();
@@ -177,21 +203,38 @@ impl Lowering<'_> {
                 _ => {}
             }
         }
+        let only_here = |expr: Expr| {
+            inside.contains(&expr) && uses[&expr] == 1 && !wanted.contains(&expr) && !self.slot_of.contains_key(&expr)
+        };
         let product = |expr: Expr| match self.graph.node(expr) {
-            Node::Binary(Binary::Mul, a, b)
-                if inside.contains(&expr)
-                    && uses[&expr] == 1
-                    && !wanted.contains(&expr)
-                    && !self.slot_of.contains_key(&expr) =>
-            {
-                Some((a, b))
-            }
+            Node::Binary(Binary::Mul, a, b) if only_here(expr) => Some((a, b)),
             _ => None,
         };
         let mut absorbed = FxHashSet::default();
         let mut pending: Vec<Pending> = Vec::with_capacity(body.len());
         for &expr in body {
-            pending.push(match self.graph.node(expr) {
+            let block = blocks.of(expr);
+            if let Node::Binary(Binary::Add, x, y) = self.graph.node(expr)
+                && let Some(choice) = self.graph.choice(x, y)
+            {
+                let Choice { condition, halves: [(wanted, a), (elsewhere, b)] } = choice;
+                match blocks.inner(block, Guard { condition, elsewhere: false }) {
+                    // What holds elsewhere is put down first; the block, where it is not skipped, chooses.
+                    Some(inner) if only_here(wanted) && only_here(elsewhere) => {
+                        absorbed.extend([wanted, elsewhere]);
+                        pending.push(Pending::new(Op::Copy, [b; 3], 1, elsewhere).within(block));
+                        pending.push(Pending::new(Op::Select, [condition, a, elsewhere], 3, expr).within(inner));
+                    }
+                    _ => {
+                        // A half may be needed as such, or have been computed at an earlier stage.
+                        let [a, b] = choice.halves.map(|(half, value)| if only_here(half) { value } else { half });
+                        absorbed.extend([wanted, elsewhere].into_iter().filter(|&half| only_here(half)));
+                        pending.push(Pending::new(Op::Select, [condition, a, b], 3, expr).within(block));
+                    }
+                }
+                continue;
+            }
+            let instruction = match self.graph.node(expr) {
                 Node::Binary(function @ (Binary::Add | Binary::Sub), x, y) => match (product(x), product(y)) {
                     (_, Some((a, b))) => {
                         absorbed.insert(y);
@@ -207,175 +250,17 @@ impl Lowering<'_> {
                 },
                 Node::Binary(function, a, b) => Pending::new(Op::Binary(function), [a, b, a], 2, expr),
                 Node::Unary(Unary::Sin | Unary::Cos, a) => match circular.remove(&a) {
-                    Some(writes) => Pending { op: Op::SinCos, reads: [a; 3], count: 1, writes },
+                    Some(writes) => Pending { op: Op::SinCos, reads: [a; 3], count: 1, writes, block },
                     None => continue,
                 },
                 Node::Unary(function, a) => Pending::new(Op::Unary(function), [a; 3], 1, expr),
                 Node::Constant(_) | Node::Symbol(_) => continue,
-            });
+            };
+            pending.push(instruction.within(block));
         }
-        pending.retain(|pending| !pending.written().any(|expr| absorbed.contains(&expr)));
+        pending.retain(|pending| pending.op == Op::Copy || !pending.written().any(|expr| absorbed.contains(&expr)));
         pending
     }
-
-    /// Slots by linear scan: a scratch slot is free again after its value's last use. A target is written at once
-    /// unless this tape still reads what stands there; then it is copied at the end.
-    fn allocate(&self, pending: &[Pending], targets: &[(Expr, u32)]) -> Tape {
-        let mut last_use: FxHashMap<Expr, usize> = FxHashMap::default();
-        let mut read_slots: FxHashSet<u32> = FxHashSet::default();
-        for (place, instruction) in pending.iter().enumerate() {
-            for read in instruction.read() {
-                last_use.insert(read, place);
-                read_slots.extend(self.slot_of.get(&read));
-            }
-        }
-        read_slots.extend(targets.iter().filter_map(|(expr, _)| self.slot_of.get(expr)));
-        let computed: FxHashSet<Expr> = pending.iter().flat_map(Pending::written).collect();
-        let mut place_of: FxHashMap<Expr, u32> = FxHashMap::default();
-        let mut copies = Vec::new();
-        for &(expr, slot) in targets {
-            if computed.contains(&expr) && !read_slots.contains(&slot) && !place_of.contains_key(&expr) {
-                place_of.insert(expr, slot);
-            } else if self.slot_of.get(&expr) != Some(&slot) {
-                copies.push((expr, slot));
-                last_use.insert(expr, pending.len());
-            }
-        }
-        let mut free: Vec<u32> = Vec::new();
-        let mut next = self.next;
-        let mut instructions = Vec::with_capacity(pending.len() + copies.len());
-        for (place, instruction) in pending.iter().enumerate() {
-            let slot = |place_of: &FxHashMap<Expr, u32>, expr: Expr| {
-                *self
-                    .slot_of
-                    .get(&expr)
-                    .or_else(|| place_of.get(&expr))
-                    .expect("operands are computed before their use")
-            };
-            let [a, b, c] = instruction.reads.map(|read| slot(&place_of, read));
-            let already_free = free.len();
-            for read in instruction.read().filter(|read| last_use[read] == place) {
-                // An operand may stand there twice.
-                if let Some(&old) = place_of.get(&read)
-                    && old >= self.next
-                    && !free[already_free..].contains(&old)
-                {
-                    free.push(old);
-                }
-            }
-            let mut unused = None;
-            let mut destinations = instruction.writes.map(|write| match write {
-                Some(expr) => self.slot_of.get(&expr).or_else(|| place_of.get(&expr)).copied().unwrap_or_else(|| {
-                    let fresh = take(&mut free, &mut next);
-                    place_of.insert(expr, fresh);
-                    fresh
-                }),
-                None => u32::MAX,
-            });
-            if instruction.op == Op::SinCos {
-                for destination in &mut destinations {
-                    if *destination == u32::MAX {
-                        *destination = take(&mut free, &mut next);
-                        unused = Some(*destination);
-                    }
-                }
-            }
-            let [d, second] = destinations;
-            let b = if instruction.op == Op::SinCos { second } else { b };
-            instructions.push((instruction.op, Operands { a, b, c, d }));
-            free.extend(unused);
-        }
-        // All copies happen at once: what another copy overwrites is put aside first.
-        let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, slot)| slot).collect();
-        let copy = |from: u32, to: u32| (Op::Copy, Operands { a: from, b: from, c: from, d: to });
-        let mut last = Vec::with_capacity(copies.len());
-        for &(expr, slot) in &copies {
-            let kept = self.slot_of.get(&expr).or_else(|| place_of.get(&expr)).copied();
-            let mut source = kept.expect("an output is a symbol, a constant, kept, or computed here");
-            if overwritten.contains(&source) {
-                let aside = take(&mut free, &mut next);
-                instructions.push(copy(source, aside));
-                source = aside;
-            }
-            last.push(copy(source, slot));
-        }
-        instructions.extend(last);
-        Tape::new(instructions)
-    }
-}
-
-fn take(free: &mut Vec<u32>, next: &mut u32) -> u32 {
-    free.pop().unwrap_or_else(|| {
-        *next += 1;
-        *next - 1
-    })
-}
-
-/// An instruction before it has slots.
-#[derive(Clone, Debug)]
-struct Pending {
-    op: Op,
-    /// Operands; the first `count` count.
-    reads: [Expr; 3],
-    count: usize,
-    /// Result, and for `SinCos` the sine and the cosine, of which one may not be wanted.
-    writes: [Option<Expr>; 2],
-}
-
-impl Pending {
-    fn new(op: Op, reads: [Expr; 3], count: usize, write: Expr) -> Self {
-        Self { op, reads, count, writes: [Some(write), None] }
-    }
-
-    fn read(&self) -> impl Iterator<Item = Expr> {
-        self.reads.into_iter().take(self.count)
-    }
-
-    fn written(&self) -> impl Iterator<Item = Expr> + use<> {
-        self.writes.into_iter().flatten()
-    }
-}
-
-/// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always all of
-/// the operation that has most.
-fn group(pending: Vec<Pending>) -> Vec<Pending> {
-    let mut grouped = Vec::with_capacity(pending.len());
-    for window in pending.chunks(WINDOW) {
-        let writer: FxHashMap<Expr, usize> =
-            window.iter().enumerate().flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
-        let mut missing = vec![0_usize; window.len()];
-        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
-        for (place, instruction) in window.iter().enumerate() {
-            for producer in instruction.read().filter_map(|read| writer.get(&read)) {
-                missing[place] += 1;
-                readers[*producer].push(place);
-            }
-        }
-        let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
-        let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, place: usize| {
-            let op = window[place].op;
-            match ready.iter_mut().find(|(known, _)| *known == op) {
-                Some((_, places)) => places.push(place),
-                None => ready.push((op, vec![place])),
-            }
-        };
-        (0..window.len()).filter(|&place| missing[place] == 0).for_each(|place| enqueue(&mut ready, place));
-        while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
-            if ready[most].1.is_empty() {
-                break;
-            }
-            for place in std::mem::take(&mut ready[most].1) {
-                grouped.push(window[place].clone());
-                for &reader in &readers[place] {
-                    missing[reader] -= 1;
-                    if missing[reader] == 0 {
-                        enqueue(&mut ready, reader);
-                    }
-                }
-            }
-        }
-    }
-    grouped
 }
 
 #[cfg(test)]

@@ -1,6 +1,10 @@
-//! Tapes: straight-line programs of three-address instructions over slots.
+//! Tapes: programs of three-address instructions over slots, in one line but for blocks that may be skipped.
+//!
+//! What stands in a block only matters where a condition is positive (or only where it is not). A block is skipped where no
+//! sample of the memory wants it. That changes no result: what is read outside a block is chosen, sample by sample, by
+//! [`Op::Select`] and its kin, which take nothing of a block from a sample that does not want it.
 
-use crate::expr::{Binary, Unary};
+use crate::expr::{Binary, Expr, Unary};
 
 /// What an instruction does with the slots a, b, c.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,6 +21,8 @@ pub enum Op {
     MulSub,
     /// d = c − a·b, rounded twice.
     NegMulAdd,
+    /// d = b where a is positive or not a number, c elsewhere.
+    Select,
     /// d = sin a, b = cos a: `b` is written.
     SinCos,
 }
@@ -27,7 +33,7 @@ impl Op {
         match self {
             Self::Copy | Self::Unary(_) => 2,
             Self::Binary(_) | Self::SinCos => 3,
-            Self::MulAdd | Self::MulSub | Self::NegMulAdd => 4,
+            Self::MulAdd | Self::MulSub | Self::NegMulAdd | Self::Select => 4,
         }
     }
 }
@@ -52,19 +58,73 @@ impl Operands {
     }
 }
 
-/// Instructions of one operation that stand together: one dispatch serves them all.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Run {
-    op: Op,
-    /// Range of the tape's operands.
-    start: usize,
+/// When a value is wanted: where the condition is positive, or else where it is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Guard {
+    /// The condition.
+    pub condition: Expr,
+    /// Whether it is wanted where the condition is *not* positive.
+    pub elsewhere: bool,
+}
+
+/// A stretch of a tape that may be skipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Block {
+    /// Slot of the condition.
+    pub condition: u32,
+    elsewhere: bool,
+    /// Part of the tape that follows the block.
     end: usize,
 }
 
-/// A straight-line program. Every slot it names is below [`Tape::slots`], which is what the evaluators rely on.
+impl Block {
+    /// Whether a sample with this condition wants the block.
+    #[inline(always)]
+    pub fn wants(&self, condition: f64) -> bool {
+        (condition <= 0.0) == self.elsewhere
+    }
+
+    /// On to its end where nobody wants it.
+    #[inline(always)]
+    pub fn skip_unless(&self, wanted: bool, place: &mut usize) {
+        if !wanted {
+            *place = self.end;
+        }
+    }
+}
+
+/// Instructions of one operation that stand together (one dispatch serves them all), or the beginning of a block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Piece {
+    Run {
+        op: Op,
+        /// Range of the tape's operands.
+        start: usize,
+        end: usize,
+    },
+    Block(Block),
+}
+
+/// What an evaluator meets: instructions of one operation, [`Op::arity`] slots each, or the beginning of a block.
+pub(crate) enum Part<'t> {
+    Run(Op, &'t [u32]),
+    Block(&'t Block),
+}
+
+/// What a tape is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Item {
+    Do(Op, Operands),
+    /// A block begins; its condition's slot, and whether it is wanted elsewhere.
+    Enter(u32, bool),
+    /// The innermost block ends.
+    Leave,
+}
+
+/// A program. Every slot it names is below [`Tape::slots`], which is what the evaluators rely on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tape {
-    runs: Vec<Run>,
+    pieces: Vec<Piece>,
     /// Slots of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
     operands: Vec<u32>,
     instructions: usize,
@@ -72,19 +132,43 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// A tape of these instructions in this order.
-    pub fn new(instructions: impl IntoIterator<Item = (Op, Operands)>) -> Self {
+    /// A tape of these items in this order.
+    ///
+    /// # Panics
+    /// If a block ends that has not begun: a defect of the caller.
+    pub(crate) fn new(items: impl IntoIterator<Item = Item>) -> Self {
         let mut tape = Self::default();
-        for (op, Operands { a, b, c, d }) in instructions {
-            let start = tape.operands.len();
-            tape.operands.extend_from_slice(&[d, a, b, c][..op.arity()]);
-            tape.instructions += 1;
-            let end = tape.operands.len();
-            match tape.runs.last_mut() {
-                Some(run) if run.op == op => run.end = end,
-                _ => tape.runs.push(Run { op, start, end }),
+        let mut open = Vec::new();
+        let mut joined = false;
+        for item in items {
+            match item {
+                Item::Do(op, Operands { a, b, c, d }) => {
+                    let start = tape.operands.len();
+                    tape.operands.extend_from_slice(&[d, a, b, c][..op.arity()]);
+                    tape.instructions += 1;
+                    let end = tape.operands.len();
+                    match tape.pieces.last_mut() {
+                        Some(Piece::Run { op: last, end: last_end, .. }) if *last == op && joined => *last_end = end,
+                        _ => tape.pieces.push(Piece::Run { op, start, end }),
+                    }
+                    joined = true;
+                    tape.slots =
+                        tape.operands[start..].iter().fold(tape.slots, |slots, &slot| slots.max(slot as usize + 1));
+                }
+                Item::Enter(condition, elsewhere) => {
+                    open.push(tape.pieces.len());
+                    tape.pieces.push(Piece::Block(Block { condition, elsewhere, end: 0 }));
+                    tape.slots = tape.slots.max(condition as usize + 1);
+                }
+                Item::Leave => {
+                    let end = tape.pieces.len();
+                    let start = open.pop().expect("what ends has begun");
+                    if let Piece::Block(block) = &mut tape.pieces[start] {
+                        block.end = end;
+                    }
+                    joined = false;
+                }
             }
-            tape.slots = tape.operands[start..].iter().fold(tape.slots, |slots, &slot| slots.max(slot as usize + 1));
         }
         tape
     }
@@ -92,6 +176,18 @@ impl Tape {
     /// Number of instructions.
     pub fn len(&self) -> usize {
         self.instructions
+    }
+
+    /// Number of instructions that are run where all conditions are positive, or where none is.
+    pub fn len_where(&self, positive: bool) -> usize {
+        let (mut place, mut count) = (0, 0);
+        while let Some(part) = self.part(&mut place) {
+            match part {
+                Part::Run(op, operands) => count += operands.len() / op.arity(),
+                Part::Block(block) => block.skip_unless(block.wants(if positive { 1.0 } else { 0.0 }), &mut place),
+            }
+        }
+        count
     }
 
     /// Whether there is nothing to do.
@@ -104,8 +200,14 @@ impl Tape {
         self.slots
     }
 
-    /// The instructions, grouped: slots of all of a run, [`Op::arity`] each.
-    pub(crate) fn runs(&self) -> impl Iterator<Item = (Op, &[u32])> {
-        self.runs.iter().map(|run| (run.op, &self.operands[run.start..run.end]))
+    /// What stands at a place, which moves on to the next.
+    #[inline(always)]
+    pub(crate) fn part(&self, place: &mut usize) -> Option<Part<'_>> {
+        let piece = self.pieces.get(*place)?;
+        *place += 1;
+        Some(match piece {
+            Piece::Run { op, start, end } => Part::Run(*op, &self.operands[*start..*end]),
+            Piece::Block(block) => Part::Block(block),
+        })
     }
 }

@@ -303,12 +303,38 @@ impl ModelSpace {
             Binary::Sub => self.sub(a, b, out),
             Binary::Mul => self.mul(a, b, out),
             Binary::Div => self.div(a, b, out, scratch),
+            Binary::Where | Binary::Elsewhere => match self.sign(a) {
+                Some(sign) if (sign <= 0.0) == (function == Binary::Elsewhere) => out.copy_from_slice(b),
+                Some(_) => out.fill(0.0),
+                None => self.unknown(out),
+            },
+            Binary::Max => {
+                let (a, b) = (self.range(a), self.range(b));
+                self.constant(Interval::new(a.lower().max(b.lower()), a.upper().max(b.upper())), out);
+            }
             _ => self.unknown(out),
         }
     }
 
+    /// The sign of a model over the whole box, where it has one; zero counts as negative.
+    pub(crate) fn sign(&self, a: &[f64]) -> Option<f64> {
+        let range = self.range(a);
+        if range.upper() <= 0.0 { Some(-1.0) } else { (range.lower() > 0.0).then_some(1.0) }
+    }
+
+    /// Within which a model is over the box.
+    fn range(&self, a: &[f64]) -> Interval {
+        let (polynomial, _) = self.split(a);
+        let norms = self.norms(a);
+        if norms.tails[1] == 0.0 && norms.radius == 0.0 {
+            return Interval::point(polynomial[0]);
+        }
+        let spread = up(norms.tails[1] + norms.radius);
+        Interval::point(polynomial[0]) + Interval::new(-spread, spread)
+    }
+
     /// `out` = anything.
-    fn unknown(&self, out: &mut [f64]) {
+    pub(crate) fn unknown(&self, out: &mut [f64]) {
         self.constant(Interval::ENTIRE, out);
     }
 }
@@ -321,7 +347,10 @@ pub fn encloses(node: Node) -> bool {
             function,
             Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos | Unary::Tan
         ),
-        Node::Binary(function, ..) => matches!(function, Binary::Add | Binary::Sub | Binary::Mul | Binary::Div),
+        Node::Binary(function, ..) => matches!(
+            function,
+            Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Where | Binary::Elsewhere
+        ),
     }
 }
 

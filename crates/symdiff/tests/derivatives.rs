@@ -29,6 +29,8 @@ fn tree() -> impl Strategy<Value = Tree> {
         Binary::Atan2,
         Binary::Min,
         Binary::Max,
+        Binary::Where,
+        Binary::Elsewhere,
     ]);
     leaf.prop_recursive(4, 16, 2, move |inner| {
         let pair = (binary.clone(), inner.clone(), inner.clone());
@@ -83,6 +85,11 @@ fn build(graph: &mut Graph, variables: &[Expr], tree: &Tree) -> Expr {
                     let (a, b) = (inside(graph, a), positive(graph, b));
                     let one = graph.constant(1.0);
                     (a, graph.add(b, one))
+                }
+                Binary::Where => (positive(graph, a), b),
+                Binary::Elsewhere => {
+                    let a = positive(graph, a);
+                    (graph.neg(a), b)
                 }
                 Binary::Add | Binary::Sub | Binary::Mul => (a, b),
             };

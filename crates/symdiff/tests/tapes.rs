@@ -1,5 +1,5 @@
 //! Tapes against direct evaluation, bit for bit: random graphs with shared subexpressions, inputs of all stages, two
-//! kernels, results that replace inputs, every tile width.
+//! kernels, results that replace inputs, blocks that may be skipped, every tile width.
 
 use proptest::prelude::*;
 use symdiff::{Binary, Expr, Graph, Input, Tile, Unary, WIDTHS, lower};
@@ -14,6 +14,12 @@ enum Step {
     Constant(f64),
     Unary(Unary, usize),
     Binary(Binary, usize, usize),
+    /// Something longer that is only wanted under a condition; with something else elsewhere, or nothing.
+    Guarded {
+        condition: usize,
+        of: [usize; 2],
+        elsewhere: Option<usize>,
+    },
 }
 
 fn step() -> impl Strategy<Value = Step> {
@@ -22,12 +28,14 @@ fn step() -> impl Strategy<Value = Step> {
     // Sums and products most often: what is fused.
     let binary = prop_oneof![
         6 => prop::sample::select(vec![Binary::Add, Binary::Sub, Binary::Mul]),
-        1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max]),
+        1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max, Binary::Where, Binary::Elsewhere]),
     ];
+    let guarded = (any::<usize>(), any::<[usize; 2]>(), any::<Option<usize>>());
     prop_oneof![
         1 => (-2.0..2.0_f64).prop_map(Step::Constant),
         3 => (unary, any::<usize>()).prop_map(|(function, a)| Step::Unary(function, a)),
         8 => (binary, any::<usize>(), any::<usize>()).prop_map(|(function, a, b)| Step::Binary(function, a, b)),
+        3 => guarded.prop_map(|(condition, of, elsewhere)| Step::Guarded { condition, of, elsewhere }),
     ]
 }
 
@@ -39,6 +47,20 @@ fn build(graph: &mut Graph, steps: &[Step]) -> Vec<Expr> {
             Step::Constant(value) => graph.constant(value),
             Step::Unary(function, a) => graph.unary(function, nodes[a % nodes.len()]),
             Step::Binary(function, a, b) => graph.binary(function, nodes[a % nodes.len()], nodes[b % nodes.len()]),
+            Step::Guarded { condition, of, elsewhere } => {
+                let [condition, a, b] = [condition, of[0], of[1]].map(|node| nodes[node % nodes.len()]);
+                let mut long = a;
+                for round in 0..3 {
+                    let shifted = graph.constant(f64::from(round) - 0.5);
+                    let product = graph.mul(long, b);
+                    let sum = graph.add(product, shifted);
+                    long = graph.sin(sum);
+                }
+                match elsewhere {
+                    Some(elsewhere) => graph.select(condition, long, nodes[elsewhere % nodes.len()]),
+                    None => graph.only_where(condition, long),
+                }
+            }
         };
         nodes.push(node);
     }
@@ -48,6 +70,45 @@ fn build(graph: &mut Graph, steps: &[Step]) -> Vec<Expr> {
 /// The value of an input in a lane.
 fn value(input: usize, lane: usize, seed: f64) -> f64 {
     (seed + 0.7 * input as f64 + 0.31 * lane as f64).sin() * 3.0
+}
+
+/// What nobody in the tile asks for is not computed, and whoever asks gets the same bits.
+#[test]
+fn blocks_are_skipped_where_no_lane_wants_them() {
+    let mut g = Graph::new();
+    let (c, x, y) = (g.symbol("c"), g.symbol("x"), g.symbol("y"));
+    let base = g.add(x, y);
+    let mut long = base;
+    for _ in 0..10 {
+        let root = g.sqrt(long);
+        long = g.add(root, x);
+    }
+    let push = g.add(base, long);
+    let total = g.select(c, push, base);
+    let inputs = [(c, 0), (x, 1), (y, 2)].map(|(symbol, slot)| Input { symbol, stage: 0, slot });
+    let lowered = lower(&g, &inputs, 0, 3, &[vec![(total, Some(1))]]);
+    let tape = &lowered.kernels[0];
+    // Apart, the sum is all there is; it stands where the block would put its choice, and is copied to x at the end.
+    assert_eq!((tape.len_where(false), tape.len_where(true), tape.len()), (2, 24, 24), "{tape:?}");
+    for width in WIDTHS {
+        for touching in 0..=width.min(2) {
+            let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+            // What a block leaves behind may be anything.
+            tile.values_mut()[3 * width..].fill(f64::NAN);
+            lowered.constants.iter().for_each(|&(slot, value)| tile.lane_mut(slot as usize).fill(value));
+            let at = |lane: usize| [if lane < touching { 0.5 } else { -0.0 }, lane as f64 - 3.0, 1.0];
+            for lane in 0..width {
+                at(lane).into_iter().enumerate().for_each(|(slot, value)| tile.lane_mut(slot)[lane] = value);
+            }
+            tile.run(tape);
+            for lane in 0..width {
+                let values = at(lane);
+                let direct =
+                    g.evaluate(&[total], |symbol| values[[c, x, y].iter().position(|&s| s == symbol).unwrap()]);
+                assert!(same(tile.lane(1)[lane], direct[0]), "{lane} of {width}: {} {}", tile.lane(1)[lane], direct[0]);
+            }
+        }
+    }
 }
 
 /// Equal to the bit; all that is not a number counts as one.

@@ -6,10 +6,11 @@
 //! −τ on the second wheel, +ratio τ on the first
 //! ```
 //!
-//! p is the positive part with its corner rounded (`positive_part`): within the play nothing acts. The reactions of the
+//! p is the positive part with its corner rounded (`positive_part`): within the play nothing acts, and only x is
+//! computed. The reactions of the
 //! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid gear.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Expr, Graph, Unary};
 
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
@@ -40,6 +41,10 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -
     let half = g.scale(0.5, play);
     let (ahead, opposite) = (g.sub(place, half), g.neg(place));
     let behind = g.sub(opposite, half);
+    // |x| − b/2 + ε
+    let (far, inside) = (g.unary(Unary::Abs, place), g.sub(half, corner));
+    let bearing_at = g.sub(far, inside);
+    loads.only_where(bearing_at);
     let [ahead, behind] = [ahead, behind].map(|depth| PositivePart::of(g, depth, corner));
     let twist = g.sub(ahead.value, behind.value);
     let elastic = g.mul(stiffness, twist);
@@ -50,8 +55,10 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -
     let (back, forth) = (g.neg(torque), g.mul(ratio, torque));
     add_torque(g, m, loads, gear.between[0], forth)?;
     add_torque(g, m, loads, gear.between[1], back)?;
+    let torque = g.only_where(bearing_at, torque);
     let stored = g.add(ahead.integral, behind.integral);
     let potential = g.mul(stiffness, stored);
+    let potential = g.only_where(bearing_at, potential);
     loads.add_potential(g, m, &[stiffness, play, corner, ratio, offset], potential);
     for (measure, value) in [(Measure::Angle, place), (Measure::Rate, rate), (Measure::Torque, torque)] {
         loads.measure(measure, value);

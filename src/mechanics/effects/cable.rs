@@ -6,7 +6,7 @@
 //! ```
 //!
 //! p is the positive part with its corner rounded (`positive_part`): the cable becomes taut over ±ε of stretch. Slack, it
-//! does nothing. Points that coincide have no line between them.
+//! does nothing, and only its length is computed. Points that coincide have no line between them.
 
 use symdiff::Graph;
 
@@ -36,6 +36,8 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> 
     let relative = space::sub(g, b.velocity, a.velocity);
     let rate = space::dot(g, direction, relative);
     let stretch = g.sub(length, free);
+    let tight = g.add(stretch, corner);
+    loads.only_where(tight);
     let taut = PositivePart::of(g, stretch, corner);
     let elastic = g.mul(stiffness, taut.value);
     let felt = g.mul(damping, taut.slope);
@@ -44,7 +46,9 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> 
     let tension = clipped(g, tension);
     let pull = space::scale(g, tension, direction);
     loads.add_force_pair(g, &b, &a, pull);
+    let tension = g.only_where(tight, tension);
     let potential = g.mul(stiffness, taut.integral);
+    let potential = g.only_where(tight, potential);
     loads.add_potential(g, m, &[stiffness, free, corner], potential);
     for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
         loads.measure(measure, value);

@@ -11,7 +11,8 @@
 //! surface against the first. In space round surfaces are spheres, or cylinders with parallel axes where an axis is
 //! given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
 //! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. One round body in another, or two whose
-//! centres meet, is no contact that this can tell. Far apart the force and its slopes are exactly zero.
+//! centres meet, is no contact that this can tell. Apart the force and its slopes are exactly zero, and of a tile of samples that
+//! all are apart only the sign of the gap is computed: without a root, from squares.
 
 use symdiff::{Expr, Graph};
 
@@ -80,18 +81,31 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, contact: &Contact)
     Ok(())
 }
 
+/// Where two surfaces are to one another.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    /// How far they are apart, m.
+    gap: Expr,
+    /// The direction in which the second is pushed.
+    normal: Vector,
+    /// Positive where they overlap; as few operations as tell.
+    overlap: Expr,
+}
+
 impl Touch {
     /// Adds the forces.
     pub fn apply(&self, g: &mut Graph, m: &Mechanism, loads: &mut Loads) {
         let pair = Pair::of(g, m, self.between);
-        let (gap, normal) = self.gap(g, &pair);
+        let Gap { gap, normal, overlap } = self.gap(g, &pair);
         let inward = space::scale(g, self.radius, normal);
         let place = space::sub(g, pair.second.point.position, inward);
         let [first, second] = self.between.map(|point| m.carried_along(g, point.body, place));
         let velocity = space::sub(g, second.velocity, first.velocity);
         let parting = space::dot(g, normal, velocity);
         let (depth, approach) = (g.neg(gap), g.neg(parting));
+        loads.only_where(overlap);
         let push = self.impact.force(g, depth, approach);
+        let push = g.only_where(depth, push);
         let mut force = space::scale(g, push, normal);
         if let Some(friction) = &self.friction {
             let along = space::scale(g, parting, normal);
@@ -108,31 +122,35 @@ impl Touch {
                 let back = space::perpendicular(g, normal);
                 space::dot(g, back, drag)
             };
+            let felt = g.only_where(overlap, felt);
             loads.measure(Measure::Friction, felt);
         }
         loads.add_force_pair(g, &first, &second, force);
+        let push = g.only_where(overlap, push);
         let potential = self.impact.potential(g, depth);
+        let potential = g.only_where(depth, potential);
         loads.add_potential(g, m, &[self.impact.stiffness], potential);
         for (measure, value) in [(Measure::Gap, gap), (Measure::Rate, parting), (Measure::Force, push)] {
             loads.measure(measure, value);
         }
     }
 
-    /// How far the surfaces are apart, and the direction in which the second is pushed.
-    fn gap(&self, g: &mut Graph, pair: &Pair) -> (Expr, Vector) {
+    fn gap(&self, g: &mut Graph, pair: &Pair) -> Gap {
         let offset = pair.offset(g);
         match self.shape {
             Shape::Plane(normal) => {
                 let normal = pair.outward(g, normal);
                 let height = space::dot(g, normal, offset);
-                (g.sub(height, self.radius), normal)
+                let gap = g.sub(height, self.radius);
+                Gap { gap, normal, overlap: g.sub(self.radius, height) }
             }
             Shape::Round(outer) => {
                 let (across, square) = self.across(g, pair, offset);
                 let distance = g.sqrt(square);
                 let normal = across.map(|component| g.div(component, distance));
                 let together = g.add(outer, self.radius);
-                (g.sub(distance, together), normal)
+                let touching = g.mul(together, together);
+                Gap { gap: g.sub(distance, together), normal, overlap: g.sub(touching, square) }
             }
             Shape::Hollow(clearance) => {
                 let (across, square) = self.across(g, pair, offset);
@@ -141,7 +159,9 @@ impl Touch {
                 let smooth = g.add(square, centred);
                 let distance = g.sqrt(smooth);
                 let outward = across.map(|component| g.div(component, distance));
-                (g.sub(clearance, distance), space::neg(g, outward))
+                let touching = g.mul(clearance, clearance);
+                let (gap, overlap) = (g.sub(clearance, distance), g.sub(smooth, touching));
+                Gap { gap, normal: space::neg(g, outward), overlap }
             }
         }
     }

@@ -8,7 +8,8 @@
 //!
 //! e is the coefficient of restitution of an impact at the speed v. Hertz's n = 3/2 has a continuous slope where the
 //! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick: where
-//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its slope.
+//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its slope: the law is written for
+//! δ > 0 alone, and whoever uses it sees to it that it is asked for nowhere else.
 //!
 //! Whatever K and n, an impact at v ends with the speed e v of χ v − ln(1 + χ v) = −χ e v − ln(1 − χ e v) (Marhefka & Orin,
 //! IEEE Trans. Syst. Man Cybern. 29 (1999) 566). Both formulas for χ hold for e near 1: at e = 0.5, they leave 0.66 and 0.73.
@@ -20,9 +21,6 @@ use crate::mechanics::mechanism::{Context, Mechanism};
 use crate::model::{self, Loss, RestitutionLaw};
 
 use super::positive_part::clipped;
-
-/// Far below any depth, and far above the square of what divides by zero, m or rad.
-const LEAST_DEPTH: f64 = 1e-200;
 
 /// The law's numbers.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +52,7 @@ impl Impact {
         Ok(Self { stiffness, exponent: impact.exponent, dissipation })
     }
 
-    /// f, by δ and δ̇.
+    /// f, by δ > 0 and δ̇.
     pub fn force(&self, g: &mut Graph, depth: Expr, rate: Expr) -> Expr {
         let one = g.constant(1.0);
         let damping = g.mul(self.dissipation, rate);
@@ -65,25 +63,21 @@ impl Impact {
         g.mul(elastic, damping)
     }
 
-    /// V, by δ.
+    /// V, by δ > 0.
     pub fn potential(&self, g: &mut Graph, depth: Expr) -> Expr {
         let power = self.power(g, depth, self.exponent + 1.0);
         let product = g.mul(self.stiffness, power);
         g.scale(1.0 / (self.exponent + 1.0), product)
     }
 
-    /// ⟨δ⟩ to a power. Half powers are products with a root, which whole tiles take at once; the root's argument is kept above
-    /// zero, so that its slope is finite where the factor beside it is zero.
+    /// δ to a power. Half powers are products with a root, which whole tiles take at once.
     fn power(&self, g: &mut Graph, depth: Expr, exponent: f64) -> Expr {
-        let clipped = clipped(g, depth);
         let whole = exponent.floor();
         if exponent - whole == 0.5 {
-            let least = g.constant(LEAST_DEPTH);
-            let above = g.binary(Binary::Max, depth, least);
-            let (power, root) = (g.powi(clipped, whole as i32), g.sqrt(above));
+            let (power, root) = (g.powi(depth, whole as i32), g.sqrt(depth));
             return g.mul(power, root);
         }
         let exponent = g.constant(exponent);
-        g.binary(Binary::Pow, clipped, exponent)
+        g.binary(Binary::Pow, depth, exponent)
     }
 }

@@ -131,6 +131,10 @@ pub struct Loads {
     touched: BTreeSet<Target>,
     /// What was measured since then.
     measured: Vec<(Measure, Expr)>,
+    /// The condition of what is added now, if it has one.
+    guard: Option<Expr>,
+    /// What acts only where a condition is positive.
+    guarded: Vec<(Expr, Target, Expr)>,
 }
 
 impl Loads {
@@ -145,6 +149,8 @@ impl Loads {
             potentials,
             touched,
             measured: Vec::new(),
+            guard: None,
+            guarded: Vec::new(),
         }
     }
 
@@ -152,6 +158,37 @@ impl Loads {
     pub fn begin(&mut self) {
         self.touched.clear();
         self.measured.clear();
+        self.guard = None;
+    }
+
+    /// What the effect adds from now on acts only where `condition` is positive, whatever its expressions are elsewhere, and is
+    /// not computed where no sample of a tile needs it. It vanishes steadily as the condition does.
+    pub fn only_where(&mut self, condition: Expr) {
+        self.guard = Some(condition);
+    }
+
+    /// The conditions under which something acts.
+    pub fn conditions(&self) -> Vec<Expr> {
+        let mut conditions: Vec<Expr> = self.guarded.iter().map(|&(condition, ..)| condition).collect();
+        conditions.dedup();
+        conditions
+    }
+
+    /// All that acts, each under its condition.
+    pub fn with_guarded(&self, g: &mut Graph) -> Self {
+        let mut all = Self { guarded: Vec::new(), guard: None, ..self.clone() };
+        for &(condition, target, part) in &self.guarded {
+            let total = all.total(g, target);
+            let more = g.add(*total, part);
+            *total = g.select(condition, more, *total);
+        }
+        all
+    }
+
+    /// What acts under conditions alone.
+    pub fn guarded(&self, g: &mut Graph) -> Self {
+        let guarded = self.guarded.clone();
+        Self { guarded, ..Self::new(g, self.bodies.len()) }.with_guarded(g)
     }
 
     /// Something that the effect measures, for outputs.
@@ -335,21 +372,33 @@ impl Loads {
     /// Whether the joint's coordinate is one of its own, which the force then acts on.
     fn add_to_coordinate(&mut self, g: &mut Graph, m: &Mechanism, on: OnJoint, force: Expr) -> bool {
         let Some(&index) = m.joint_coordinates.get(&(on.joint, on.coordinate)) else { return false };
-        if !g.is_zero(force) {
-            let zero = g.constant(0.0);
-            let total = self.coordinates.entry(index).or_insert(zero);
-            *total = g.add(*total, force);
-            self.touched.insert(Target::Coordinate(index));
-        }
+        self.add_to(g, Target::Coordinate(index), force);
         true
     }
 
-    fn add(&mut self, g: &mut Graph, body: usize, component: usize, part: Expr) {
-        if !g.is_zero(part) {
-            let total = &mut self.bodies[body][component];
-            *total = g.add(*total, part);
-            self.touched.insert(Target::Body(body, component));
+    fn total(&mut self, g: &mut Graph, target: Target) -> &mut Expr {
+        match target {
+            Target::Body(body, component) => &mut self.bodies[body][component],
+            Target::Coordinate(index) => self.coordinates.entry(index).or_insert_with(|| g.constant(0.0)),
         }
+    }
+
+    fn add_to(&mut self, g: &mut Graph, target: Target, part: Expr) {
+        if g.is_zero(part) {
+            return;
+        }
+        self.touched.insert(target);
+        match self.guard {
+            Some(condition) => self.guarded.push((condition, target, part)),
+            None => {
+                let total = self.total(g, target);
+                *total = g.add(*total, part);
+            }
+        }
+    }
+
+    fn add(&mut self, g: &mut Graph, body: usize, component: usize, part: Expr) {
+        self.add_to(g, Target::Body(body, component), part);
     }
 
     /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the

@@ -6,7 +6,7 @@
 //!
 //! p has a continuous slope, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
 
-use symdiff::{Binary, Expr, Graph};
+use symdiff::{Expr, Graph};
 
 /// p, its slope and its integral.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +18,7 @@ pub struct PositivePart {
 
 /// max(x, 0).
 pub fn clipped(g: &mut Graph, x: Expr) -> Expr {
-    let zero = g.constant(0.0);
-    g.binary(Binary::Max, x, zero)
+    g.only_where(x, x)
 }
 
 impl PositivePart {

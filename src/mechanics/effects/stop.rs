@@ -4,9 +4,9 @@
 //! f = f(lower − s) − f(s − upper)          N or N m, on the joint's coordinate s; f is that of `impact`
 //! ```
 //!
-//! Between the stops nothing acts.
+//! Between the stops nothing acts, and nothing is computed but where s is.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Binary, Expr, Graph};
 
 use crate::mechanics::error::BuildError;
 use crate::mechanics::mechanism::{Context, Mechanism};
@@ -34,6 +34,7 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Re
         let lower = m.formula(g, lower, Context::Time)?;
         let depth = g.sub(lower, place);
         let force = impact.force(g, depth, back);
+        let force = g.only_where(depth, force);
         push = g.add(push, force);
         ends.push(depth);
     }
@@ -41,12 +42,17 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Re
         let upper = m.formula(g, upper, Context::Time)?;
         let depth = g.sub(place, upper);
         let force = impact.force(g, depth, rate);
+        let force = g.only_where(depth, force);
         push = g.sub(push, force);
         ends.push(depth);
+    }
+    if let Some(overlap) = ends.iter().copied().reduce(|a, b| g.binary(Binary::Max, a, b)) {
+        loads.only_where(overlap);
     }
     loads.add_joint_effort(g, m, on, push)?;
     for depth in ends {
         let potential = impact.potential(g, depth);
+        let potential = g.only_where(depth, potential);
         loads.add_potential(g, m, &[impact.stiffness], potential);
     }
     loads.measure(Measure::of_effort(on.coordinate), push);
