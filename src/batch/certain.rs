@@ -25,7 +25,7 @@ impl Study<'_> {
             let probes = Probes::of_course(&run, &nominal)?;
             if let Some(allowed) = self.request.tolerance {
                 let share = |output: usize| {
-                    let span = probes.direct.span(output);
+                    let span = probes.spans[output];
                     let error = largest(probes.time_error(output, schedule.rows));
                     if span > 0.0 { error / (allowed * span) } else { 0.0 }
                 };

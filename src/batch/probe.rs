@@ -60,6 +60,14 @@ impl Table {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| (lower.min(value), upper.max(value)));
         if upper - lower < least { 0.0 } else { (upper - lower).max(0.0) }
     }
+
+    /// That of every output, with the least that is told from rounding.
+    fn spans(&self, run: &Run) -> Vec<f64> {
+        let system = &run.study.simulator.system;
+        let duration = run.schedule.output_step * run.schedule.rows as f64;
+        let least = |unit: &str| least_range(unit, system.length, duration);
+        system.outputs.iter().enumerate().map(|(index, output)| self.span(index, least(&output.unit))).collect()
+    }
 }
 
 /// The probes of one box under one schedule.
@@ -114,11 +122,7 @@ impl Probes {
         };
         let solves = points.len() + halved;
         let summary = run.method_summary("probes", solves, counters, done.stop_place(), begun);
-        let system = &run.study.simulator.system;
-        let duration = run.schedule.output_step * run.schedule.rows as f64;
-        let least = |unit: &str| least_range(unit, system.length, duration);
-        let spans = system.outputs.iter().enumerate().map(|(index, output)| direct.span(index, least(&output.unit)));
-        let spans = spans.collect();
+        let spans = direct.spans(run);
         Ok(Self { points, direct, halved: fine, solves, done, summary, spans })
     }
 
@@ -138,7 +142,8 @@ impl Probes {
         let stop = course.stop.as_ref().map(|(stop, _)| stop);
         let summary = run.method_summary("probes", points.len(), done.counters, stop, begun);
         let solves = points.len();
-        Ok(Self { points, direct, halved, solves, done: FleetRun::default(), summary })
+        let spans = direct.spans(run);
+        Ok(Self { points, direct, halved, solves, done: FleetRun::default(), summary, spans })
     }
 
     /// The time steps' error of an output in each row, as if its range were that of the probes.

@@ -82,7 +82,7 @@ impl Explanation {
                 Some(known) => {
                     known.forces += effect.forces;
                     known.expressions += effect.expressions;
-                    known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| ours.and(&theirs));
+                    known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| ours.and(theirs));
                 }
                 None => self.effects.push(effect),
             }

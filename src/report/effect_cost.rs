@@ -38,6 +38,18 @@ impl StepInstructions {
     }
 }
 
+impl std::ops::Add for StepInstructions {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            step: self.step + other.step,
+            factor: self.factor + other.factor,
+            iteration: self.iteration + other.iteration,
+        }
+    }
+}
+
 /// What one effect adds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EffectCost {
@@ -45,4 +57,14 @@ pub struct EffectCost {
     pub acting: StepInstructions,
     /// Where it and its like touch nothing in any sample of a tile; absent where it always acts.
     pub apart: Option<StepInstructions>,
+}
+
+impl EffectCost {
+    /// In two programs.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let apart = |cost: &Self| cost.apart.unwrap_or(cost.acting);
+        let sometimes = self.apart.is_some() || other.apart.is_some();
+        Self { acting: self.acting + other.acting, apart: sometimes.then(|| apart(&self) + apart(&other)) }
+    }
 }
