@@ -14,7 +14,7 @@ const MOST_INSTRUCTIONS: usize = 3_000_000;
 /// The mechanism in which effects are compared. Every number is certain, so what is counted depends on the motion.
 const MECHANISM: &str = "
 bodies:
-  arm: { mass: 2, inertia: 0.04, points: { pin: [-0.2, 0], tip: [0.2, 0] } }
+  arm: { mass: 2, inertia: 0.04, points: { pin: [-0.2, 0], tip: [0.2, 0], socket: [0.3, 2] } }
   cart: { mass: 3, inertia: 0.1, points: { hook: [0.1, 0.1] } }
   ball: { mass: 0.5, inertia: 0.002 }
   pinion: { inertia: 0.01, coordinates: [angle] }
@@ -22,7 +22,7 @@ bodies:
 joints:
   hinge: { revolute: [ground, arm.pin] }
   rail: { prismatic: { between: [ground, cart], axis: x } }
-initial: { arm.angle: 0.3, cart.x: 1, ball.x: 0.5, ball.y: 2, ball.angle: 0, pinion.angle: 0, wheel.angle: 0 }
+initial: { arm.angle: 0, cart.x: 1, ball.x: 0.5, ball.y: 2, ball.angle: 0, pinion.angle: 0, wheel.angle: 0 }
 outputs: { x: cart.x }
 simulation: { duration: 0.1, step: 1e-3, formulation: absolute }
 ";
@@ -47,11 +47,11 @@ const EXAMPLES: [(&str, &str); 16] = [
     ),
     (
         "clearance_joint",
-        "{ between: [arm.tip, ball], clearance: 0.1 mm, radius: 10 mm, impact: { stiffness: 1e9, dissipation: 0.5 } }",
+        "{ between: [arm.socket, ball], clearance: 0.1 mm, radius: 10 mm, impact: { stiffness: 1e9, dissipation: 0.5 } }",
     ),
     ("servo", "{ on: hinge, target: 0.5*sin(2*t), proportional: 200, derivative: 8, limit: 30 N*m }"),
     ("drag", "{ on: ball, density: 1.2 kg/m^3, drag_coefficient: 0.47, area: 0.03 m^2, wind: [5, 0] }"),
-    ("cable", "{ between: [arm.tip, cart.hook], free_length: 0.6, stiffness: 1e4, damping: 10 }"),
+    ("cable", "{ between: [arm.tip, cart.hook], free_length: 0.8, stiffness: 1e4, damping: 10 }"),
     ("backlash", "{ between: [pinion, wheel], ratio: -0.5, backlash: 0.2 deg, stiffness: 2e3, damping: 0.5 }"),
     ("preload", "{ between: [arm.tip, cart.hook], value: 15 N }"),
     (

@@ -2,7 +2,7 @@
 
 use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower_where};
 
-use super::elimination::{Choice, Elimination, is_worth_it};
+use super::elimination::{Choice, Elimination, Version, is_worth_it};
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::scheme::{Coefficients, Scheme};
@@ -167,24 +167,25 @@ pub fn compile(
     let numbers = probe_numbers(&graph, &newton.matrix, &inputs, probes);
     let mut heavy = vec![false; n];
     system.mass.iter().filter(|(row, column, _)| row == column).for_each(|&(row, _, _)| heavy[row] = true);
-    let equilibration = equilibrate(&newton, &numbers, &heavy);
-
     let blocks = mass_blocks(system);
     let symmetric = Pivoting::Symmetric { heavy: &heavy, blocks: &blocks };
-    let choice = Choice { redundant, equilibration: &equilibration, symmetric, spatial: system.space.spatial, n };
+    let choice = Choice { redundant, symmetric, spatial: system.space.spatial, n };
+    let factorised = |graph: &mut Graph, matrix: &SparseMatrix, numbers: &[Numbers]| {
+        choice.factorise(graph, matrix, numbers, equilibrate(matrix, numbers, &heavy), &inputs)
+    };
     let versions = versions(&mut graph, &newton, &numbers, &inputs).and_then(|[all, apart]| {
         let apart_numbers = probe_numbers(&graph, &apart.0, &inputs, probes);
         // Where elimination needs what touches, there is no other version.
-        let all = choice.factorise(&mut graph, &all.0, &all.1, &inputs).ok()?;
-        let apart = choice.factorise(&mut graph, &apart.0, &apart_numbers, &inputs).ok()?;
+        let all = factorised(&mut graph, &all.0, &all.1).ok()?;
+        let apart = factorised(&mut graph, &apart.0, &apart_numbers).ok()?;
         is_worth_it(&graph, &inputs, &all, &apart).then_some((all, apart))
     });
-    let (factors, apart) = match (versions, newton.touching) {
+    let (all, apart) = match (versions, newton.touching) {
         (Some((all, apart)), Some(touching)) => (all, Some((touching, apart))),
-        _ => (choice.factorise(&mut graph, &newton.matrix, &numbers, &inputs)?, None),
+        _ => (factorised(&mut graph, &newton.matrix, &numbers)?, None),
     };
     let mut next = layout.slots() as u32;
-    let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, &equilibration, factors, apart);
+    let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, all, apart);
 
     let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
     let correction = elimination.solve(&mut graph, &opposite);
@@ -205,7 +206,7 @@ pub fn compile(
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
 
     let estimate = at(&moving[..n], layout.correction.start);
-    let Elimination { frozen, guards, watched, factors, .. } = elimination;
+    let Elimination { frozen, guards, watched, all: Version { factors, equilibration }, .. } = elimination;
     let guards = guards.into_iter().map(|(value, guard)| ((FACTOR, value), guard)).collect();
     let kernels = [frozen, correct, advance, observe, matrix, estimate];
     let lowered = lower_where(&graph, &inputs, ITERATION, next, &kernels, &guards);
@@ -286,13 +287,12 @@ fn probe_numbers(graph: &Graph, matrix: &SparseMatrix, inputs: &[Input], probes:
 /// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints. A
 /// coordinate without inertia (`heavy` says which have some) is scaled by the constraints that define it instead, and
 /// constraints between such coordinates after those.
-fn equilibrate(newton: &NewtonSystem, numbers: &[Numbers], heavy: &[bool]) -> Vec<f64> {
+fn equilibrate(matrix: &SparseMatrix, numbers: &[Numbers], heavy: &[bool]) -> Vec<f64> {
     let n = heavy.len();
-    let mut scale = vec![1.0; newton.matrix.rows.len()];
+    let mut scale = vec![1.0; matrix.rows.len()];
     // At the start alone a row of Φ may vanish: then it is singular.
     let size = |numbers: &Numbers| numbers.iter().fold(0.0_f64, |largest, number| largest.max(number.abs()));
-    let entries =
-        || newton.matrix.entries().zip(numbers).map(|((row, column, _), numbers)| (row, column, size(numbers)));
+    let entries = || matrix.entries().zip(numbers).map(|((row, column, _), numbers)| (row, column, size(numbers)));
     for (row, column, size) in entries() {
         if row == column && row < n && heavy[row] && size > 0.0 {
             scale[row] = 1.0 / size.sqrt();

@@ -33,8 +33,6 @@ const WORTH_A_VERSION: f64 = 0.8;
 pub(super) struct Choice<'a> {
     /// Constraints that others imply.
     pub redundant: &'a [usize],
-    /// Scaling of rows and columns.
-    pub equilibration: &'a [f64],
     /// Pivots that cannot vanish.
     pub symmetric: Pivoting<'a>,
     /// Whether only these will do.
@@ -43,19 +41,27 @@ pub(super) struct Choice<'a> {
     pub n: usize,
 }
 
+/// A matrix's factors, with the scaling of its rows and columns by which pivots were compared.
+#[derive(Clone, Debug)]
+pub(super) struct Version {
+    pub factors: Factors,
+    pub equilibration: Vec<f64>,
+}
+
 impl Choice<'_> {
-    /// Factorises the Newton matrix, whose entries have these numbers at the probes.
+    /// Factorises a Newton matrix, whose entries have these numbers at the probes.
     pub fn factorise(
         &self,
         graph: &mut Graph,
         matrix: &SparseMatrix,
         numbers: &[Numbers],
+        equilibration: Vec<f64>,
         inputs: &[Input],
-    ) -> Result<Factors, Singular> {
-        let (regular, numbers) = self.regularised(graph, matrix, numbers);
+    ) -> Result<Version, Singular> {
+        let (regular, numbers) = self.regularised(graph, matrix, numbers, &equilibration);
         let plan = |graph: &mut Graph, pivoting: Pivoting| {
             let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
-                factorise(graph, &regular, numbers, self.equilibration, Stages::new(inputs), ITERATION, pivoting)
+                factorise(graph, &regular, numbers, &equilibration, Stages::new(inputs), ITERATION, pivoting)
             };
             // A start in a singular configuration has no pivots of its own: then states in general position decide.
             factorised(graph, &numbers).or_else(|_| {
@@ -64,11 +70,12 @@ impl Choice<'_> {
                 factorised(graph, &apart)
             })
         };
-        match plan(graph, if self.spatial { self.symmetric } else { Pivoting::Any }) {
+        let factors = match plan(graph, if self.spatial { self.symmetric } else { Pivoting::Any }) {
             Ok(factors) if factors.growth <= MOST_GROWTH || self.spatial => Ok(factors),
             // In a long chain free choice hands errors on from body to body, each time larger.
             free => plan(graph, self.symmetric).or(free),
-        }
+        }?;
+        Ok(Version { factors, equilibration })
     }
 
     /// A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.
@@ -77,11 +84,12 @@ impl Choice<'_> {
         graph: &mut Graph,
         matrix: &SparseMatrix,
         numbers: &[Numbers],
+        equilibration: &[f64],
     ) -> (SparseMatrix, Vec<Numbers>) {
         let (mut regular, mut numbers) = (matrix.clone(), numbers.to_vec());
         for &constraint in self.redundant {
             let row = self.n + constraint;
-            let weight = REDUNDANT_WEIGHT / (self.equilibration[row] * self.equilibration[row]);
+            let weight = REDUNDANT_WEIGHT / (equilibration[row] * equilibration[row]);
             let place = matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
             let offset = regular.nonzeros() - matrix.nonzeros();
             let value = graph.constant(-weight);
@@ -105,7 +113,7 @@ pub(super) struct Elimination {
     /// Pivots that can become small.
     pub watched: Vec<Watched>,
     /// The matrix's factors; where there are two versions, where something touches.
-    pub factors: Factors,
+    pub all: Version,
     /// Over frozen values.
     substituted: Factors,
     /// What decides, frozen too, and the factors where nothing touches.
@@ -113,34 +121,33 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Freezes `factors`, and with what tells them apart (which the iteration changes) those of where nothing touches. Slots are taken from `next` on.
+    /// Freezes factors, and with what tells them apart (which the iteration changes) those of where nothing touches. Slots are taken from `next` on.
     pub fn new(
         graph: &mut Graph,
         inputs: &mut Vec<Input>,
         next: &mut u32,
-        equilibration: &[f64],
-        factors: Factors,
-        apart: Option<(Expr, Factors)>,
+        all: Version,
+        apart: Option<(Expr, Version)>,
     ) -> Self {
         let mut freezer = Freezer::new(graph, inputs, next);
         let Some((touching, apart)) = apart else {
-            let substituted = freezer.freeze(&factors, None);
-            let watched = vec![Watched { mode: None, pivots: freezer.watch(&factors, equilibration) }];
+            let substituted = freezer.freeze(&all.factors, None);
+            let watched = vec![Watched { mode: None, pivots: freezer.watch(&all) }];
             let Freezer { frozen, guards, .. } = freezer;
-            return Self { frozen, guards, watched, factors, substituted, apart: None };
+            return Self { frozen, guards, watched, all, substituted, apart: None };
         };
         let guards = [false, true].map(|elsewhere| Guard { condition: touching, elsewhere });
-        let substituted = freezer.freeze(&factors, Some(guards[0]));
-        let apart_substituted = freezer.freeze(&apart, Some(guards[1]));
+        let substituted = freezer.freeze(&all.factors, Some(guards[0]));
+        let apart_substituted = freezer.freeze(&apart.factors, Some(guards[1]));
         let mode = freezer.frozen_value(touching);
         let (_, slot) = freezer.symbol_of[&touching];
-        let watched = [(&factors, false), (&apart, true)].map(|(factors, elsewhere)| {
+        let watched = [(&all, false), (&apart, true)].map(|(version, elsewhere)| {
             let mode = Some(Mode { slot: slot as usize, elsewhere });
-            Watched { mode, pivots: freezer.watch(factors, equilibration) }
+            Watched { mode, pivots: freezer.watch(version) }
         });
         let watched = watched.into();
         let Freezer { frozen, guards, .. } = freezer;
-        Self { frozen, guards, watched, factors, substituted, apart: Some((mode, apart_substituted)) }
+        Self { frozen, guards, watched, all, substituted, apart: Some((mode, apart_substituted)) }
     }
 
     /// The solution of matrix · x = `right`.
@@ -157,11 +164,11 @@ impl Elimination {
 }
 
 /// Whether a version of its own is worth it where nothing touches.
-pub(super) fn is_worth_it(graph: &Graph, inputs: &[Input], all: &Factors, apart: &Factors) -> bool {
+pub(super) fn is_worth_it(graph: &Graph, inputs: &[Input], all: &Version, apart: &Version) -> bool {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
-    let [all, apart] = [all, apart].map(|factors| {
-        let values: Vec<Expr> = factors.values().collect();
+    let [all, apart] = [all, apart].map(|version| {
+        let values: Vec<Expr> = version.factors.values().collect();
         let changing = graph.reachable(&values).into_iter().filter(|&expr| stages.of(expr) == Some(ITERATION)).count();
         // A solution takes an operation for each value, whether it changes or not.
         (changing + values.len()) as f64
@@ -224,7 +231,8 @@ impl<'g> Freezer<'g> {
     }
 
     /// Pivots that can change.
-    fn watch(&mut self, factors: &Factors, equilibration: &[f64]) -> Vec<WatchedPivot> {
+    fn watch(&self, version: &Version) -> Vec<WatchedPivot> {
+        let Version { factors, equilibration } = version;
         let mut watched = Vec::new();
         for pivot in &factors.pivots {
             if let Some(&(_, slot)) = self.symbol_of.get(&pivot.inverse) {

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
-use mbint::batch::prepare;
+use mbint::batch::{self, Options, prepare};
 use mbint::integrate::{Simulator, Stepper};
 use mbint::model::Description;
+use mbint::report::bounds_csv;
 use symdiff::Tape;
 
-use super::common::{Vary, read};
+use super::common::{Vary, read, run};
 
 const STEP: f64 = 1e-3;
 
@@ -54,6 +55,19 @@ fn a_far_contact_is_its_gap() {
         assert!(all > instructions(&bare, true) + 30 * count, "{count}: {all}");
         assert!(apart <= instructions(&bare, true) + 8 + 10 * count, "{count}: {apart}");
         before = apart;
+    }
+}
+
+/// Numbers of samples, jets of parameters and closures alike: what is far changes nothing but the last digits.
+#[test]
+fn far_contacts_leave_every_method_as_it_was() {
+    let [bare, far] = [0, 3].map(|count| run(&floors(count).duration(0.3)));
+    assert!(bare.outputs[0].bands.len() >= 3);
+    for (a, b) in bare.outputs[0].bands.iter().zip(&far.outputs[0].bands) {
+        assert_eq!(a.method, b.method);
+        for (a, b) in a.lower.iter().chain(&a.upper).zip(b.lower.iter().chain(&b.upper)) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
     }
 }
 
@@ -133,6 +147,12 @@ bounds: {{ scan: {{ points: 5 }} }}
     let balls = read(&text(
         "x: ball.x, rim: leash.force, ends: ends.force, met: meeting.force, energy: energy, push: floor.force",
     ));
+    let runs = [1, 2, 7].map(|threads| {
+        let options = Options { threads: Some(threads), ..Options::default() };
+        let (bounds, _) = batch::run(&balls.clone().duration(0.6).scan(37), options).unwrap();
+        bounds_csv(&bounds).unwrap()
+    });
+    assert!(runs[0] == runs[1] && runs[0] == runs[2], "results depend on the number of threads");
     for (description, steps) in [(crank.observing(&["slider.x", "buffer.force"]), 700), (balls, 900)] {
         for width in [4, 32] {
             let (mixed, touched) = agrees_with_samples_alone(&description, width, steps);

@@ -36,7 +36,11 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> 
     let relative = space::sub(g, b.velocity, a.velocity);
     let rate = space::dot(g, direction, relative);
     let stretch = g.sub(length, free);
-    let tight = g.add(stretch, corner);
+    // ℓ > ℓ₀ − ε, told by squares.
+    let slack = g.sub(free, corner);
+    let slack = clipped(g, slack);
+    let (square, reach) = (space::dot(g, line, line), g.mul(slack, slack));
+    let tight = g.sub(square, reach);
     loads.only_where(tight);
     let taut = PositivePart::of(g, stretch, corner);
     let elastic = g.mul(stiffness, taut.value);
