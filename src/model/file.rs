@@ -278,7 +278,7 @@ grammar! {
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Functions given by their values: in formulas, `NAME(t)`.
         tables: Option<IndexMap<String, Table>>,
-        /// Rigid bodies. `ground` is there already, and may be given points.
+        /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What holds the bodies together.
         joints: Option<IndexMap<String, Joint>>,

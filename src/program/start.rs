@@ -120,10 +120,10 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let (motion, slopes) = equations_of_motion(system, &mut graph);
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
-    let closure = with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.position);
-    let motion_of_closure =
-        with_conditions(system, &mut graph, &slopes, &system.constraint, |condition| condition.velocity);
-    let rates = time_derivative(system, &mut graph, &motion_of_closure.0);
+    let (further, place_slopes) = with_conditions(system, &mut graph, &slopes, |condition| condition.position);
+    let closure = [&system.constraint[..], &further].concat();
+    let (further, motion_slopes) = with_conditions(system, &mut graph, &slopes, |condition| condition.velocity);
+    let rates = [rate, time_derivative(system, &mut graph, &further)].concat();
 
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, probe };
     let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
@@ -132,11 +132,10 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
     let zero = vec![builder.graph.constant(0.0); system.q.len()];
     let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
-    let (closure, slopes_of_closure) = closure;
     let position =
-        builder.correction(&diagonal, &none, &slopes_of_closure, &kept(&system.start.position), &zero, &closure)?;
+        builder.correction(&diagonal, &none, &place_slopes, &kept(&system.start.position), &zero, &closure)?;
     let velocity =
-        builder.correction(&diagonal, &none, &motion_of_closure.1, &kept(&system.start.velocity), &zero, &rates)?;
+        builder.correction(&diagonal, &none, &motion_slopes, &kept(&system.start.velocity), &zero, &rates)?;
     let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
     let (mass, motion) = builder.with_defined_coordinates(&slopes, motion, &rate_of_rate);
     let free = vec![false; system.q.len()];
@@ -199,19 +198,18 @@ pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     inputs
 }
 
-/// Φ and Φ_q with the conditions of some kind below them.
+/// The conditions of some kind, and Φ_q with theirs below it.
 fn with_conditions(
     system: &System,
     graph: &mut Graph,
     slopes: &SparseMatrix,
-    constraint: &[Expr],
     kind: impl Fn(&StartCondition) -> bool,
 ) -> (Vec<Expr>, SparseMatrix) {
-    let further: Vec<Expr> =
-        system.start.conditions.iter().filter(|condition| kind(condition)).map(|condition| condition.value).collect();
+    let conditions = system.start.conditions.iter().filter(|condition| kind(condition));
+    let values: Vec<Expr> = conditions.map(|condition| condition.value).collect();
     let mut all = slopes.clone();
-    all.rows.extend(graph.jacobian(&further, &system.q).rows);
-    (constraint.iter().copied().chain(further).collect(), all)
+    all.rows.extend(graph.jacobian(&values, &system.q).rows);
+    (values, all)
 }
 
 struct Builder<'s> {

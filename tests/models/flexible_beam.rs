@@ -397,3 +397,45 @@ fn a_beam_has_absolute_coordinates() {
     let failure = mechanics::build(&description).unwrap_err().to_string();
     assert!(failure.contains("beam `rod` bends"), "{failure}");
 }
+
+/// A slider crank whose rod hardly bends is the one of rigid bodies, motor torque included; the harder, the nearer.
+#[test]
+fn a_stiff_rod_moves_as_a_rigid_one() {
+    let slider_crank = |rod: &str, [start, end]: [&str; 2]| {
+        nominal(&read(&format!(
+            "
+bodies:
+  crank: {{ mass: 0.36, inertia: 6.75e-4, points: {{ A: [-0.075, 0], B: [0.075, 0] }} }}
+  rod: {rod}
+  slider: {{ mass: 0.075, coordinates: [x] }}
+joints:
+  pivot: {{ revolute: [ground, crank.A] }}
+  pin: {{ revolute: [crank.B, rod.{start}] }}
+  wrist: {{ revolute: [rod.{end}, slider] }}
+  drive: {{ motor: {{ on: pivot, speed: 30 }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+outputs: {{ x: slider.x, torque: drive.torque, energy: energy }}
+simulation: {{ duration: 0.4, step: 1e-4, output_step: 1e-3 }}
+"
+        )))
+    };
+    let points = "{ B: [-0.15, 0], C: [0.15, 0] }";
+    let rigid = slider_crank(&format!("{{ mass: 0.066, inertia: 0.066*0.09/12, points: {points} }}"), ["B", "C"]);
+    let errors = [1e2, 1e3].map(|bending: f64| {
+        let beam = format!(
+            "{{ beam: {{ length: 0.3, mass_per_length: 0.22, axial_stiffness: {:e}, bending_stiffness: {bending}, damping: 1e-4, elements: 2 }} }}",
+            1e5 * bending
+        );
+        let bends = slider_crank(&beam, ["start", "end"]);
+        // Once the start's jump has died away.
+        let off = |name: &str| {
+            let pairs = curve(&bends, name)[50..].iter().zip(&curve(&rigid, name)[50..]);
+            largest(pairs.map(|(bends, rigid)| bends - rigid)) / largest(curve(&rigid, name)[50..].iter().copied())
+        };
+        ["x", "torque", "energy"].map(off)
+    });
+    println!("off by {errors:?}");
+    for (soft, hard) in errors[0].iter().zip(errors[1]) {
+        assert!(hard < 1e-4 && (hard / soft - 0.1).abs() < 0.01, "{errors:?}");
+    }
+}
