@@ -67,61 +67,29 @@ impl Reduction {
         let welds = if choices.merge { welds::merge(&mut whole) } else { Vec::new() };
         let mut couplings = Couplings::of(&whole);
         let movable = couplings.movable();
-        let bodies: Vec<Part> = movable.iter().copied().filter(|part| matches!(part, Part::Body(_))).collect();
-        if bodies.is_empty() && choices.merge {
+        if choices.merge && !movable.iter().any(is_body) {
             // Something has to have coordinates.
             return Self::of(description, Choices { merge: false, ..choices });
         }
-        let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
-        let mut needed: Vec<Part> = Vec::new();
-        for parts in &named {
-            couplings.together(parts);
-            needed.extend(parts.iter().filter(|&&part| !couplings.is_still(part)));
-        }
-        // To an energy everything adds; and where no output names anything that moves, nothing says what is of no use.
-        let all = couplings.outputs.iter().any(|named| named.everything) || needed.is_empty() || !choices.prune;
-        if all {
-            needed.clone_from(&movable);
-            couplings.together(&movable);
-        }
-        if !choices.part {
-            couplings.together(&needed);
-        }
-        let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
-        let moves = |couplings: &mut Couplings, part: &Part| moving.contains(&couplings.set(*part));
-        // What acts on nothing that moves goes with something that does.
-        let company = needed.iter().find(|part| moves(&mut couplings, part)).or(bodies.first()).copied();
-        let alone: Vec<Part> = needed.iter().filter(|part| !moves(&mut couplings, part)).copied().collect();
-        if let Some(company) = company.filter(|_| !alone.is_empty()) {
-            needed.push(company);
-            alone.into_iter().for_each(|part| _ = couplings.together(&[company, part]));
-        }
-
-        // What names nothing that moves goes with the first.
-        let first = needed.first().map(|&part| couplings.set(part));
-        let sets: Vec<Option<usize>> = named.iter().map(|parts| couplings.together(parts).or(first)).collect();
+        let sets = sets_of_outputs(&mut couplings, &movable, choices);
         let mut islands: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
-        for (output, &set) in sets.iter().enumerate() {
+        for (output, set) in sets.into_iter().enumerate() {
             match islands.iter_mut().find(|(known, _)| *known == set) {
                 Some((_, outputs)) => outputs.push(output),
                 None => islands.push((set, vec![output])),
             }
         }
-        let left_out: Vec<Part> = movable
-            .into_iter()
-            .filter(|&part| {
-                let set = couplings.set(part);
-                islands.iter().all(|(known, _)| *known != Some(set))
-            })
-            .collect();
         if islands.is_empty() {
-            islands.push((first, Vec::new()));
+            // A robot without joints has no outputs.
+            islands.push((movable.first().map(|&part| couplings.set(part)), Vec::new()));
         }
+        let kept: HashSet<usize> = islands.iter().filter_map(|(set, _)| *set).collect();
+        let left_out: Vec<Part> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
         let islands = islands.into_iter().map(|(set, outputs)| {
             let (description, parameters) = extract::extract(&whole, &mut couplings, set, &outputs);
             Island { description, outputs, parameters }
         });
-        let islands: Vec<Island> = islands.collect();
+        let islands = islands.collect();
         let name = |part: &Part| match *part {
             Part::Body(body) => format!("body {}", whole.bodies[body].name),
             Part::Joint(joint) => format!("joint {}", whole.joints[joint].name),
@@ -141,4 +109,38 @@ impl Reduction {
         let mut islands = Self::of(description, Choices { part: false, ..Choices::default() }).islands;
         islands.swap_remove(0)
     }
+}
+
+fn is_body(part: &Part) -> bool {
+    matches!(part, Part::Body(_))
+}
+
+/// The set of parts that each output needs; what an output names is in one.
+fn sets_of_outputs(couplings: &mut Couplings, movable: &[Part], choices: Choices) -> Vec<Option<usize>> {
+    let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
+    let mut needed: Vec<Part> = Vec::new();
+    for parts in &named {
+        couplings.together(parts);
+        needed.extend(parts.iter().filter(|&&part| !couplings.is_still(part)));
+    }
+    // To an energy everything adds; and where no output names anything that moves, nothing says what is of no use.
+    if couplings.outputs.iter().any(|named| named.everything) || needed.is_empty() || !choices.prune {
+        needed = movable.to_vec();
+        couplings.together(movable);
+    }
+    if !choices.part {
+        couplings.together(&needed);
+    }
+    // What acts on nothing that moves goes with something that does.
+    let bodies: Vec<Part> = movable.iter().copied().filter(is_body).collect();
+    let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
+    let (moves, alone): (Vec<Part>, Vec<Part>) =
+        needed.into_iter().partition(|&part| moving.contains(&couplings.set(part)));
+    let company = moves.first().or(bodies.first()).copied();
+    for part in alone {
+        company.map(|company| couplings.together(&[company, part]));
+    }
+    // So does what names nothing of the kind.
+    let first = company.map(|part| couplings.set(part));
+    named.iter().map(|parts| couplings.together(parts).or(first)).collect()
 }
