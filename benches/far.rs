@@ -1,8 +1,6 @@
 //! What effects cost that act only sometimes: a scan of 1024 samples in lockstep, without them, with them far from touching,
 //! and where some samples touch some of the time. Ratios to the bare model, each the least of several runs that take turns.
 
-mod models;
-
 use std::time::{Duration, Instant};
 
 use mbint::batch::{Options, prepare, run};
