@@ -7,7 +7,7 @@ use mbint::batch::{Options, prepare, run};
 use mbint::bounds::Method;
 use mbint::model::{Description, load_str};
 
-const ROUNDS: usize = 7;
+const ROUNDS: usize = 25;
 
 /// The paper's slider crank with more in `ground` and `effects`.
 fn slider_crank(name: &str, points: &str, effects: &str) -> Description {
