@@ -1,15 +1,13 @@
 //! What effects cost that act only sometimes: a scan of 1024 samples in lockstep, without them, with them far from touching,
 //! and where some samples touch some of the time. Ratios to the bare model, each the least of several runs that take turns.
 
-mod models;
-
 use std::time::{Duration, Instant};
 
 use mbint::batch::{Options, prepare, run};
 use mbint::bounds::Method;
 use mbint::model::{Description, load_str};
 
-const ROUNDS: usize = 7;
+const ROUNDS: usize = 25;
 
 /// The paper's slider crank with more in `ground` and `effects`.
 fn slider_crank(name: &str, points: &str, effects: &str) -> Description {
