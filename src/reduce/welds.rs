@@ -1,13 +1,13 @@
 //! Which bodies that are welded together move as one.
 //!
-//! A fixed joint merges its bodies where nothing asks what it transmits, its angle does not change in time, and the bodies do not both have
+//! A fixed joint merges its bodies where nothing asks what it transmits, its angle does not change in time, and neither is a node of a beam, and the bodies do not both have
 //! a place of their own: of bodies that are merged, one has coordinates, and the others follow it. What says where a body is,
 //! and so cannot be given up, is a coordinate that it lacks, or a value at the start.
 
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, JointKind, Referent, StartValue};
+use crate::model::{Beam, Description, EffectKind, JointKind, Referent, StartValue};
 
 /// A fixed joint, and why its bodies stay two; or that they became one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,17 +22,21 @@ pub struct Weld {
 pub fn merge(description: &mut Description) -> Vec<Weld> {
     let observed = observed(description);
     let held = held(description);
+    let nodes = nodes(description);
     let mut sets = Sets::new(description.bodies.len());
     let mut anchored: Vec<bool> =
         held.iter().zip(named(description, &description.initial)).map(|(held, named)| *held || named).collect();
     let mut welds = Vec::new();
     for (joint, (known, &observed)) in description.joints.iter().zip(&observed).enumerate() {
         let JointKind::Fixed { between, angle, .. } = &known.kind else { continue };
+        let bends = between.iter().any(|point| nodes[point.body]);
         let [a, b] = between.map(|point| sets.of(point.body));
         let obstacle = if observed {
             Some("its reaction is asked for".to_owned())
         } else if !is_steady(description, angle) {
             Some("its angle changes in time".to_owned())
+        } else if bends {
+            Some("a beam that bends moves by its nodes' own coordinates".to_owned())
         } else if a == b {
             Some("other welds hold its bodies already".to_owned())
         } else if anchored[a] && anchored[b] {
@@ -78,6 +82,17 @@ fn keep_guesses(description: &Description, sets: &mut Sets, welds: &mut [Weld]) 
 fn held(description: &Description) -> Vec<bool> {
     let spatial = description.space.spatial;
     description.bodies.iter().map(|body| !body.is_free(spatial)).collect()
+}
+
+/// Bodies that are nodes of beams with mass.
+fn nodes(description: &Description) -> Vec<bool> {
+    let mut nodes = vec![false; description.bodies.len()];
+    for effect in &description.effects {
+        if let EffectKind::Beam(Beam { between, mass_per_length: Some(_), .. }) = &effect.kind {
+            between.iter().for_each(|end| nodes[end.body] = true);
+        }
+    }
+    nodes
 }
 
 /// Which bodies the start says something of, by their own coordinates.
