@@ -1,4 +1,5 @@
-//! What is not asked for costs nothing: a model with ten more bodies against the bare one, and islands apart against the same in one.
+//! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the bare one, and
+//! islands apart against the same in one.
 //!
 //! Every measure alternates both, so that what else the machine does meets them alike; the ratio of the least times is told.
 
@@ -6,7 +7,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use mbint::batch::{Options, run};
-use mbint::model::{Description, load_str};
+use mbint::model::{Description, load_str, read_str};
 
 /// Runs of each; the least time of them counts.
 const REPEATED: usize = 15;
@@ -14,6 +15,7 @@ const REPEATED: usize = 15;
 fn main() {
     let crank = slider_crank(0);
     compare("slider crank", &crank, "with ten bodies that no output needs", &slider_crank(10));
+    compare("slider crank", &crank, "a scene of one with eight effects more, none of them in", &scene_without());
     compare("two uncertain pendulums, apart", &pendulums(2, ""), "as one", &pendulums(2, "mixed: p0.x - p1.x"));
     compare(
         "three uncertain pendulums, apart",
@@ -55,6 +57,26 @@ fn slider_crank(more: usize) -> Description {
     let text = add(text, "\neffects:\n", &effects);
     assert_eq!(text.matches("idle_spring").count(), more, "the model has the sections that are added to");
     read("slider_crank.yaml", &text)
+}
+
+/// The slider crank with effects of many kinds, in a scene that leaves them out.
+fn scene_without() -> Description {
+    let effects = "
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  coil: { torsional_spring_damper: { on: pivot, stiffness: 0.1 } }
+  rubbing: { joint_friction: { on: wrist, coefficient: 0.1, radius: 5 mm } }
+  end: { stop: { on: pivot, upper: 3, impact: { stiffness: 100 } } }
+  wall: { contact: { between: [ground, rod.C], plane: x, impact: { stiffness: 1e4 } } }
+  air: { drag: { on: rod, quadratic: 0.3 } }
+  rope: { cable: { between: [ground, rod.C], free_length: 2, stiffness: 10 } }
+  pull: { preload: { between: [ground, rod.C], value: 0.1 } }
+";
+    let text = include_str!("../models/slider_crank.yaml").replacen("\neffects:\n", &format!("\neffects:{effects}"), 1);
+    let text =
+        format!("{text}\nscenes: {{ bare: {{ without: [weight, coil, rubbing, end, wall, air, rope, pull] }} }}\n");
+    let reading = read_str("slider_crank.yaml", &text, &[]);
+    let scene = reading.scenes.into_iter().next();
+    scene.unwrap_or_else(|| panic!("{}", reading.diagnostics.render(false))).description
 }
 
 /// Pendulums that have nothing to do with one another, the length of each uncertain.
