@@ -76,6 +76,8 @@ pub fn run_methods(description: &Description, methods: Option<Vec<Method>>) -> (
 pub trait Vary {
     fn step(self, h: f64) -> Self;
     fn duration(self, duration: f64) -> Self;
+    /// Its own duration, but at most this.
+    fn at_most(self, duration: f64) -> Self;
     /// A row of output after every this many seconds.
     fn rows_every(self, output_step: f64) -> Self;
     fn tolerance(self, tolerance: f64) -> Self;
@@ -97,6 +99,11 @@ impl Vary for Description {
 
     fn duration(mut self, duration: f64) -> Self {
         self.simulation.duration = duration;
+        self
+    }
+
+    fn at_most(mut self, duration: f64) -> Self {
+        self.simulation.duration = self.simulation.duration.min(duration);
         self
     }
 

@@ -15,7 +15,7 @@ fn bytes(description: &Description, threads: usize) -> (Vec<u8>, String) {
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     for path in model_files() {
-        let description = load(&path).duration(0.5);
+        let description = load(&path).at_most(0.5);
         let one = bytes(&description, 1);
         for threads in [2, 7] {
             assert!(bytes(&description, threads) == one, "{} with {threads} threads", path.display());
