@@ -68,7 +68,7 @@ pub struct Program {
     pub residual: Vec<usize>,
     /// Slots of the multipliers of redundant constraints: reactions that equilibrium does not determine, taken as zero.
     pub redundant: Vec<usize>,
-    /// Pivots that can become small.
+    /// Pivots that can become small, of each version of the factors.
     pub watched: Vec<Watched>,
     /// Symmetric scaling that equilibrates the Newton matrix, n + m.
     pub equilibration: Vec<f64>,
