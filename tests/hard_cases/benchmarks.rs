@@ -252,13 +252,14 @@ fn every_benchmark_converges_with_order_two() {
 
 /// Halved down to where round-off shows, or patience ends: 2 minutes. Singular positions amplify rounding: two loops are
 /// passed to 6e-8 m at best, with steps of 8e-6 s to 1.6e-5 s, others below 1e-9 m.
+/// Forty loops stop with 1.25e-4 s, next to a singular position, and say so: `docs/hard_cases.md`.
 #[test]
 #[ignore = "2 minutes: every benchmark with ever smaller steps"]
 fn order_two_down_to_round_off() {
     let cases = [
         (pendulum(), 2e-3, 12, 1e-9),
         (two_loops(), 1e-3, 9, 1e-7),
-        (forty_loops(), 1e-3, 4, 1e-7),
+        (forty_loops(), 1e-3, 3, 1e-9),
         (andrews(), 2e-6, 7, 1e-9),
         (bricard(), 2e-3, 5, 1e-9),
         (governor(), 4e-3, 6, 1e-9),
