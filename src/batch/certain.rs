@@ -7,7 +7,7 @@ use super::methods::{Outcome, Progress, Run};
 use super::probe::Probes;
 use super::step_search::StepSearch;
 use super::study::{Results, Study};
-use crate::bounds::{Method, largest};
+use crate::bounds::Method;
 use crate::integrate::{Counters, Schedule, SimulationError};
 
 impl Study<'_> {
@@ -23,15 +23,10 @@ impl Study<'_> {
                 return Ok(Results { schedule, nominal, probes: None, methods: Vec::new(), halved: Vec::new() });
             }
             let probes = Probes::of_course(&run, &nominal)?;
-            if let Some(allowed) = self.request.tolerance {
-                let share = |output: usize| {
-                    let span = probes.spans[output];
-                    let error = largest(probes.time_error(output, schedule.rows));
-                    if span > 0.0 { error / (allowed * span) } else { 0.0 }
-                };
-                if steps.adjust(largest((0..run.outputs()).map(share))) {
-                    continue;
-                }
+            if let Some(allowed) = self.request.tolerance
+                && steps.adjust(probes.worst_share(allowed, schedule.rows))
+            {
+                continue;
             }
             let asked = [
                 (Method::Chebyshev, self.request.chebyshev.is_some()),

@@ -4,11 +4,9 @@ use symdiff::{Formula, Input, lower};
 
 use super::RunError;
 use super::effect_costs::effect_costs;
-use super::formulation::{compiled, instructions};
+use super::formulation::{as_chosen, compiled, instructions};
 use super::islands::{Prepared, prepare};
-use crate::model::{
-    ChebyshevRequest, Degree, Description, Formulation, JointKind, Output, ParameterValue, ScanRequest,
-};
+use crate::model::{ChebyshevRequest, Degree, Description, JointKind, Output, ParameterValue, ScanRequest};
 use crate::reduce::{Choices, Reduction};
 use crate::report::{Decision, Each, Explanation, LeftOut, Saving};
 
@@ -50,9 +48,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
 }
 
 fn uncertain(description: &Description) -> Vec<String> {
-    let intervals =
-        description.parameters.iter().filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. }));
-    intervals.map(|parameter| parameter.name.clone()).collect()
+    description.uncertain().map(|(_, parameter)| parameter.name.clone()).collect()
 }
 
 /// Uncertain parameters that reach no island.
@@ -224,19 +220,11 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
     found
 }
 
-/// An island with the coordinates that were chosen for it.
-fn as_chosen(one: &Prepared) -> Description {
-    let mut description = one.island.description.clone();
-    let joint = one.simulator.system.formulation.joint;
-    description.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
-    description
-}
-
 /// Parameters that are certain are folded into the instructions.
 fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     let (mut other, mut count) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(one);
+        let mut description = as_chosen(&one.island.description, &one.simulator);
         for parameter in &mut description.parameters {
             let ParameterValue::Formula(formula) = &parameter.value else { continue };
             if let Some(value) = formula.as_number() {
@@ -260,7 +248,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
 fn unasked(prepared: &[Prepared]) -> Option<Decision> {
     let (mut other, mut own) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(one);
+        let mut description = as_chosen(&one.island.description, &one.simulator);
         let reactions = description
             .joints
             .iter()

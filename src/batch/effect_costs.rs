@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::{RunError, first_step, prepare_whole, scheme};
+use super::formulation::{as_chosen, compiled};
+use super::{RunError, prepare_whole};
 use crate::integrate::Simulator;
-use crate::mechanics;
-use crate::model::{Description, Formulation, load_str};
+use crate::model::{Description, load_str};
 use crate::report::{EffectCost, StepInstructions};
 
 /// A model is compiled once more for each of its effects as long as that makes no more instructions than this.
@@ -90,16 +90,13 @@ pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> 
         return vec![None; effects.len()];
     }
     let cost = |effect: usize| {
-        let mut rest = description.clone();
+        let mut rest = as_chosen(description, simulator);
         rest.effects.remove(effect);
         let known = |rest: &Description, name: &str| rest.referent(name).is_some();
         let outputs = std::mem::take(&mut rest.outputs);
         rest.outputs =
             outputs.into_iter().filter(|output| output.formula.names().all(|(name, _)| known(&rest, name))).collect();
-        let joint = simulator.system.formulation.joint;
-        rest.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
-        let without = Simulator::new(mechanics::build(&rest).ok()?, scheme(&rest), first_step(&rest)).ok()?;
-        Some(difference(simulator, &without))
+        Some(difference(simulator, &compiled(&rest).ok()?))
     };
     effects.into_par_iter().map(cost).collect()
 }

@@ -205,6 +205,7 @@ fn together(study: &Study, ran: Vec<(Ran, &Piece)>) -> (Bounds, Summary) {
     let rows = ran.iter().map(|(ran, _)| ran.whole).max().unwrap_or(0);
     let reach = |row: usize| ran.iter().filter(move |(ran, _)| row < ran.whole);
     let covered: Vec<f64> = (0..rows).map(|row| reach(row).map(|(_, piece)| piece.share).sum()).collect();
+    // Who calls this has refused a model of which no piece runs.
     let (longest, _) = ran.iter().max_by_key(|(ran, _)| ran.whole).expect("some piece ran");
     let outputs = longest.bounds.outputs.iter().enumerate().map(|(output, first)| {
         let band = |(place, first): (usize, &Band)| {

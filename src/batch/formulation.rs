@@ -41,6 +41,14 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     Ok(chosen)
 }
 
+/// A copy of the description with the formulation that was chosen for it.
+pub(super) fn as_chosen(description: &Description, chosen: &Simulator) -> Description {
+    let mut description = description.clone();
+    let joint = chosen.system.formulation.joint;
+    description.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
+    description
+}
+
 fn because(mut system: System, why: String) -> System {
     system.formulation = FormulationInfo { why, ..system.formulation };
     system

@@ -238,6 +238,7 @@ impl<'a> Together<'a> {
         }
         let islands = if ran.len() > 1 { ran.iter().map(|done| self.island(done)).collect() } else { Vec::new() };
         let mut parts = ran.into_iter().map(|done| done.summary);
+        // Where no part is needed, all of them are one island (`reduce`).
         let mut summary = parts.next().expect("a model has an island");
         let mut failures: Vec<String> = summary.failure.take().into_iter().collect();
         for other in parts {

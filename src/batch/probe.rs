@@ -1,7 +1,7 @@
 //! The probes: samples that no surrogate is made from, simulated with the steps as they are and some with each halved.
 
 use super::methods::{FleetRun, Outcome, Run, Until};
-use crate::bounds::{BandError, Range, probes, time_error, validation};
+use crate::bounds::{BandError, Range, largest, probes, time_error, validation};
 use crate::integrate::{Counters, Observed, Schedule, SimulationError};
 use crate::report::MethodSummary;
 
@@ -152,5 +152,14 @@ impl Probes {
         let of_row = |row: usize| time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
         let time: Vec<f64> = (0..rows).map(of_row).collect();
         BandError::new(&ranges, &vec![0.0; rows], &time, self.spans[output], None).total
+    }
+
+    /// The worst of the outputs' time errors, relative to what is allowed: a share of each output's range.
+    pub fn worst_share(&self, allowed: f64, rows: usize) -> f64 {
+        let share = |output: usize| {
+            let span = self.spans[output];
+            if span > 0.0 { largest(self.time_error(output, rows)) / (allowed * span) } else { 0.0 }
+        };
+        largest((0..self.spans.len()).map(share))
     }
 }

@@ -10,7 +10,7 @@ use super::probe::Probes;
 use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::bounds::{
-    Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, largest, probes, time_error,
+    Band, BandError, Bounds, Contribution, Method, OutputBounds, ParameterBox, corners, probes, time_error,
     time_error_certified, validation,
 };
 use crate::integrate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
@@ -268,13 +268,7 @@ impl<'a> Study<'a> {
                 self.observed(),
             )?;
             let Some(allowed) = self.request.tolerance else { return Ok((schedule, probes)) };
-            let outputs = 0..self.simulator.program.outputs.len();
-            let share = |output: usize| {
-                let span = probes.spans[output];
-                let error = largest(probes.time_error(output, schedule.rows));
-                if span > 0.0 { error / (allowed * span) } else { 0.0 }
-            };
-            if !steps.adjust(largest(outputs.map(share))) {
+            if !steps.adjust(probes.worst_share(allowed, schedule.rows)) {
                 return Ok((schedule, probes));
             }
         }

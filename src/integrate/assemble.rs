@@ -147,6 +147,7 @@ impl<'p> Assembly<'p> {
                 Err(_) => {}
             }
         }
+        // `GUESSES` is not zero.
         Err(best.expect("at least one guess was tried"))
     }
 

@@ -225,11 +225,15 @@ impl Simulator {
     }
 }
 
+/// Equations of motion, then constraints, then what holds at the start only.
 fn equation_names(system: &System, equations: &[usize]) -> Vec<String> {
     let n = system.q.len();
     let name = |&equation: &usize| match equation.checked_sub(n) {
         None => format!("motion of {}", system.coordinates[equation].name),
-        Some(constraint) => system.constraints[constraint].name.clone(),
+        Some(row) => match row.checked_sub(system.constraints.len()) {
+            None => system.constraints[row].name.clone(),
+            Some(condition) => format!("start of {}", system.start.conditions[condition].info.name),
+        },
     };
     equations.iter().map(name).collect()
 }

@@ -3,7 +3,7 @@
 
 use symdiff::{Binary, Formula};
 
-use super::description::{Body, Coordinate, Description, Effect, PointRef};
+use super::description::{Coordinate, Description, Effect, PointRef};
 use super::effect_kinds::{Beam, EffectKind};
 use super::file;
 use super::names::Context;

@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 
 use super::description::{
-    BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, ParameterValue, RangeKind, ScanRequest,
-    TaylorRequest,
+    BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, RangeKind, ScanRequest, TaylorRequest,
 };
 use super::diagnostic::Diagnostic;
 use super::file;
@@ -32,11 +31,9 @@ const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("out
 pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<BoundsRequest> {
     let uncertain: Vec<String> = reader
         .model
-        .parameters
-        .iter()
-        .filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. }))
-        .filter(|parameter| !reader.idle.contains(&parameter.name))
-        .map(|parameter| parameter.name.clone())
+        .uncertain()
+        .map(|(_, parameter)| parameter.name.clone())
+        .filter(|name| !reader.idle.contains(name))
         .collect();
     let Some((node, at)) = section else {
         let chebyshev = ChebyshevRequest::unspecified(uncertain.len(), None);

@@ -105,6 +105,15 @@ pub struct Parameter {
     pub value: ParameterValue,
 }
 
+impl Description {
+    /// The parameters that are known to lie in an interval, with their indices.
+    pub fn uncertain(&self) -> impl Iterator<Item = (usize, &Parameter)> {
+        let interval =
+            |(_, parameter): &(usize, &Parameter)| matches!(parameter.value, ParameterValue::Interval { .. });
+        self.parameters.iter().enumerate().filter(interval)
+    }
+}
+
 /// What is known of a parameter.
 #[derive(Clone, Debug)]
 pub enum ParameterValue {

@@ -112,7 +112,7 @@ impl StartProgram {
 /// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `probe` is a state near the one that is looked for (values of the layout's slots).
 ///
 /// # Errors
-/// [`Singular`] where the equations have no finite values at the probe.
+/// [`Singular`] where the equations have no finite values at the probe: rows of motion, constraints, then start conditions.
 pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Result<StartProgram, Singular> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = inputs(system, &layout);
@@ -120,9 +120,10 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let (motion, slopes) = equations_of_motion(system, &mut graph);
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
-    let (further, place_slopes) = with_conditions(system, &mut graph, &slopes, |condition| condition.position);
+    let (of_position, of_velocity): (Kind, Kind) = (|condition| condition.position, |condition| condition.velocity);
+    let (further, place_slopes) = with_conditions(system, &mut graph, &slopes, of_position);
     let closure = [&system.constraint[..], &further].concat();
-    let (further, motion_slopes) = with_conditions(system, &mut graph, &slopes, |condition| condition.velocity);
+    let (further, motion_slopes) = with_conditions(system, &mut graph, &slopes, of_velocity);
     let rates = [rate, time_derivative(system, &mut graph, &further)].concat();
 
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, probe };
@@ -132,10 +133,12 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
     let zero = vec![builder.graph.constant(0.0); system.q.len()];
     let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
-    let position =
-        builder.correction(&diagonal, &none, &place_slopes, &kept(&system.start.position), &zero, &closure)?;
-    let velocity =
-        builder.correction(&diagonal, &none, &motion_slopes, &kept(&system.start.velocity), &zero, &rates)?;
+    let position = builder
+        .correction(&diagonal, &none, &place_slopes, &kept(&system.start.position), &zero, &closure)
+        .map_err(|singular| numbered(system, singular, of_position))?;
+    let velocity = builder
+        .correction(&diagonal, &none, &motion_slopes, &kept(&system.start.velocity), &zero, &rates)
+        .map_err(|singular| numbered(system, singular, of_velocity))?;
     let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
     let (mass, motion) = builder.with_defined_coordinates(&slopes, motion, &rate_of_rate);
     let free = vec![false; system.q.len()];
@@ -198,13 +201,20 @@ pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
     inputs
 }
 
+/// Conditions on positions, or those on velocities.
+type Kind = fn(&StartCondition) -> bool;
+
+/// Rows of conditions of some kind, which stand behind the constraints, by their numbers among all conditions.
+fn numbered(system: &System, singular: Singular, kind: Kind) -> Singular {
+    let first = system.q.len() + system.constraint.len();
+    let conditions: Vec<usize> =
+        (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
+    let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
+    Singular { rows: singular.rows.into_iter().map(row).collect() }
+}
+
 /// The conditions of some kind, and Φ_q with theirs below it.
-fn with_conditions(
-    system: &System,
-    graph: &mut Graph,
-    slopes: &SparseMatrix,
-    kind: impl Fn(&StartCondition) -> bool,
-) -> (Vec<Expr>, SparseMatrix) {
+fn with_conditions(system: &System, graph: &mut Graph, slopes: &SparseMatrix, kind: Kind) -> (Vec<Expr>, SparseMatrix) {
     let conditions = system.start.conditions.iter().filter(|condition| kind(condition));
     let values: Vec<Expr> = conditions.map(|condition| condition.value).collect();
     let mut all = slopes.clone();

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, EffectKind, JointKind, Reference, Referent};
+use crate::model::{Description, Effect, EffectKind, Joint, JointKind, Reference, Referent};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,17 +63,24 @@ impl Named {
         named
     }
 
-    fn refer(&mut self, references: Vec<Reference>) {
+    /// By a joint or an effect: its formulas, and what it stands between.
+    fn by_part<'f>(
+        description: &Description,
+        formulas: impl IntoIterator<Item = &'f Formula>,
+        references: Vec<Reference>,
+    ) -> Self {
+        let mut named = Self::by(description, formulas);
         for reference in references {
             match reference {
-                Reference::Body(body) => self.parts.push(Part::Body(*body)),
+                Reference::Body(body) => named.parts.push(Part::Body(*body)),
                 Reference::Point(place) => {
-                    self.parts.push(Part::Body(place.body));
-                    self.points.extend(place.point.map(|point| (place.body, point)));
+                    named.parts.push(Part::Body(place.body));
+                    named.points.extend(place.point.map(|point| (place.body, point)));
                 }
-                Reference::Joint(joint) => self.parts.push(Part::Joint(*joint)),
+                Reference::Joint(joint) => named.parts.push(Part::Joint(*joint)),
             }
         }
+        named
     }
 
     /// Takes in what something else names.
@@ -82,20 +89,6 @@ impl Named {
         self.points.extend(&other.points);
         self.parameters.extend(&other.parameters);
         self.everything |= other.everything;
-    }
-
-    fn by_joint(description: &Description, joint: usize) -> Self {
-        let kind = &description.joints[joint].kind;
-        let mut named = Self::by(description, kind.formulas());
-        named.refer(kind.clone().references());
-        named
-    }
-
-    fn by_effect(description: &Description, effect: usize) -> Self {
-        let kind = &description.effects[effect].kind;
-        let mut named = Self::by(description, kind.formulas());
-        named.refer(kind.clone().references());
-        named
     }
 }
 
@@ -119,11 +112,12 @@ pub struct Couplings {
 impl Couplings {
     /// Of a description whose welds are marked.
     pub fn of(description: &Description) -> Self {
-        let count = |list: usize| 0..list;
-        let joints: Vec<Named> =
-            count(description.joints.len()).map(|joint| Named::by_joint(description, joint)).collect();
-        let effects: Vec<Named> =
-            count(description.effects.len()).map(|effect| Named::by_effect(description, effect)).collect();
+        let joint =
+            |Joint { kind, .. }: &Joint| Named::by_part(description, kind.formulas(), kind.clone().references());
+        let joints: Vec<Named> = description.joints.iter().map(joint).collect();
+        let effect =
+            |Effect { kind, .. }: &Effect| Named::by_part(description, kind.formulas(), kind.clone().references());
+        let effects: Vec<Named> = description.effects.iter().map(effect).collect();
         let outputs = description.outputs.iter().map(|output| Named::by(description, [&output.formula])).collect();
         let is_gravity = |effect: usize| matches!(description.effects[effect].kind, EffectKind::Gravity { .. });
         let fields: Vec<bool> =
@@ -133,11 +127,11 @@ impl Couplings {
         still.iter().flatten().for_each(|&joint| holds[joint] = true);
         let parts = description.bodies.len() + joints.len() + effects.len();
         let mut couplings = Self { sets: Sets::new(parts), joints, effects, outputs, fields, still, holds };
-        for joint in count(description.joints.len()) {
+        for joint in 0..description.joints.len() {
             let parts = couplings.joints[joint].parts.clone();
             couplings.join(Part::Joint(joint), &parts);
         }
-        for effect in count(description.effects.len()).filter(|&effect| !couplings.fields[effect]).collect::<Vec<_>>() {
+        for effect in (0..description.effects.len()).filter(|&effect| !couplings.fields[effect]).collect::<Vec<_>>() {
             let mut parts = couplings.effects[effect].parts.clone();
             if is_gravity(effect) {
                 parts.extend((1..description.bodies.len()).map(Part::Body));

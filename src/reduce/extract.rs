@@ -68,10 +68,9 @@ pub fn extract(
     for link in part.robot.iter_mut().flat_map(|robot| &mut robot.links) {
         link.place = link.place.and_then(moved);
     }
-    let uncertain = (0..description.parameters.len())
-        .filter(|&index| matches!(description.parameters[index].value, ParameterValue::Interval { .. }));
+    let numbered = description.uncertain().enumerate();
     let left: Vec<usize> =
-        uncertain.enumerate().filter(|&(_, index)| kept.parameters[index]).map(|(number, _)| number).collect();
+        numbered.filter(|&(_, (index, _))| kept.parameters[index]).map(|(number, _)| number).collect();
     narrow(&mut part, &left);
     (part, left)
 }

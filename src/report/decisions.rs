@@ -56,6 +56,7 @@ impl Explanation {
     /// # Panics
     /// Without any.
     pub fn of_islands(islands: Vec<Self>) -> Self {
+        // A model has at least one: `reduce` sees to it.
         islands.into_iter().reduce(Self::and).expect("a model has an island")
     }
 

@@ -2,7 +2,7 @@
 
 use mbint::batch::{self, Options};
 use mbint::model::{
-    self, BoundsRequest, ChebyshevRequest, Description, Override, ParameterValue, ScanRequest, Stepping, TaylorRequest,
+    self, BoundsRequest, ChebyshevRequest, Description, Override, ScanRequest, Stepping, TaylorRequest,
 };
 
 /// Reads a model, and renders what is wrong with it.
@@ -56,8 +56,7 @@ pub fn short_run(text: &str) {
 
 /// The same mechanism with little to do; absent where there is much of it.
 fn shortened(mut description: Description) -> Option<Description> {
-    let uncertain = |parameter: &&model::Parameter| matches!(parameter.value, ParameterValue::Interval { .. });
-    let uncertain = description.parameters.iter().filter(uncertain).count();
+    let uncertain = description.uncertain().count();
     if description.bodies.len() > 8 || description.joints.len() > 16 || uncertain > 3 {
         return None;
     }

@@ -6,6 +6,7 @@ use mbint::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest};
 
 use super::common::{Vary, band, curve, largest, nominal, order, output, read, run, run_methods, uncertain_count};
 use super::dormand_prince::dormand_prince;
+use super::restitution::restitution;
 
 /// Largest errors of an output against a curve at the output times, for some steps.
 fn errors_of_steps(description: &Description, name: &str, truth: &[f64], steps: &[f64]) -> Vec<f64> {
@@ -93,16 +94,6 @@ fn points(a: f64, b: f64, n: usize) -> impl Iterator<Item = f64> {
 // --- A ball that bounces.
 
 const G: f64 = 9.81;
-
-/// What is left of a speed after an impact with dissipation, d = χ v: d − ln(1 + d) = −d e − ln(1 − d e) (Marhefka & Orin).
-fn restitution(d: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0_f64.min(1.0 / d));
-    for _ in 0..100 {
-        let e = 0.5 * (low + high);
-        if -d * e - (-d * e).ln_1p() > d - d.ln_1p() { high = e } else { low = e }
-    }
-    low
-}
 
 /// It falls from 1 m on a floor that keeps `e` of the speed by Hunt and Crossley's formula.
 fn ball(stiffness: f64, run: &str) -> Description {

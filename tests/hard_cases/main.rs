@@ -11,4 +11,8 @@ mod dormand_prince;
 mod effects;
 mod events;
 mod positions;
+#[path = "../models/restitution.rs"]
+mod restitution;
+#[path = "../models/runge_kutta.rs"]
+mod runge_kutta;
 mod sweeps;

@@ -8,23 +8,13 @@ use mbint::integrate::{Simulator, Stepper};
 use nalgebra::DMatrix;
 
 use super::common::{Vary, curve, distance, largest, model, nominal, order, read, row};
+use super::runge_kutta::runge_kutta;
 
 /// A pendulum's angle from the horizontal, and its rate, at t: θ̈ = −(g/L) cos θ, by Runge and Kutta's fourth-order method
 /// with so many steps.
 fn swing(gravity_by_length: f64, t: f64, steps: usize) -> [f64; 2] {
     let slope = |[angle, rate]: [f64; 2]| [rate, -gravity_by_length * angle.cos()];
-    let along = |x: [f64; 2], k: [f64; 2], h: f64| [x[0] + h * k[0], x[1] + h * k[1]];
-    let (mut x, h) = ([0.0, 0.0], t / steps as f64);
-    for _ in 0..steps {
-        let a = slope(x);
-        let b = slope(along(x, a, h / 2.0));
-        let c = slope(along(x, b, h / 2.0));
-        let d = slope(along(x, c, h));
-        for i in 0..2 {
-            x[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
-        }
-    }
-    x
+    runge_kutta(slope, [0.0, 0.0], t, 2, steps)[1]
 }
 
 /// Errors of position and velocity of the pendulum after at most so many steps, and after how long.

@@ -1,18 +1,9 @@
 //! Contacts, stops and loose joints, against the mechanics of impact.
 
 use super::common::{Vary, curve, distance_from, largest, nominal, order, read, row};
+use super::restitution::restitution;
 use mbint::bounds::Bounds;
 use mbint::model::Description;
-
-/// What is left of a speed after an impact with dissipation, d = χ v: d − ln(1 + d) = −d e − ln(1 − d e) (Marhefka & Orin).
-fn restitution(d: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0_f64.min(1.0 / d));
-    for _ in 0..100 {
-        let e = 0.5 * (low + high);
-        if -d * e - (-d * e).ln_1p() > d - d.ln_1p() { high = e } else { low = e }
-    }
-    low
-}
 
 fn ball(impact: &str) -> Description {
     read(&format!(

@@ -26,6 +26,7 @@ mod invariants;
 mod linkages;
 mod motors;
 mod reproducibility;
+mod restitution;
 mod rotation;
 mod run_all;
 mod runge_kutta;

@@ -4,6 +4,7 @@ use mbint::batch::{self, Options};
 use mbint::bounds::Method;
 
 use super::common::{band, curve, output, read, run_methods};
+use super::runge_kutta::runge_kutta;
 
 /// Cranks at whole distances, a bar along all their ends; every angle and its rate as given.
 pub fn parallelogram(cranks: usize, angle: f64, rate: f64) -> String {
@@ -45,18 +46,7 @@ bounds: {{ chebyshev: {{ order: 3 }}, taylor: {{ order: 2 }}, scan: {{ points: 5
 pub fn one_crank(cranks: f64, angle: f64, rate: f64) -> f64 {
     let (mass, inertia) = (0.5 * cranks + 1.0, cranks * (0.1 + 0.25) + 1.0);
     let slope = |[angle, rate]: [f64; 2]| [rate, -mass * 9.81 * angle.cos() / inertia];
-    let along = |x: [f64; 2], k: [f64; 2], h: f64| [x[0] + h * k[0], x[1] + h * k[1]];
-    let (mut x, h) = ([angle, rate], 1e-4);
-    for _ in 0..20_000 {
-        let a = slope(x);
-        let b = slope(along(x, a, h / 2.0));
-        let c = slope(along(x, b, h / 2.0));
-        let d = slope(along(x, c, h));
-        for i in 0..2 {
-            x[i] += h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
-        }
-    }
-    x[0]
+    runge_kutta(slope, [angle, rate], 2.0, 2, 20_000)[1][0]
 }
 
 #[test]

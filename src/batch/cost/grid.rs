@@ -2,8 +2,7 @@
 
 use crate::bounds::Method;
 use crate::model::{
-    BoundsRequest, ChebyshevRequest, Description, Expand, ParameterValue, RangeKind, ScanRequest, Simulation, Stepping,
-    TaylorRequest,
+    BoundsRequest, ChebyshevRequest, Description, Expand, RangeKind, ScanRequest, Simulation, Stepping, TaylorRequest,
 };
 use crate::report::CostMethod;
 
@@ -30,7 +29,7 @@ pub(super) struct Setting {
 
 /// Number of uncertain parameters.
 pub(super) fn uncertain(model: &Description) -> usize {
-    model.parameters.iter().filter(|parameter| matches!(parameter.value, ParameterValue::Interval { .. })).count()
+    model.uncertain().count()
 }
 
 /// The model's stepping made `parts` times as fine: as many whole steps between rows as come nearest to it. A tolerance goes
