@@ -171,7 +171,7 @@ impl Newton {
             }
             tile.run(program.correct());
             if self.pending.iter().zip(&self.singular).any(|(pending, singular)| *pending && *singular) {
-                self.correct_singular(program, tile);
+                self.correct_singular(program, tile, gain);
             }
             vectorised(Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
             self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
@@ -188,14 +188,29 @@ impl Newton {
         }
     }
 
-    /// Corrections from the matrix's numbers, for the lanes that need it.
-    fn correct_singular(&self, program: &Program, tile: &mut Tile) {
+    /// Corrections from the matrix's numbers, for the lanes that need it. A constraint that holds to rounding is not
+    /// corrected: beside a singular position that would move the mechanism by ε over the distance to it, and anew by as much
+    /// each time. `gain` is that of positions.
+    fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64) {
         tile.run(program.matrix());
+        let coordinates = program.scale.len();
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
             let value = |slot: usize| tile.lane(slot)[lane];
             let entries: Vec<(usize, usize, f64)> =
                 program.matrix_entries.iter().map(|&(row, column, slot)| (row, column, value(slot))).collect();
-            let right: Vec<f64> = program.residual.iter().map(|&slot| -value(slot)).collect();
+            // What a row's terms come to, of which ε is lost.
+            let mut terms = vec![0.0; program.residual.len()];
+            for &(row, column, slope) in
+                entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates)
+            {
+                let position = value(program.layout.q.start + column).abs() + program.scale[column];
+                terms[row] += slope.abs() * position / gain;
+            }
+            let right = program.residual.iter().zip(&terms).map(|(&slot, terms)| {
+                let residual = value(slot);
+                if residual.abs() <= ROUND_OFF * terms { 0.0 } else { -residual }
+            });
+            let right: Vec<f64> = right.collect();
             let solution = solve_whatever_rank(&entries, &right, &program.equilibration);
             for (place, slot) in program.layout.correction.clone().enumerate() {
                 tile.lane_mut(slot)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
