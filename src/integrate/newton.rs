@@ -171,7 +171,7 @@ impl Newton {
             }
             tile.run(program.correct());
             if self.pending.iter().zip(&self.singular).any(|(pending, singular)| *pending && *singular) {
-                self.correct_singular(program, tile, gain);
+                self.correct_singular(program, tile, gain, count);
             }
             vectorised(Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
             self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
@@ -188,10 +188,10 @@ impl Newton {
         }
     }
 
-    /// Corrections from the matrix's numbers, for the lanes that need it. A constraint that holds to rounding is not
-    /// corrected: beside a singular position that would move the mechanism by ε over the distance to it, and anew by as much
-    /// each time. `gain` is that of positions.
-    fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64) {
+    /// Corrections from the matrix's numbers, for the lanes that need it. Where the first few do not suffice, a constraint
+    /// that holds to rounding is not corrected any more: beside a singular position that would move the mechanism by ε over
+    /// the distance to it, and anew by as much each time. `gain` is that of positions.
+    fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64, count: usize) {
         tile.run(program.matrix());
         let coordinates = program.scale.len();
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
@@ -208,7 +208,7 @@ impl Newton {
             }
             let right = program.residual.iter().zip(&terms).map(|(&slot, terms)| {
                 let residual = value(slot);
-                if residual.abs() <= ROUND_OFF * terms { 0.0 } else { -residual }
+                if count >= FROZEN_CORRECTIONS && residual.abs() <= ROUND_OFF * terms { 0.0 } else { -residual }
             });
             let right: Vec<f64> = right.collect();
             let solution = solve_whatever_rank(&entries, &right, &program.equilibration);
