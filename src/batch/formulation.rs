@@ -1,11 +1,12 @@
 //! By which coordinates a mechanism is simulated: where the model leaves it open, by those whose program is shorter.
 //!
 //! Joint coordinates are few and their matrices dense, absolute ones many and theirs sparse. What that comes to in
-//! instructions is only known when both are compiled, so both are; but for long chains, where it is known before. Where
+//! instructions is only known when both are compiled, so both are; but for long chains, where it is known before, and not to
+//! the end where absolute coordinates turn out to take many times as much. Where
 //! joints close loops, absolute coordinates are kept: joint ones may be shorter there too, but lose their way where a loop
 //! passes a position in which it can branch off (a flat parallelogram), and absolute ones do not.
 
-use crate::integrate::Simulator;
+use crate::integrate::{SimulationError, Simulator};
 use crate::mechanics::{self, FormulationInfo, System};
 use crate::model::{Description, Formulation};
 
@@ -15,12 +16,22 @@ use super::{RunError, first_step, scheme};
 /// entries for each body. Spatial chains break even at 15, planar ones at 3.
 const DEEPEST: usize = 25;
 
+/// Absolute coordinates are given up where the start's three eliminations, or the step's one, take so many times the
+/// operations that a step takes in joint coordinates, and more than no one has to wait for.
+const GIVEN_UP: usize = 10;
+
+/// Operations that are compiled in a moment.
+const SOON: usize = 100_000;
+
 /// Builds and compiles a model in the formulation that it asks for, or in the shorter one.
 ///
 /// # Errors
 /// Where the mechanism cannot be built or assembled.
 pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError> {
-    let compile = |system: System| Simulator::new(system, scheme(description), first_step(description));
+    let within = |system: System, operations: Option<usize>| {
+        Simulator::within(system, scheme(description), first_step(description), operations)
+    };
+    let compile = |system: System| within(system, None);
     if description.simulation.formulation != Formulation::Auto {
         return Ok(compile(mechanics::build(description)?)?);
     }
@@ -29,11 +40,17 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
         Ok(joint) => joint,
         Err(why) => return Ok(compile(because(absolute, why))?),
     };
-    let (absolute, joint) = match (compile(absolute), compile(joint)) {
-        (Ok(absolute), Ok(joint)) => (absolute, joint),
-        // What is singular in one formulation may be regular in the other.
-        (Err(_), Ok(joint)) => return Ok(joint),
-        (absolute, Err(_)) => return Ok(absolute?),
+    // What is singular in one formulation may be regular in the other.
+    let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
+    let absolute = match within(absolute, Some((GIVEN_UP * instructions(&joint)).max(SOON))) {
+        Ok(absolute) => absolute,
+        Err(why) => {
+            if why == SimulationError::TooLong {
+                joint.system.formulation.why =
+                    format!("{} instructions a step instead of several times as many", instructions(&joint));
+            }
+            return Ok(joint);
+        }
     };
     let [many, few] = [&absolute, &joint].map(instructions);
     let (mut chosen, (least, most)) = if few < many { (joint, (few, many)) } else { (absolute, (many, few)) };

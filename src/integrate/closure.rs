@@ -8,7 +8,7 @@ use symdiff::Tile;
 
 use super::assemble::{Assembly, allowed_gap};
 use super::rank::free_columns;
-use super::simulator::{SimulationError, Simulator};
+use super::simulator::{SimulationError, Simulator, no_factors};
 use crate::mechanics::System;
 use crate::program::{StartProgram, compile_start};
 
@@ -77,7 +77,7 @@ impl<'s> Closure<'s> {
         system.start.velocity = kept(&system.v);
         system.start.conditions.clear();
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
-            .map_err(|singular| simulator.singular(&singular))?;
+            .map_err(|none| no_factors(&simulator.system, &none))?;
         let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();
         let used = system.graph.symbols_of(&outputs);
         let uses = |symbols: &[symdiff::Expr]| symbols.iter().any(|symbol| used.binary_search(symbol).is_ok());

@@ -6,7 +6,7 @@ use super::assemble::{Assembly, Gap};
 use super::rank::dependent_rows;
 use super::reactions::undetermined_outputs;
 use crate::mechanics::{StartCondition, System};
-use crate::program::{Layout, PROBES, Probe, Program, Scheme, Singular, StartProgram, compile, compile_start};
+use crate::program::{Layout, NoFactors, PROBES, Probe, Program, Scheme, StartProgram, compile, compile_start};
 
 /// Rows of Φ_q that stand out of the others by less than this (scaled) are implied by them.
 pub(super) const DEPENDENT: f64 = 1e-8;
@@ -62,6 +62,9 @@ pub enum SimulationError {
     #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
     #[allow(missing_docs)]
     Singular { equations: Vec<String> },
+    /// The program would be longer than was allowed.
+    #[error("the equations take too many operations")]
+    TooLong,
     /// A step did not converge.
     #[error(
         "sample {sample} ({}) did not converge at t = {time} s; the largest residual is that of `{equation}`",
@@ -124,10 +127,23 @@ impl Simulator {
     /// # Errors
     /// Where no consistent start exists, or the equations are singular there.
     pub fn new(system: System, scheme: Scheme, h: f64) -> Result<Self, SimulationError> {
+        Self::within(system, scheme, h, None)
+    }
+
+    /// The same, but given up where start or step take more operations, if there is a limit, than so many.
+    ///
+    /// # Errors
+    /// Also where it is given up.
+    pub fn within(
+        mut system: System,
+        scheme: Scheme,
+        h: f64,
+        operations: Option<usize>,
+    ) -> Result<Self, SimulationError> {
+        system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
-        let singular =
-            |singular: Singular| SimulationError::Singular { equations: equation_names(&system, &singular.rows) };
+        let told = |none: NoFactors| no_factors(&system, &none);
         let probe = guess_probe(&system, &layout, &parameters);
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
@@ -135,16 +151,17 @@ impl Simulator {
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
             Ok(assembly.tile().values()[..layout.slots()].to_vec())
         };
-        let mut start = compile_start(&system, &[], &probe).map_err(singular)?;
+        let mut start = compile_start(&system, &[], &probe).map_err(told)?;
         let mut nominal = assembled(&start)?;
         let mobility = mobility(&system, &start, &nominal);
         if !mobility.redundant.is_empty() {
-            start = compile_start(&system, &mobility.redundant, &probe).map_err(singular)?;
+            start = compile_start(&system, &mobility.redundant, &probe).map_err(told)?;
             nominal = assembled(&start)?;
         }
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
         let probes = probes(&system, &layout, &nominal, h);
-        let program = compile(&system, scheme, &mobility.redundant, &probes).map_err(singular)?;
+        let program = compile(&system, scheme, &mobility.redundant, &probes).map_err(told)?;
+        system.graph.limit(None);
         Ok(Self { system, start, program, nominal, mobility, undetermined })
     }
 
@@ -214,14 +231,17 @@ impl Simulator {
         (assembly, gaps)
     }
 
-    /// What a singular matrix of this mechanism means.
-    pub(super) fn singular(&self, singular: &Singular) -> SimulationError {
-        SimulationError::Singular { equations: equation_names(&self.system, &singular.rows) }
-    }
-
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
     pub fn equation_name(&self, equation: usize) -> String {
         equation_names(&self.system, &[equation]).remove(0)
+    }
+}
+
+/// What a matrix of this mechanism without factors means.
+pub(super) fn no_factors(system: &System, none: &NoFactors) -> SimulationError {
+    match none {
+        NoFactors::Singular { rows } => SimulationError::Singular { equations: equation_names(system, rows) },
+        NoFactors::TooLong => SimulationError::TooLong,
     }
 }
 

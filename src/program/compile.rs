@@ -6,7 +6,7 @@ use super::elimination::{Choice, Elimination, Version, is_worth_it};
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::scheme::{Coefficients, Scheme};
-use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular};
+use super::sparse_lu::{NoFactors, Numbers, PROBES, Pivoting};
 use crate::mechanics::System;
 
 /// A state that guides the choice of pivots: values of the layout's first slots (parameters to λ), at a step size.
@@ -152,13 +152,13 @@ impl Program {
 /// Compiles a system. `redundant` are constraints that others imply; `probes` are states near which pivots shall be good.
 ///
 /// # Errors
-/// [`Singular`] where the Newton matrix has no acceptable pivots at the probes.
+/// Where the Newton matrix has no acceptable pivots at the probes, and where the graph is full.
 pub fn compile(
     system: &System,
     scheme: Scheme,
     redundant: &[usize],
     probes: &[Probe; PROBES],
-) -> Result<Program, Singular> {
+) -> Result<Program, NoFactors> {
     let (n, m) = (system.q.len(), system.lambda.len());
     let layout = Layout::new(system.parameters.len(), n, m);
     let coefficients = scheme.coefficients();

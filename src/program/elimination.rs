@@ -11,7 +11,7 @@ use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::compile::{Mode, Watched, WatchedPivot};
 use super::newton_matrix::ITERATION;
-use super::sparse_lu::{Factors, Numbers, PROBES, Pivoting, Singular, factorise};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PROBES, Pivoting, factorise};
 
 /// Where numbers grow more than this in the elimination, pivots are chosen anew, fewer of them.
 const MOST_GROWTH: f64 = 1e4;
@@ -57,7 +57,7 @@ impl Choice<'_> {
         numbers: &[Numbers],
         equilibration: Vec<f64>,
         inputs: &[Input],
-    ) -> Result<Version, Singular> {
+    ) -> Result<Version, NoFactors> {
         let (regular, numbers) = self.regularised(graph, matrix, numbers, &equilibration);
         let plan = |graph: &mut Graph, pivoting: Pivoting| {
             let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
@@ -75,7 +75,8 @@ impl Choice<'_> {
             // In a long chain free choice hands errors on from body to body, each time larger.
             free => plan(graph, self.symmetric).or(free),
         }?;
-        Ok(Version { factors, equilibration })
+        // Factors that were only kept because others took too long are not those that were looked for.
+        if graph.is_full() { Err(NoFactors::TooLong) } else { Ok(Version { factors, equilibration }) }
     }
 
     /// A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.

@@ -14,5 +14,5 @@ pub use compile::{Mode, Probe, Program, Watched, WatchedPivot, compile};
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use layout::Layout;
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
-pub use sparse_lu::{PROBES, Singular};
+pub use sparse_lu::{NoFactors, PROBES};
 pub use start::{StartProgram, compile_start};

@@ -24,7 +24,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
-use super::sparse_lu::{Numbers, PROBES, Pivoting, Singular, factorise};
+use super::sparse_lu::{NoFactors, Numbers, PROBES, Pivoting, factorise};
 use crate::mechanics::{StartCondition, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
@@ -112,8 +112,9 @@ impl StartProgram {
 /// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `probe` is a state near the one that is looked for (values of the layout's slots).
 ///
 /// # Errors
-/// [`Singular`] where the equations have no finite values at the probe: rows of motion, constraints, then start conditions.
-pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Result<StartProgram, Singular> {
+/// Where the equations have no finite values at the probe (rows: motion, constraints, then start conditions), and where
+/// the graph is full.
+pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Result<StartProgram, NoFactors> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = inputs(system, &layout);
     let mut graph = system.graph.clone();
@@ -135,10 +136,10 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
     let position = builder
         .correction(&diagonal, &none, &place_slopes, &kept(&system.start.position), &zero, &closure)
-        .map_err(|singular| numbered(system, singular, of_position))?;
+        .map_err(|none| numbered(system, none, of_position))?;
     let velocity = builder
         .correction(&diagonal, &none, &motion_slopes, &kept(&system.start.velocity), &zero, &rates)
-        .map_err(|singular| numbered(system, singular, of_velocity))?;
+        .map_err(|none| numbered(system, none, of_velocity))?;
     let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
     let (mass, motion) = builder.with_defined_coordinates(&slopes, motion, &rate_of_rate);
     let free = vec![false; system.q.len()];
@@ -205,12 +206,13 @@ pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
 type Kind = fn(&StartCondition) -> bool;
 
 /// Rows of conditions of some kind, which stand behind the constraints, by their numbers among all conditions.
-fn numbered(system: &System, singular: Singular, kind: Kind) -> Singular {
+fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
+    let NoFactors::Singular { rows } = none else { return none };
     let first = system.q.len() + system.constraint.len();
     let conditions: Vec<usize> =
         (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
     let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
-    Singular { rows: singular.rows.into_iter().map(row).collect() }
+    NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
 }
 
 /// The conditions of some kind, and Φ_q with theirs below it.
@@ -240,7 +242,7 @@ impl Builder<'_> {
         kept: &[bool],
         first: &[Expr],
         second: &[Expr],
-    ) -> Result<Vec<Expr>, Singular> {
+    ) -> Result<Vec<Expr>, NoFactors> {
         let (n, m) = (self.system.q.len(), slopes.rows.len());
         let (one, mut matrix) = (self.graph.constant(1.0), SparseMatrix::zero(n + m, n + m));
         for &(row, column, value) in metric.iter().filter(|(row, column, _)| !kept[*row] && !kept[*column]) {

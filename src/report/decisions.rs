@@ -62,7 +62,7 @@ impl Explanation {
 
     fn and(mut self, other: Self) -> Self {
         for (line, more) in [(&mut self.space, other.space), (&mut self.formulation, other.formulation)] {
-            if *line != more {
+            if line.split("; ").all(|known| known != more) {
                 *line += &format!("; {more}");
             }
         }

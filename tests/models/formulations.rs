@@ -2,8 +2,10 @@
 //! velocities, accelerations and reactions, and later to the scheme's error.
 
 use mbint::batch;
+use mbint::integrate::{SimulationError, Simulator};
 use mbint::mechanics;
 use mbint::model::{Description, Formulation};
+use mbint::program::Scheme;
 
 use super::common::{Vary, largest, load, model_files, nominal, read, richardson};
 
@@ -213,4 +215,18 @@ fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_jo
     // A spatial chain of 20 is still shorter in joint coordinates.
     let (joint, _) = instructions(&chain(20, true, "auto"));
     assert!(joint);
+}
+
+/// What takes too long is given up; what does not is compiled as ever.
+#[test]
+fn a_program_is_given_up_beyond_its_limit_and_not_before() {
+    let system = mechanics::in_absolute_coordinates(&read(&tree(false))).unwrap();
+    let within = |limit| Simulator::within(system.clone(), Scheme::Hht { alpha: -0.1 }, 1e-3, limit);
+    assert_eq!(within(Some(1000)).map(|_| ()), Err(SimulationError::TooLong));
+    let [free, limited] = [None, Some(1_000_000)].map(|limit| within(limit).unwrap());
+    let instructions = |simulator: &Simulator| {
+        let program = &simulator.program;
+        [program.step(), program.factor(), program.correct(), program.advance()].map(|tape| tape.len())
+    };
+    assert_eq!(instructions(&free), instructions(&limited));
 }

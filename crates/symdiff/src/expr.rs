@@ -102,6 +102,7 @@ pub struct Graph {
     known: FxHashMap<Node, Expr>,
     names: Vec<String>,
     symbols: FxHashMap<String, Expr>,
+    most: Option<usize>,
     pub(crate) derivatives: FxHashMap<(Expr, Expr), Expr>,
 }
 
@@ -119,6 +120,16 @@ impl Graph {
     /// Whether the graph has no nodes.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
+    }
+
+    /// From now on the graph is full where it has more nodes; it goes on growing, but who fills it may look and give up.
+    pub fn limit(&mut self, most: Option<usize>) {
+        self.most = most;
+    }
+
+    /// Whether there are more nodes than the limit, if there is one.
+    pub fn is_full(&self) -> bool {
+        self.most.is_some_and(|most| self.nodes.len() > most)
     }
 
     /// Every node but the first `known`, children before parents.
