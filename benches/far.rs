@@ -1,13 +1,16 @@
 //! What effects cost that act only sometimes: a scan of 1024 samples in lockstep, without them, with them far from touching,
-//! and where some samples touch some of the time. Ratios to the bare model, each the least of several runs that take turns.
+//! and where some samples touch some of the time. Medians of the ratios to the bare model, with
+//! the quartiles.
 
-use std::time::{Duration, Instant};
+mod paired;
 
 use mbint::batch::{Options, prepare, run};
 use mbint::bounds::Method;
 use mbint::model::{Description, load_str};
+use paired::{Paired, paired};
 
-const ROUNDS: usize = 25;
+/// Pairs of runs of each.
+const PAIRS: usize = 101;
 
 /// The paper's slider crank with more in `ground` and `effects`.
 fn slider_crank(name: &str, points: &str, effects: &str) -> Description {
@@ -64,8 +67,9 @@ fn buffer(at: &str) -> Description {
 
 fn main() {
     let friction = ", friction: { coefficient: 0.3, breakaway: 1.2, stribeck_velocity: 0.1 }";
+    let bare = slider_crank("bare", "", "");
     let cases = [
-        ("bare", slider_crank("bare", "", "")),
+        ("itself", slider_crank("bare", "", "")),
         ("1 far contact", floors(1, "")),
         ("4 far contacts", floors(4, "")),
         ("16 far contacts", floors(16, "")),
@@ -79,22 +83,18 @@ fn main() {
         ("buffer touched at times", buffer("l2 + 0.9*l1")),
         ("buffer touched half the time", buffer("l2")),
     ];
-    let mut least = vec![Duration::MAX; cases.len()];
-    for _ in 0..ROUNDS {
-        for ((_, description), least) in cases.iter().zip(&mut least) {
-            let options = Options { methods: Some(vec![Method::Scan]), threads: Some(1), ..Options::default() };
-            let start = Instant::now();
-            run(description, options).expect("the model runs");
-            *least = start.elapsed().min(*least);
-        }
-    }
-    println!("{:30} {:>8} {:>7} {:>22}", "", "seconds", "ratio", "instructions, apart");
-    for ((name, description), seconds) in cases.iter().zip(&least) {
+    let ran = |description: &Description| {
+        let options = Options { methods: Some(vec![Method::Scan]), threads: Some(1), ..Options::default() };
+        run(description, options).expect("the model runs");
+    };
+    println!("{:30} {:>8} {:>23} {:>22}", "bare, against", "seconds", "ratio", "instructions, apart");
+    for (name, description) in &cases {
+        let Paired { seconds: [_, seconds], ratio: [low, ratio, high] } =
+            paired(PAIRS, [&|| ran(&bare), &|| ran(description)]);
         let program = prepare(description).expect("the model compiles").program;
         let tapes = [program.step(), program.factor(), program.correct(), program.advance()];
         let [all, apart] =
             [true, false].map(|touching| tapes.iter().map(|tape| tape.len_where(touching)).sum::<usize>());
-        let ratio = seconds.as_secs_f64() / least[0].as_secs_f64();
-        println!("{name:30} {:8.3} {ratio:7.3} {all:14} {apart:7}", seconds.as_secs_f64());
+        println!("{name:30} {seconds:8.3} {ratio:7.3} ({low:.3} to {high:.3}) {all:14} {apart:7}");
     }
 }

@@ -1,52 +1,39 @@
 //! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the bare one, and
 //! islands apart against the same in one.
 //!
-//! Both are run in turn, each first as often as the other, so that what else the machine does meets them alike; the median of
-//! the pairs' ratios is told, with the quartiles. A model against itself shows what the clock knows.
+//! The median of the pairs' ratios is told, with the quartiles.
+
+mod paired;
 
 use std::fmt::Write as _;
-use std::time::Instant;
 
 use mbint::batch::{Options, run};
 use mbint::model::{Description, load_str, read_str};
+use paired::{Paired, paired};
 
-/// Pairs of runs.
-const PAIRS: usize = 41;
+/// Pairs of runs where the times should be equal, and where they should not.
+const EQUAL: usize = 401;
+const UNEQUAL: usize = 21;
 
 fn main() {
     let crank = slider_crank(0);
-    compare("slider crank", &crank, "itself", &slider_crank(0));
-    compare("slider crank", &crank, "with ten bodies that no output needs", &slider_crank(10));
-    compare("slider crank", &crank, "a scene of one with eight effects more, none of them in", &scene_without());
-    compare("two uncertain pendulums, apart", &pendulums(2, ""), "as one", &pendulums(2, "mixed: p0.x - p1.x"));
-    compare(
-        "three uncertain pendulums, apart",
-        &pendulums(3, ""),
-        "as one",
-        &pendulums(3, "mixed: p0.x - p1.x + p2.x"),
-    );
-}
-
-fn compare(name: &str, first: &Description, other_name: &str, other: &Description) {
-    let seconds = |description: &Description| {
-        let begun = Instant::now();
-        run(description, Options { threads: Some(1), ..Options::default() }).expect("the model runs");
-        begun.elapsed().as_secs_f64()
-    };
-    let mut times = [Vec::new(), Vec::new()];
-    for pair in 0..PAIRS {
-        let order = if pair % 2 == 0 { [0, 1] } else { [1, 0] };
-        order.into_iter().for_each(|which| times[which].push(seconds([first, other][which])));
+    let beside_crank = |name, other| compare(EQUAL, ("slider crank", &crank), (name, &other));
+    beside_crank("itself", slider_crank(0));
+    beside_crank("with ten bodies that no output needs", slider_crank(10));
+    beside_crank("a scene of one with eight effects more, none of them in", scene_without());
+    for (count, mixed) in [(2, "mixed: p0.x - p1.x"), (3, "mixed: p0.x - p1.x + p2.x")] {
+        let name = format!("{count} uncertain pendulums, apart");
+        compare(UNEQUAL, (&name, &pendulums(count, "")), ("as one", &pendulums(count, mixed)));
     }
-    let ratios = times[0].iter().zip(&times[1]).map(|(first, other)| other / first);
-    let [low, ratio, high] = quartiles(ratios.collect());
-    let [first, other] = times.map(|times| 1e3 * quartiles(times)[1]);
-    println!("{name}: {first:.1} ms, {other_name}: {other:.1} ms, ratio {ratio:.3} ({low:.3} to {high:.3})");
 }
 
-fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_by(f64::total_cmp);
-    [1, 2, 3].map(|quarter| values[(values.len() - 1) * quarter / 4])
+fn compare(pairs: usize, (name, first): (&str, &Description), (other_name, other): (&str, &Description)) {
+    let ran = |description: &Description| {
+        run(description, Options { threads: Some(1), ..Options::default() }).expect("the model runs");
+    };
+    let Paired { seconds, ratio: [low, ratio, high] } = paired(pairs, [&|| ran(first), &|| ran(other)]);
+    let [first, other] = seconds.map(|seconds| 1e3 * seconds);
+    println!("{name}: {first:.1} ms, {other_name}: {other:.1} ms, ratio {ratio:.3} ({low:.3} to {high:.3})");
 }
 
 /// The slider crank of Wu, Luo & Zhang, with so many bodies beside it.
@@ -70,9 +57,9 @@ fn slider_crank(more: usize) -> Description {
     read("slider_crank.yaml", &shorter(&text))
 }
 
-/// The model with half a second of its motion.
+/// The model with a tenth of a second of its motion.
 fn shorter(text: &str) -> String {
-    let shorter = text.replacen("duration: 2,", "duration: 0.5,", 1);
+    let shorter = text.replacen("duration: 2,", "duration: 0.1,", 1);
     assert_ne!(shorter, text, "the model lasts 2 s");
     shorter
 }
@@ -112,7 +99,7 @@ fn pendulums(count: usize, mixed: &str) -> Description {
     add("initial:\n", &|i| format!("p{i}.angle: 0.{i}"), "");
     add("outputs:\n", &|i| format!("x{i}: p{i}.x"), mixed);
     text += "effects: { weight: { gravity: { acceleration: [0, -9.81] } } }\n";
-    text += "simulation: { duration: 1, step: 1e-3 }\nbounds: { chebyshev: { order: 5 } }\n";
+    text += "simulation: { duration: 0.1, step: 1e-3 }\nbounds: { chebyshev: { order: 5 } }\n";
     read("pendulums.yaml", &text)
 }
 
