@@ -40,22 +40,22 @@ fn fuzz(few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
 #[test]
 fn models() {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "yaml");
-    fuzz(3000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
+    fuzz(20_000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
 }
 
 #[test]
 fn robots() {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "urdf");
-    fuzz(1000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
+    fuzz(5000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
 }
 
 #[test]
 fn formulas() {
-    fuzz(20_000, formula(), targets::formula);
+    fuzz(100_000, formula(), targets::formula);
 }
 
 #[test]
 fn short_runs() {
     let corpus = Corpus::of(&["models"], "yaml");
-    fuzz(100, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
+    fuzz(1000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
 }
