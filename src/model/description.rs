@@ -106,6 +106,31 @@ pub struct Parameter {
 }
 
 impl Description {
+    /// Nothing yet, in the plane, for a second.
+    pub(crate) fn empty(name: String) -> Self {
+        Self {
+            name,
+            description: None,
+            space: Space { spatial: false, why: String::new() },
+            robot: None,
+            parameters: Vec::new(),
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            effects: Vec::new(),
+            initial: Vec::new(),
+            guess: Vec::new(),
+            outputs: Vec::new(),
+            simulation: Simulation {
+                duration: 1.0,
+                stepping: Stepping::Fixed(1e-3),
+                alpha: -0.1,
+                output_step: 0.01,
+                formulation: Formulation::Auto,
+            },
+            bounds: BoundsRequest::default(),
+        }
+    }
+
     /// The parameters that are known to lie in an interval, with their indices.
     pub fn uncertain(&self) -> impl Iterator<Item = (usize, &Parameter)> {
         let interval =

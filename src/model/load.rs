@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use super::description::{BoundsRequest, Description, Formulation, Simulation, Space, Stepping};
+use super::description::{Description, Space};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::file;
 use super::overrides::Override;
@@ -198,27 +198,9 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
 
 /// A reader of nothing yet.
 fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
-    let model = Description {
-        name: Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned()),
-        description: None,
-        space: Space { spatial: false, why: String::new() },
-        robot: None,
-        parameters: Vec::new(),
-        bodies: Vec::new(),
-        joints: Vec::new(),
-        effects: Vec::new(),
-        initial: Vec::new(),
-        guess: Vec::new(),
-        outputs: Vec::new(),
-        simulation: Simulation {
-            duration: 1.0,
-            stepping: Stepping::Fixed(1e-3),
-            alpha: -0.1,
-            output_step: 0.01,
-            formulation: Formulation::Auto,
-        },
-        bounds: BoundsRequest::default(),
-    };
+    let called =
+        Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let model = Description::empty(called);
     Reader {
         diagnostics,
         model,

@@ -157,7 +157,8 @@ fn draft<'n>(reader: &mut Reader, entry: &'n Entry, replaced: Option<&'n Overrid
     Draft { spec, name_span, unit, value, uses }
 }
 
-fn unit(reader: &mut Reader, node: &Node) -> Option<Unit> {
+/// A unit by its name.
+pub(super) fn unit(reader: &mut Reader, node: &Node) -> Option<Unit> {
     let scalar = reader.scalar(node, "a unit")?;
     match Unit::parse(&scalar.text) {
         Ok(unit) => Some(unit),

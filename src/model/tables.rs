@@ -5,6 +5,7 @@ use symdiff::{Spline, SplineError};
 use super::diagnostic::Diagnostic;
 use super::file;
 use super::load::{MAX_BYTES, read_text};
+use super::parameters::unit;
 use super::quantity::Unit;
 use super::reader::{Fields, Reader, Table};
 use super::source::Span;
@@ -63,16 +64,7 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
 fn units(reader: &mut Reader, fields: &Fields) -> Option<[Option<Unit>; 2]> {
     let Some(node) = fields.get("units") else { return Some([None; 2]) };
     let pair = reader.two(node, "a list of two units")?;
-    let [x, y] = pair.map(|node| {
-        let scalar = reader.scalar(node, "a unit")?;
-        match Unit::parse(&scalar.text) {
-            Ok(unit) => Some(unit),
-            Err(error) => {
-                reader.error(scalar.place(&node.span, error.span), error.message, error.help);
-                None
-            }
-        }
-    });
+    let [x, y] = pair.map(|node| unit(reader, node));
     Some([Some(x?), Some(y?)])
 }
 

@@ -34,27 +34,7 @@ pub struct Model(pub Description);
 impl Model {
     /// Only the ground.
     pub fn new() -> Self {
-        let mut model = Self(Description {
-            name: "test".to_owned(),
-            description: None,
-            space: Space { spatial: false, why: String::new() },
-            robot: None,
-            parameters: Vec::new(),
-            bodies: Vec::new(),
-            joints: Vec::new(),
-            effects: Vec::new(),
-            initial: Vec::new(),
-            guess: Vec::new(),
-            outputs: Vec::new(),
-            simulation: Simulation {
-                duration: 1.0,
-                stepping: Stepping::Fixed(1e-3),
-                alpha: -0.1,
-                output_step: 0.01,
-                formulation: Formulation::Auto,
-            },
-            bounds: BoundsRequest::default(),
-        });
+        let mut model = Self(Description::empty("test".to_owned()));
         model.body("ground", "0", "0", "", &[]);
         model
     }

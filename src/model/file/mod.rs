@@ -1,0 +1,127 @@
+//! The grammar of a model file: which keys stand where.
+//!
+//! One declaration serves the reader, which takes the known keys from it, and the JSON Schema for editors.
+
+#![allow(dead_code)] // the fields are there for their names and types
+
+use schemars::Schema;
+use schemars::transform::{RecursiveTransform, Transform};
+
+/// A mapping of the file whose keys are fixed.
+pub trait Grammar {
+    /// What the mapping is, for messages: `a body`.
+    const WHAT: &'static str;
+    /// Its keys, in the order in which they are suggested.
+    const KEYS: &'static [&'static str];
+}
+
+macro_rules! grammar {
+    ($(
+        $(#[doc = $doc:literal])*
+        $name:ident is $what:literal $(with $extension:literal = $value:literal)* {
+            $($(#[doc = $field_doc:literal])* $field:ident: $type:ty,)*
+        }
+    )*) => {$(
+        $(#[doc = $doc])*
+        #[derive(JsonSchema)]
+        #[schemars(deny_unknown_fields $(, extend($extension = $value))*)]
+        pub struct $name {
+            $($(#[doc = $field_doc])* $field: $type,)*
+        }
+
+        impl Grammar for $name {
+            const WHAT: &'static str = $what;
+            const KEYS: &'static [&'static str] = &[$(stringify!($field)),*];
+        }
+    )*};
+}
+
+mod bodies;
+mod effects;
+mod joints;
+mod model;
+mod run;
+mod values;
+
+pub use bodies::*;
+pub use effects::*;
+pub use joints::*;
+pub use model::*;
+pub use run::*;
+use values::*;
+
+/// The JSON Schema of model files, as text that ends with a newline.
+pub fn schema() -> String {
+    let mut schema = schemars::schema_for!(File);
+    schema.insert("title".to_owned(), "mbint model".into());
+    RecursiveTransform(without_null).transform(&mut schema);
+    // A schema is a tree of JSON values: writing it out cannot fail.
+    let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// A key may be left out, but a value that is given is one: only a mapping may be written as nothing (`taylor:`).
+fn without_null(schema: &mut Schema) {
+    let null = serde_json::json!({ "type": "null" });
+    if let Some(serde_json::Value::Array(choices)) = schema.get_mut("anyOf") {
+        let mapping = |choice: &serde_json::Value| {
+            let target = choice.get("$ref").and_then(serde_json::Value::as_str);
+            target.is_some_and(|target| !target.ends_with("/Number"))
+        };
+        if !choices.iter().any(mapping) {
+            choices.retain(|choice| *choice != null);
+        }
+    }
+    if let Some(serde_json::Value::Array(types)) = schema.get("type")
+        && let [only, serde_json::Value::String(second)] = types.as_slice()
+        && second == "null"
+        && only != "object"
+    {
+        let only = only.clone();
+        schema.insert("type".to_owned(), only);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use schemars::JsonSchema;
+
+    use super::*;
+
+    fn same_keys<G: Grammar + JsonSchema>() {
+        let schema = schemars::schema_for!(G);
+        let properties = schema.get("properties").and_then(|properties| properties.as_object()).unwrap();
+        let mut known: Vec<&str> = properties.keys().map(String::as_str).collect();
+        let mut read = G::KEYS.to_vec();
+        known.sort_unstable();
+        read.sort_unstable();
+        assert_eq!(known, read, "{}", G::WHAT);
+        let described = |property: &serde_json::Value| property.get("description").is_some();
+        assert!(properties.values().all(described), "{}", G::WHAT);
+    }
+
+    #[test]
+    fn the_reader_and_the_schema_know_the_same_keys() {
+        same_keys::<File>();
+        same_keys::<Scene>();
+        same_keys::<SceneSimulation>();
+        same_keys::<Parameter>();
+        same_keys::<Body>();
+        same_keys::<Held>();
+        same_keys::<Joint>();
+        same_keys::<Prismatic>();
+        same_keys::<Screw>();
+        same_keys::<Rotation>();
+        same_keys::<Bushing>();
+        same_keys::<Effect>();
+        same_keys::<SpringDamper>();
+        same_keys::<JointFriction>();
+        same_keys::<Contact>();
+        same_keys::<Impact>();
+        same_keys::<Simulation>();
+        same_keys::<Bounds>();
+        same_keys::<Budget>();
+        same_keys::<Chebyshev>();
+    }
+}

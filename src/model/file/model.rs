@@ -1,0 +1,130 @@
+//! The whole, its scenes, parameters and tables.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+
+use super::*;
+
+grammar! {
+    /// A mechanism, its uncertain parameters, and what is asked of it.
+    File is "a model" {
+        /// Short name; by default the file's.
+        model: Option<String>,
+        /// One line for people.
+        description: Option<String>,
+        /// Whether the mechanism stays in the plane; by default it does where nothing in the file leaves it.
+        space: Option<SpaceName>,
+        /// A robot to begin with: a URDF file, beside this one. Its links are bodies, its numbers parameters.
+        urdf: Option<String>,
+        /// Whether the robot's root link is fixed to the ground, which is the default.
+        base: Option<BaseName>,
+        /// Named numbers; those with a tolerance or an interval are uncertain.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Functions given by their values: in formulas, `NAME(t)`.
+        tables: Option<IndexMap<String, Table>>,
+        /// Bodies, rigid or beams. `ground` is there already, and may be given points.
+        bodies: Option<IndexMap<String, Body>>,
+        /// What holds the bodies together.
+        joints: Option<IndexMap<String, Joint>>,
+        /// What moves the bodies.
+        effects: Option<IndexMap<String, Effect>>,
+        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
+        initial: Option<IndexMap<String, StartFile>>,
+        /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
+        guess: Option<IndexMap<String, StartFile>>,
+        /// What is observed: names with formulas, e.g. `x3: slider.x`.
+        outputs: Option<IndexMap<String, Number>>,
+        /// How long, and in which steps.
+        simulation: Simulation,
+        /// Which bounds to compute; without this, Chebyshev of order 5.
+        bounds: Option<Bounds>,
+        /// Makes stops of the limits of the robot's joints; by default they do nothing.
+        limits: Option<Limits>,
+        /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
+        without: Option<Without>,
+        /// Named variants of this model; `mbint run` runs each of them instead of it.
+        scenes: Option<IndexMap<String, Scene>>,
+    }
+
+    /// A variant of the model: what is not said here is as the model says it.
+    Scene is "a scene" {
+        /// One line for people.
+        description: Option<String>,
+        /// A scene whose changes come first.
+        extends: Option<String>,
+        /// What is not in: effects, joints and outputs by name, or `all` effects.
+        without: Option<Without>,
+        /// What is in although the model, the scene that is extended or this one's `without` leaves it out.
+        with: Option<Vec<String>>,
+        /// New values of the model's parameters, in the model's units.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Instead of the model's of the same name, or on top.
+        joints: Option<IndexMap<String, Joint>>,
+        /// Instead of the model's of the same name, or on top.
+        effects: Option<IndexMap<String, Effect>>,
+        /// Instead of the model's of the same name, or on top.
+        initial: Option<IndexMap<String, StartFile>>,
+        /// Instead of the model's of the same name, or on top.
+        guess: Option<IndexMap<String, StartFile>>,
+        /// Instead of the model's of the same name, or on top.
+        outputs: Option<IndexMap<String, Number>>,
+        /// Keys that are not as in the model.
+        simulation: Option<SceneSimulation>,
+        /// Instead of the model's.
+        bounds: Option<Bounds>,
+        /// Instead of the model's.
+        limits: Option<Limits>,
+    }
+
+    /// How time is stepped in a scene.
+    SceneSimulation is "`simulation`" {
+        /// s
+        duration: Option<Number>,
+        /// Length of every step, s; instead of a `tolerance` of the model.
+        step: Option<Number>,
+        /// Instead of `step`: what the steps' position errors may add up to over the run, relative to |q| or, where that is larger, to the model's size.
+        tolerance: Option<Number>,
+        /// HHT parameter from -1/3 to below 0.
+        alpha: Option<Number>,
+        /// s between rows of output.
+        output_step: Option<Number>,
+        /// By which coordinates the motion is described.
+        formulation: Option<FormulationName>,
+    }
+
+    /// Stops at the limits of a robot's joints.
+    Limits is "`limits`" {
+        /// How they push back.
+        impact: Impact,
+    }
+
+    /// A parameter; certain unless it has a tolerance, an interval, or plus and minus.
+    Parameter is "a parameter" {
+        /// Its nominal value.
+        value: Option<Number>,
+        /// Unit of the bare numbers given here, e.g. `mm` or `N*s/m`.
+        unit: Option<String>,
+        /// Largest deviation either way: `1%` of the value, or a quantity.
+        tolerance: Option<Number>,
+        /// Smallest and largest value; without `value`, the nominal is the middle.
+        interval: Option<[Number; 2]>,
+        /// Largest deviation upwards.
+        plus: Option<Number>,
+        /// Largest deviation downwards.
+        minus: Option<Number>,
+        /// What it is, for people.
+        description: Option<String>,
+    }
+
+    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends.
+    Table is "a table" {
+        /// A CSV file, beside the model; `#` begins a comment.
+        file: Option<String>,
+        /// Names or numbers (from 1) of the file's columns with argument and value; by default the first two.
+        columns: Option<[Column; 2]>,
+        /// Instead of `file`: pairs of argument and value, arguments ascending.
+        points: Option<Vec<[f64; 2]>>,
+        /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
+        units: Option<[String; 2]>,
+    }
+}

@@ -1,0 +1,230 @@
+//! What stands behind a key: numbers, names of things, and short forms.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+
+use super::*;
+
+/// A number, a formula, or a number with its unit.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+pub enum Number {
+    /// A number in SI units.
+    Plain(f64),
+    /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
+    Text(String),
+}
+
+/// Components along x and y, and in space along z, which is 0 where it is left out.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Components {
+    Planar([Number; 2]),
+    Spatial([Number; 3]),
+}
+
+/// Direction: `x`, `y`, `z` or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Direction {
+    Named(Axis),
+    Components(Components),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum CoordinateName {
+    X,
+    Y,
+    Z,
+    /// About z.
+    Angle,
+    /// Euler parameters: any rotation.
+    Orientation,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum SpaceName {
+    /// z = 0, and rotations about z only.
+    Planar,
+    /// Bodies that say nothing else have six freedoms.
+    Spatial,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum FormulationName {
+    /// Whichever takes fewer instructions.
+    Auto,
+    /// Each body has coordinates of its own, and joints constrain them.
+    Absolute,
+    /// The joints' angles and displacements, of which each carries a body; joints that close loops constrain them.
+    Joint,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum BaseName {
+    /// The root link is part of the ground.
+    Fixed,
+    /// The root link is a body like any other.
+    Floating,
+}
+
+/// A place in a body's frame, or a frame there.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum PointFile {
+    At(Components),
+    Frame(Box<PointFrame>),
+}
+
+/// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum InertiaFile {
+    /// About z; in space the same about every axis.
+    Scalar(Number),
+    /// xx, yy and zz.
+    Principal([Number; 3]),
+    Full(Tensor),
+}
+
+/// A number of the frame's axes each, or one for all.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum PerAxis {
+    All(Number),
+    Each([Number; 3]),
+}
+
+/// A number; three of a vector; or a rotation.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum StartFile {
+    Number(Number),
+    Vector([Number; 3]),
+    Rotation(Rotation),
+}
+
+/// A number (in the plane, about z), or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum TorqueValue {
+    Scalar(Number),
+    Vector([Number; 3]),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum Frame {
+    /// Components along the ground's axes.
+    Ground,
+    /// Components along the body's axes.
+    Body,
+}
+
+/// A column by its name, or by its number.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Column {
+    Number(u32),
+    Name(String),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum JointCoordinateName {
+    /// About the joint's axis.
+    Angle,
+    /// Along it.
+    Displacement,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum ProfileName {
+    /// Its acceleration is a sine.
+    Cycloidal,
+    /// A polynomial that begins and ends without rate and acceleration.
+    Quintic,
+    /// A constant rate between constant accelerations.
+    Trapezoidal,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "snake_case", inline)]
+pub enum RestitutionLawName {
+    /// 3 (1 - e)/(2 v)
+    HuntCrossley,
+    /// 3 (1 - e^2)/(4 v)
+    LankaraniNikravesh,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum Range {
+    /// The polynomial's own range.
+    Tight,
+    /// Interval arithmetic term by term, as in the paper: wider.
+    Interval,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum Expand {
+    /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
+    Coordinates,
+    /// Each output, as in the paper.
+    Output,
+}
+
+/// Either the mapping or, where it needs nothing else, the list of what it is between.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum OrBetween<T> {
+    /// Short for `{ between: [a, b] }`.
+    Short([String; 2]),
+    Full(T),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum AllEffects {
+    All,
+}
+
+/// Names of effects, joints and outputs, or `all` effects.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Without {
+    All(AllEffects),
+    Names(Vec<String>),
+}
+
+/// A whole number for all parameters, or one for each uncertain parameter.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum PerParameter {
+    All(u32),
+    Each(IndexMap<String, u32>),
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum ParameterFile {
+    /// A number, a formula, or a number with its unit.
+    Number(Number),
+    /// Of a number of the URDF: its smallest and largest value.
+    Interval([Number; 2]),
+    Full(Parameter),
+}
