@@ -3,6 +3,11 @@
 use std::collections::HashMap;
 use std::fs;
 use std::process::Command;
+use std::sync::Mutex;
+
+use mbint::batch::{CostOptions, cost};
+use mbint::model::load_str;
+use mbint::report::{CostStudy, write_cost};
 
 /// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so that
 /// bounds are reached at inner points of the interval.
@@ -151,4 +156,26 @@ fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {
         assert_eq!(run(wrong).1, Some(2), "{wrong}");
     }
+}
+
+/// Interrupted half way, a study keeps what was measured, and whole runs only.
+#[test]
+fn what_is_measured_before_an_interruption_is_kept() {
+    let model = load_str("oscillator", OSCILLATOR, &[]).unwrap();
+    let reached = Mutex::new(0.0_f64);
+    let study = |until: f64| {
+        *reached.lock().unwrap() = 0.0;
+        let progress = |fraction: f64| *reached.lock().unwrap() = fraction;
+        let interrupted = || *reached.lock().unwrap() >= until;
+        let (progress, interrupted) = (&progress, &interrupted);
+        cost(&model, &CostOptions { tolerance: 1e-2, budget: 60.0, threads: Some(2), progress, interrupted }).unwrap()
+    };
+    let [whole, half] = [f64::INFINITY, 0.6].map(study);
+    let told = |study: &CostStudy| study.left_out.iter().any(|line| line.contains("interrupted"));
+    assert_eq!((told(&whole), told(&half)), (false, true));
+    assert!(!half.bounds.is_empty() && half.bounds.len() < whole.bounds.len());
+    assert!(half.bounds.iter().all(|point| point.failure.is_none() && point.seconds.is_finite()));
+    assert!(half.trajectories.is_empty() && !whole.trajectories.is_empty());
+    let place = tempfile::tempdir().unwrap();
+    assert!(!write_cost(place.path(), &half).unwrap().is_empty());
 }

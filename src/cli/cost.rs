@@ -7,7 +7,7 @@ use super::console::{BOLD, Console, count};
 use super::progress::Progress;
 use super::run::{results_of, set_once};
 use super::table::{Align, Table};
-use super::{Failure, Status, load};
+use super::{Failure, Status, interrupt, load};
 use crate::batch::{self, CostOptions};
 use crate::model::{BoundsRequest, Description, Stepping};
 use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, pareto, prepare_folder, write_cost};
@@ -27,14 +27,24 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         budget: args.budget,
         threads: args.threads.map(usize::from),
         progress: &|fraction| progress.set(fraction),
+        interrupted: &interrupt::asked,
     };
-    let study = batch::cost(&model, &options).map_err(|error| failed(&error))?;
+    interrupt::listen();
+    let study = match batch::cost(&model, &options) {
+        Ok(study) => study,
+        Err(_) if interrupt::asked() => {
+            drop(progress);
+            console.error(&format!("{}: interrupted before there was anything to compare", model.name));
+            return Ok(Status::Interrupted);
+        }
+        Err(error) => return Err(failed(&error)),
+    };
     drop(progress);
     let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
     if !args.quiet {
         console.print(&overview(&study, &folder, &files))?;
     }
-    Ok(Status::Done)
+    Ok(if interrupt::asked() { Status::Interrupted } else { Status::Done })
 }
 
 /// The error that is wanted: the command's, else the model's own, else the default.

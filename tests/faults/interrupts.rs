@@ -46,6 +46,23 @@ fn what_is_finished_at_a_ctrl_c_is_written() {
     assert!(fs::read_to_string(place.path().join("out/summary.json")).unwrap().contains("interrupted"));
 }
 
+/// Its reference alone takes seconds, and without it nothing was measured.
+#[test]
+fn a_study_of_costs_ends_at_a_ctrl_c() {
+    let place = Place::new();
+    long(&place);
+    let run = begin(&place, "cost -q crank.yaml -o out");
+    std::thread::sleep(Duration::from_millis(700));
+    signal(&run, "-INT");
+    let ended = run.wait_with_output().unwrap();
+    let errors = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(
+        (ended.status.code(), errors.as_str()),
+        (Some(130), "error: crank: interrupted before there was anything to compare\n")
+    );
+    assert_eq!(place.files("out"), Vec::<String>::new());
+}
+
 #[test]
 fn a_second_ctrl_c_does_not_wait() {
     let place = Place::new();

@@ -14,7 +14,7 @@ use crate::report::{CostMethod, CostPoint};
 /// Spectral radii that generalised-α is tried with.
 const RADII: [f64; 3] = [0.5, 0.8, 0.9];
 
-/// Every scheme's settings, from coarse to fine.
+/// Every scheme's settings, from coarse to fine; those that were done before an interruption.
 ///
 /// # Errors
 /// Where a scheme cannot be compiled or started at all; steps that fail make a setting without a result.
@@ -23,6 +23,7 @@ pub(super) fn trajectories(
     system: &System,
     known: &Known,
     progress: &dyn Fn(f64),
+    interrupted: &dyn Fn() -> bool,
 ) -> Result<Vec<CostPoint>, CostError> {
     let mut schemes = vec![model_scheme(model), Scheme::TrapezoidalIndex2];
     schemes.extend(RADII.map(|spectral_radius| Scheme::GeneralisedAlpha { spectral_radius }));
@@ -31,7 +32,7 @@ pub(super) fn trajectories(
     let mut points = Vec::new();
     for scheme in schemes {
         let simulator = Simulator::new(system.clone(), scheme, first_step(model)).map_err(RunError::from)?;
-        for &stepping in &steppings {
+        for &stepping in steppings.iter().take_while(|_| !interrupted()) {
             let (run, seconds) = best_of(|| Course::run(&simulator, &model.simulation, stepping), |_, seconds| seconds)
                 .map_err(RunError::from)?;
             points.push(CostPoint {

@@ -33,6 +33,8 @@ pub struct CostOptions<'a> {
     pub threads: Option<usize>,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Asked now and then whether to end; what was measured by then is kept.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Why there is no study.
@@ -85,7 +87,10 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         }));
     }
     let progress = |done: f64| (options.progress)(BOUNDS_DONE + (1.0 - BOUNDS_DONE) * done);
-    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress)?;
+    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, options.interrupted)?;
+    if (options.interrupted)() {
+        left_out.push("what was not done when the study was interrupted".to_owned());
+    }
     mark(&mut bounds, reference.told.bounds_error);
     mark(&mut trajectories, reference.told.trajectory_error);
     Ok(CostStudy {
@@ -115,6 +120,9 @@ fn run_settings(
     let mut rates: Vec<(CostMethod, f64)> = Vec::new();
     let (mut points, mut skipped) = (vec![None; settings.len()], Vec::new());
     for place in by_work {
+        if (options.interrupted)() {
+            break;
+        }
         let setting = &settings[place];
         let work = setting.work(k);
         let progress = |fraction: f64| {
@@ -130,7 +138,8 @@ fn run_settings(
             if point.seconds.is_finite() {
                 *rate = point.seconds / work;
             }
-            points[place] = Some(point);
+            // A run that was cut short measures nothing.
+            points[place] = Some(point).filter(|_| !(options.interrupted)());
         }
         done += work;
     }

@@ -47,7 +47,10 @@ pub(super) fn bounds(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Bounds, Summary), RunError> {
-    run(&setting.applied(model), Options { threads: options.threads, progress, ..Options::default() })
+    run(
+        &setting.applied(model),
+        Options { threads: options.threads, progress, interrupted: options.interrupted, ..Options::default() },
+    )
 }
 
 /// The same against the clock: seconds are those of the method alone, since compiling the model is the same for all.
