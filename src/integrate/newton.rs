@@ -198,17 +198,15 @@ impl Newton {
             let value = |slot: usize| tile.lane(slot)[lane];
             let entries: Vec<(usize, usize, f64)> =
                 program.matrix_entries.iter().map(|&(row, column, slot)| (row, column, value(slot))).collect();
-            // What a row's terms come to, of which ε is lost.
-            let mut terms = vec![0.0; program.residual.len()];
-            for &(row, column, slope) in
-                entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates)
-            {
+            let mut rounding = vec![0.0; program.residual.len()];
+            let slopes = entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates);
+            for &(row, column, slope) in slopes.filter(|_| count >= FROZEN_CORRECTIONS) {
                 let position = value(program.layout.q.start + column).abs() + program.scale[column];
-                terms[row] += slope.abs() * position / gain;
+                rounding[row] += ROUND_OFF * slope.abs() * position / gain;
             }
-            let right = program.residual.iter().zip(&terms).map(|(&slot, terms)| {
+            let right = program.residual.iter().zip(&rounding).map(|(&slot, rounding)| {
                 let residual = value(slot);
-                if count >= FROZEN_CORRECTIONS && residual.abs() <= ROUND_OFF * terms { 0.0 } else { -residual }
+                if residual.abs() <= *rounding { 0.0 } else { -residual }
             });
             let right: Vec<f64> = right.collect();
             let solution = solve_whatever_rank(&entries, &right, &program.equilibration);

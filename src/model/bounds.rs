@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::description::{
+use super::bounds_request::{
     BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, RangeKind, ScanRequest, TaylorRequest,
 };
 use super::diagnostic::Diagnostic;

@@ -3,6 +3,7 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
+mod bounds_request;
 mod catalog;
 mod description;
 mod diagnostic;
@@ -41,6 +42,7 @@ mod tests;
 mod urdf;
 mod vectors;
 
+pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
