@@ -5,7 +5,7 @@ use symdiff::Tile;
 use super::newton::{Counters, Newton};
 use crate::program::Program;
 
-/// A step that fails is halved, and what fails of it, down to a part of 2 to the power of this many before it is given up.
+/// A step that fails is divided into 2, 4, … up to 2 to the power of this many before it is given up.
 const MAX_HALVINGS: u32 = 10;
 
 /// A sample that could not go on.
@@ -205,7 +205,7 @@ impl<'p> Stepper<'p> {
         }
     }
 
-    /// One lane alone, in halves, and halves of what resists. Returns the equation that resists to the end.
+    /// One lane alone, the step divided ever finer. Returns the equation that resists.
     fn rescue(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
         let layout = &self.program.layout;
         let mut alone = Tile::new(1, self.program.slots(), self.program.constants());
@@ -213,34 +213,33 @@ impl<'p> Stepper<'p> {
             alone.lane_mut(slot)[0] = self.tile.lane(slot)[lane];
         }
         let mut single = Stepper::new(self.program, &alone);
-        single.rewind(&single.save(), h);
+        let start = single.save();
         single.errors = self.errors.as_ref().map(|_| vec![LocalError::default()]);
-        // Parts of the step: those that are left, and how many are taken at once.
-        let whole = 1_u32 << MAX_HALVINGS;
-        let (mut left, mut size) = (whole, whole / 2);
-        let mut error = 0.0;
-        while left > 0 {
-            let length = |parts: u32| h * f64::from(parts) / f64::from(whole);
-            if single.try_step(length(size), end - length(left - size))[0] {
-                left -= size;
+        for halvings in 1..=MAX_HALVINGS {
+            let parts = 1_u32 << halvings;
+            single.rewind(&start, h);
+            let part = h / f64::from(parts);
+            let mut error = 0.0;
+            let done = (1..=parts).all(|count| {
+                let converged = single.try_step(part, end - f64::from(parts - count) * part)[0];
                 error += single.local_errors().first().map_or(0.0, |error| error.size);
-            } else if size > 1 {
-                size /= 2;
-            } else {
-                return Err(single.worst_equation(0));
+                converged
+            });
+            if done {
+                for (error_of, last) in self.errors.iter_mut().zip(&single.errors) {
+                    error_of[lane] = LocalError { size: error, ..last[0] };
+                }
+                // Back to the schedule's step size, so that a fits it.
+                single.set_step_size(h);
+                for slot in layout.state() {
+                    self.tile.lane_mut(slot)[lane] = single.tile.lane(slot)[0];
+                }
+                self.newton.counters.iterations += single.newton.counters.iterations;
+                self.newton.counters.rank_revealing += single.newton.counters.rank_revealing;
+                return Ok(());
             }
         }
-        for (error_of, last) in self.errors.iter_mut().zip(&single.errors) {
-            error_of[lane] = LocalError { size: error, ..last[0] };
-        }
-        // Back to the schedule's step size, so that a fits it.
-        single.set_step_size(h);
-        for slot in layout.state() {
-            self.tile.lane_mut(slot)[lane] = single.tile.lane(slot)[0];
-        }
-        self.newton.counters.iterations += single.newton.counters.iterations;
-        self.newton.counters.rank_revealing += single.newton.counters.rank_revealing;
-        Ok(())
+        Err(single.worst_equation(0))
     }
 
     /// The equation with the largest residual at a lane's iterate, each against its scale.
