@@ -35,13 +35,12 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let uncertain = uncertain(description);
     let place = |name: &String| uncertain.iter().position(|known| known == name);
     explanation.parameters.sort_by_key(place);
-    let why = |why: &str| why.to_owned();
     for number in idle(&uncertain, &prepared) {
         let what = format!("parameter {}", uncertain[number]);
-        explanation.left_out.push(LeftOut { what, why: why("nothing depends on it") });
+        explanation.left_out.push(LeftOut { what, why: "nothing depends on it".to_owned() });
     }
     for what in &reduction.left_out {
-        explanation.left_out.push(LeftOut { what: what.clone(), why: why("no output depends on it") });
+        explanation.left_out.push(LeftOut { what: what.clone(), why: "no output depends on it".to_owned() });
     }
     explanation.decisions = decisions(description, &reduction, &prepared);
     Ok(explanation)

@@ -36,7 +36,7 @@ pub use error::{
 };
 pub use extremes::{Extent, extremes, extremes_near};
 pub use range::{Enclosed, PolynomialRange, Range};
-pub use result::{Band, Bounds, Contribution, Method, OutputBounds};
+pub use result::{Band, Bounds, Contribution, Method, OutputBounds, foremost};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};

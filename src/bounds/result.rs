@@ -41,6 +41,11 @@ pub struct OutputBounds {
     pub bands: Vec<Band>,
 }
 
+/// Of one output's bands, the one to look at: the first that is resolved to the end, or else the first.
+pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> {
+    bands.iter().find(|band| is_resolved(band)).or(bands.first())
+}
+
 /// A method's bounds of one output over time, and how far they may be from the truth.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]

@@ -1,6 +1,7 @@
 //! The terminal, or what stands in for it: text for people and errors.
 
 use std::io::{self, ErrorKind, Write};
+use std::path::PathBuf;
 
 use clap::builder::styling::{AnsiColor, Style};
 
@@ -54,6 +55,12 @@ impl Console {
     pub fn color(&self) -> bool {
         anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never
     }
+}
+
+/// Names of files or folders without what leads to them, in a line.
+pub(super) fn file_names<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> String {
+    let names = paths.into_iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// `1 step`, `2 steps`, `no steps`.

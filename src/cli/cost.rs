@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::CostArgs;
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
 use super::run::{results_of, set_once};
 use super::table::{Align, Table};
@@ -71,8 +71,7 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
         text += &format!("  left out: {left_out}\n");
     }
     text += &format!("\n{BOLD}{}{BOLD:#}\n", choice(study));
-    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
-    text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
+    text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
     text
 }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::args::RunArgs;
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, file_names};
 use super::progress::Progress;
 use super::scenes::Scenes;
 use super::table::{Align, Table};
@@ -391,8 +391,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
         text += &format!("  {}: {steps} through a singular matrix, by the rank-revealing solve\n", method.method);
     }
     text += &singular(summary);
-    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
-    text += &format!("  {}: {}\n", folder.display(), names.collect::<Vec<_>>().join(", "));
+    text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
     text
 }
 

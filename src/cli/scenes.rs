@@ -1,12 +1,13 @@
 //! `mbint run` of a model with scenes: each by itself, and then side by side.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, file_names};
 use super::run::{Done, Job, Request, complain, run_one};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
+use crate::bounds::foremost;
 use crate::report::{ErrorSummary, SceneBounds, Summary, write_scenes};
 
 /// A model's scenes that are run together.
@@ -80,24 +81,14 @@ impl Scenes {
         let rows = ran.iter().map(|ran| (ran.scene, ran.seconds, ran.done.as_ref().map(|done| &done.summary)));
         text += &format!("\n\n{}\n", table(rows).render(2));
         if !files.is_empty() {
-            let name = |path: &Path| Some(path.file_name()?.to_string_lossy().into_owned());
-            let names: Vec<String> = files.iter().filter_map(|file| name(file)).collect();
             let written = |scene: &str| ran.iter().any(|ran| ran.scene == scene && ran.done.is_some());
-            let folders: Vec<String> = self
-                .jobs
-                .iter()
-                .filter(|(scene, _)| written(scene))
-                .filter_map(|(_, job)| Some(format!("{}/", name(&job.folder)?)))
-                .collect();
-            text += &format!("  {}: {}; {}\n", self.folder.display(), names.join(", "), folders.join(", "));
+            let folders = self.jobs.iter().filter(|(scene, _)| written(scene)).map(|(_, job)| &job.folder);
+            let folders: Vec<String> = folders.map(|folder| format!("{}/", file_names([folder]))).collect();
+            let (folder, names) = (self.folder.display(), file_names(files));
+            text += &format!("  {folder}: {names}; {}\n", folders.join(", "));
         }
         text
     }
-}
-
-/// The band of an output that is looked at first: of the first method that resolves it to the end, or else of the first.
-fn best(bands: &[ErrorSummary]) -> Option<&ErrorSummary> {
-    bands.iter().find(|band| band.unresolved_from.is_none()).or(bands.first())
 }
 
 /// How large each scene is, how wide each output's bounds are, and how far they may be from the truth.
@@ -114,8 +105,9 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
         let size = summary.map_or_else(|| "–".to_owned(), |summary| summary.coordinates.to_string());
         let mut first = [scene.to_owned(), size, format!("{seconds:.3}")];
+        let foremost = |bands| foremost(bands, |band: &ErrorSummary| band.unresolved_from.is_none());
         let bands = summary.map_or(&[][..], |summary| &summary.errors);
-        let mut of_outputs = bands.chunk_by(|a, b| a.output == b.output).filter_map(best).peekable();
+        let mut of_outputs = bands.chunk_by(|a, b| a.output == b.output).filter_map(foremost).peekable();
         let none = of_outputs.peek().is_none();
         for band in of_outputs {
             let name = format!("{}.{}", band.output, band.method);

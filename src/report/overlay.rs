@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use super::figure::{Course, figure_svg};
 use super::panel::Style;
 use super::scenes::SceneBounds;
-use crate::bounds::{Band, OutputBounds};
+use crate::bounds::{Band, OutputBounds, foremost};
 
 /// Colours that are apart for every colour vision; further scenes have them again, darker.
 const COLORS: [RGBColor; 7] = [
@@ -52,10 +52,8 @@ pub fn overlay_svg(name: &str, scenes: &[SceneBounds]) -> Result<String, String>
     figure_svg(name, &output.unit, &courses)
 }
 
-/// The band of the first method that resolves the output to the end, or else of the first.
 fn best(output: &OutputBounds) -> Option<&Band> {
-    let resolved = output.bands.iter().find(|band| band.error.unresolved_from().is_none());
-    resolved.or(output.bands.first())
+    foremost(&output.bands, |band| band.error.unresolved_from().is_none())
 }
 
 fn color(place: usize) -> RGBColor {
