@@ -4,9 +4,9 @@
 
 mod paired;
 
-use mbint::batch::{Options, prepare, run};
-use mbint::bounds::Method;
 use mbint::model::{Description, load_str};
+use mbint::results::Method;
+use mbint::study::{Options, prepare, run};
 use paired::{Paired, paired};
 
 /// Pairs of runs of each.

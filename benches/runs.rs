@@ -3,8 +3,8 @@
 mod models;
 
 use divan::{Bencher, bench};
-use mbint::batch::{Options, run};
-use mbint::bounds::Method;
+use mbint::results::Method;
+use mbint::study::{Options, run};
 
 fn main() {
     divan::main();

@@ -1,13 +1,15 @@
 //! mbint: what a mechanism can do when its parameters are only known up to tolerances.
 //!
-//! The way of the data, one module a stage: [`model`] → [`reduce`] → [`mechanics`] → program → integrate → [`bounds`] → [`report`].
+//! The data flow, one module a stage: [`syntax`] → [`model`] → [`reduce`] → [`assemble`] → [`compile`] → [`simulate`] → [`numerics`] → [`results`] → [`export`]; [`study`] orchestrates.
 
-pub mod batch;
-pub mod bounds;
+pub mod assemble;
 pub mod cli;
-pub mod integrate;
-pub mod mechanics;
+pub mod compile;
+pub mod export;
 pub mod model;
-pub mod program;
+pub mod numerics;
 pub mod reduce;
-pub mod report;
+pub mod results;
+pub mod simulate;
+pub mod study;
+pub mod syntax;

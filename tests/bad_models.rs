@@ -7,7 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use mbint::model::{self, Diagnostics, Override};
+use mbint::{
+    model::{self, Override},
+    syntax::Diagnostics,
+};
 use proptest::prelude::*;
 
 fn root() -> &'static Path {

@@ -5,9 +5,10 @@ use std::fs;
 use std::process::Command;
 use std::sync::Mutex;
 
-use mbint::batch::{CostOptions, cost};
+use mbint::export::write_cost;
 use mbint::model::load_str;
-use mbint::report::{CostStudy, write_cost};
+use mbint::results::CostStudy;
+use mbint::study::{CostOptions, cost};
 
 /// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so that
 /// bounds are reached at inner points of the interval.

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use mbint::{batch, model};
+use mbint::{model, study};
 
 const PAGE: &str = include_str!("../docs/effects.md");
 
@@ -38,7 +38,7 @@ fn the_examples_are_right() {
     for text in models {
         let description =
             model::load_str("effects.md", &text, &[]).unwrap_or_else(|told| panic!("{}", told.render(false)));
-        batch::prepare(&description).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        study::prepare(&description).unwrap_or_else(|error| panic!("{error}\n{text}"));
     }
 }
 
@@ -67,8 +67,8 @@ fn written(keyword: &str) -> Option<Vec<i64>> {
 fn the_costs_of_effects_are_about_as_written() {
     let mut table = String::new();
     let mut wrong = Vec::new();
-    for (keyword, cost) in batch::language_costs().unwrap() {
-        let numbers = |part: mbint::report::StepInstructions| [part.iteration, part.factor, part.step];
+    for (keyword, cost) in study::language_costs().unwrap() {
+        let numbers = |part: mbint::results::StepInstructions| [part.iteration, part.factor, part.step];
         let counted = [Some(cost.acting), cost.apart].into_iter().flatten().flat_map(numbers).collect::<Vec<_>>();
         let cells: Vec<String> = counted.iter().map(i64::to_string).collect();
         table += &format!("| `{keyword}` | {} | {} |\n", cells[..3].join(" | "), cells[3..].join(", "));

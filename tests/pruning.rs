@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use mbint::batch::{self, Options};
-use mbint::bounds::{Bounds, Method};
+use mbint::export::bounds_csv;
 use mbint::model::{self, Description};
-use mbint::report::{MethodSummary, Summary, bounds_csv};
+use mbint::results::{Bounds, Method};
+use mbint::results::{MethodSummary, Summary};
+use mbint::study::{self, Options};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
@@ -13,7 +14,7 @@ fn read(text: &str) -> Description {
 
 #[track_caller]
 fn run(description: &Description) -> (Bounds, Summary) {
-    let (bounds, summary) = batch::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
+    let (bounds, summary) = study::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
     assert_eq!(summary.failure, None);
     (bounds, summary)
 }
@@ -24,7 +25,7 @@ fn csv(bounds: &Bounds) -> String {
 
 /// Instructions of every tape.
 fn instructions(description: &Description) -> [usize; 9] {
-    let simulator = batch::prepare(description).unwrap();
+    let simulator = study::prepare(description).unwrap();
     let (p, s) = (&simulator.program, &simulator.start);
     [
         p.sample().len(),
@@ -264,10 +265,10 @@ bounds: { scan: { points: 2 } }
 
 /// Largest difference of two runs' bounds, output by output, relative to the output's size.
 fn difference(a: &Bounds, b: &Bounds) -> Vec<(String, f64)> {
-    let of = |(a, b): (&mbint::bounds::OutputBounds, &mbint::bounds::OutputBounds)| {
+    let of = |(a, b): (&mbint::results::OutputBounds, &mbint::results::OutputBounds)| {
         assert_eq!(a.name, b.name);
         let size = a.nominal.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
-        let band = |one: &mbint::bounds::Band, other: &mbint::bounds::Band| {
+        let band = |one: &mbint::results::Band, other: &mbint::results::Band| {
             let lower = one.lower.iter().zip(&other.lower);
             lower.chain(one.upper.iter().zip(&other.upper)).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
         };
@@ -275,7 +276,7 @@ fn difference(a: &Bounds, b: &Bounds) -> Vec<(String, f64)> {
         let bands = a.bands.iter().zip(&b.bands).map(|(a, b)| band(a, b));
         (a.name.clone(), bands.fold(nominal, f64::max) / size)
     };
-    let same = |output: &&mbint::bounds::OutputBounds| a.outputs.iter().any(|known| known.name == output.name);
+    let same = |output: &&mbint::results::OutputBounds| a.outputs.iter().any(|known| known.name == output.name);
     a.outputs.iter().zip(b.outputs.iter().filter(same)).map(of).collect()
 }
 
@@ -307,7 +308,7 @@ fn welded_bodies_are_one_where_nothing_asks_for_the_weld() {
         for ((name, coarse), (_, fine)) in across("1e-3").iter().zip(&across("5e-4")) {
             assert!(*fine < 0.3 * coarse || *fine < 1e-9, "{name}: {coarse}, {fine}");
         }
-        let sizes = |weld: bool| batch::prepare(&model("absolute", "1e-3", weld)).unwrap().system.q.len();
+        let sizes = |weld: bool| study::prepare(&model("absolute", "1e-3", weld)).unwrap().system.q.len();
         assert_eq!((sizes(false), sizes(true)), unknowns);
     }
 }
@@ -373,9 +374,9 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
 "
         ))
     };
-    let simulator = batch::prepare(&sliders("inertia: 0.3")).unwrap();
+    let simulator = study::prepare(&sliders("inertia: 0.3")).unwrap();
     let (program, system) = (&simulator.program, &simulator.system);
-    let constant = |simulator: &mbint::integrate::Simulator| {
+    let constant = |simulator: &mbint::simulate::Simulator| {
         let system = &simulator.system;
         system.mass.iter().all(|&(_, _, value)| {
             let symbols = system.graph.symbols_of(&[value]);
@@ -387,7 +388,7 @@ simulation: {{ duration: 1, step: 1e-3, formulation: absolute }}
     assert_eq!((program.factor().len(), watched), (0, 0));
     assert!(program.sample().len() + program.step_size().len() > 0);
     // With a centre of mass off the frame's origin M depends on the angle, and the matrix with it.
-    let simulator = batch::prepare(&sliders("inertia: 0.3, center_of_mass: [0.1, 0]")).unwrap();
+    let simulator = study::prepare(&sliders("inertia: 0.3, center_of_mass: [0.1, 0]")).unwrap();
     assert!(!constant(&simulator) && !simulator.program.factor().is_empty());
 }
 
@@ -396,7 +397,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     let (a, b, c) =
         (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"), pendulum("c", 0.1, ""));
     let model = a.with(&b).with(&c).with(&chain_of_ten()).model();
-    let explanation = batch::explain(&model).unwrap();
+    let explanation = study::explain(&model).unwrap();
     let find = |what: &str| {
         let decision = explanation.decisions.iter().find(|decision| decision.what.contains(what));
         decision.unwrap_or_else(|| panic!("{what}: {:#?}", explanation.decisions))
@@ -420,11 +421,11 @@ fn every_decision_is_explained_with_what_it_saves() {
     assert_eq!(left_out("joint idle_joint3"), Some("no output depends on it"));
 
     let welded = read(&WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3"));
-    let explanation = batch::explain(&welded).unwrap();
+    let explanation = study::explain(&welded).unwrap();
     let merged = explanation.decisions.iter().find(|decision| decision.what.contains("are one: weld")).unwrap();
     let mut kept = WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3");
     kept = kept.replace("load: hinge.force,", "load: hinge.force, weld: weld.force,");
-    let explanation = batch::explain(&read(&kept)).unwrap();
+    let explanation = study::explain(&read(&kept)).unwrap();
     let stays = explanation.decisions.iter().find(|decision| decision.what == "bodies of joint weld stay two").unwrap();
     assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is asked for", None));
     let count = |text: &str| -> i64 { instructions(&read(text))[2..6].iter().sum::<usize>() as i64 };
@@ -459,7 +460,7 @@ fn locking(outputs: &str) -> Sections {
 #[test]
 fn an_island_that_stops_leaves_the_others_alone() {
     let free = pendulum("a", 0.0, ", tolerance: 2%");
-    let run = |model: &Description| batch::run(model, Options { threads: Some(2), ..Options::default() }).unwrap();
+    let run = |model: &Description| study::run(model, Options { threads: Some(2), ..Options::default() }).unwrap();
     let mut both = locking("  rocker: rocker.angle\n").with(&free);
     both.initial += "  crank.angle: 0.5\n";
     let (bounds, summary) = run(&both.model());
@@ -498,9 +499,9 @@ fn with_parts_of_the_box_left_out_there_is_one_island() {
     };
     slider.add(&pendulum("a", 0.0, ", tolerance: 2%"));
     let model = slider.model();
-    let refused = batch::run(&model, Options::default()).unwrap_err().to_string();
+    let refused = study::run(&model, Options::default()).unwrap_err().to_string();
     assert!(refused.contains("cannot be assembled") && refused.contains("rod"), "{refused}");
-    let (bounds, summary) = batch::run(&model, Options { skip_infeasible: true, ..Options::default() }).unwrap();
+    let (bounds, summary) = study::run(&model, Options { skip_infeasible: true, ..Options::default() }).unwrap();
     assert!(summary.islands.is_empty() && !summary.pieces.is_empty());
     assert!(summary.pieces.iter().all(|piece| piece.lower.len() == 2), "{:?}", summary.pieces);
     // Of 0.25 m, 0.05 are too short.

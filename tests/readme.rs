@@ -1,6 +1,6 @@
 //! What the README shows is so.
 
-use mbint::{batch, model};
+use mbint::{model, study};
 
 const README: &str = include_str!("../README.md");
 
@@ -16,7 +16,7 @@ fn the_models_are_right() {
     for text in blocks("yaml") {
         let description =
             model::load_str("README.md", text, &[]).unwrap_or_else(|told| panic!("{}", told.render(false)));
-        batch::prepare(&description).unwrap();
+        study::prepare(&description).unwrap();
     }
 }
 

@@ -4,9 +4,9 @@
 
 use std::fmt::Write;
 
-use mbint::batch;
-use mbint::integrate::{Simulator, Stepper};
 use mbint::model::{Description, load_str};
+use mbint::simulate::{Simulator, Stepper};
+use mbint::study;
 
 /// Step size of all runs, s.
 pub const STEP: f64 = 1e-3;
@@ -58,7 +58,7 @@ pub fn four_bar_yaml(loops: usize) -> String {
 
 /// Compiled and assembled.
 pub fn prepare(description: &Description) -> Simulator {
-    batch::prepare(description).unwrap_or_else(|error| panic!("{}: {error}", description.name))
+    study::prepare(description).unwrap_or_else(|error| panic!("{}: {error}", description.name))
 }
 
 /// A tile of samples spread over the parameters' intervals, ready to step.

@@ -7,9 +7,9 @@ mod scalar;
 
 use std::time::Instant;
 
-use mbint::batch;
-use mbint::bounds::Method;
-use mbint::integrate::{Fleet, JetRun, Observed, Schedule, Simulator};
+use mbint::results::Method;
+use mbint::simulate::{Fleet, JetRun, Observed, Schedule, Simulator};
+use mbint::study;
 use models::STEP;
 use serde_json::{Value, json};
 use symdiff::jet::JetSpace;
@@ -155,14 +155,14 @@ fn scan() -> Value {
     let description = models::slider_crank();
     let with = |threads: usize| {
         let (seconds, bounds) = best(5, || {
-            let options = batch::Options {
+            let options = study::Options {
                 methods: Some(vec![Method::Scan]),
                 threads: Some(threads),
-                ..batch::Options::default()
+                ..study::Options::default()
             };
-            batch::run(&description, options).expect("the model runs").0
+            study::run(&description, options).expect("the model runs").0
         });
-        let ends = |bounds: &mbint::bounds::Bounds| {
+        let ends = |bounds: &mbint::results::Bounds| {
             let bands = bounds.outputs.iter().flat_map(|output| &output.bands);
             bands.flat_map(|band| band.lower.iter().chain(&band.upper)).map(|end| end.to_bits()).collect::<Vec<_>>()
         };

@@ -6,8 +6,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use crate::bounds::Method;
 use crate::model::Override;
+use crate::results::Method;
 
 /// What a mechanism can do when its parameters are only known up to tolerances.
 #[derive(Debug, Parser)]

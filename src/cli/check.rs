@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, count};
 use super::{Failure, Status, tree};
-use crate::batch::{self, RunError};
 use crate::model::{self, Description};
 use crate::reduce::{Choices, Reduction};
-use crate::report::Explanation;
+use crate::results::Explanation;
+use crate::study::{self, RunError};
 
 /// What is known of a model; an element of the JSON output.
 #[derive(Serialize)]
@@ -20,7 +20,7 @@ struct Checked {
     #[serde(flatten)]
     counts: Option<Counts>,
     /// What is wrong, with its place.
-    diagnostics: Vec<model::Record>,
+    diagnostics: Vec<crate::syntax::Record>,
     /// What is wrong with the mechanism as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
@@ -132,7 +132,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Of the whole model, whatever of it will be simulated.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let explanation = Explanation::new(&model.name, &batch::prepare_whole(model)?);
+        let explanation = Explanation::new(&model.name, &study::prepare_whole(model)?);
         Ok(Self {
             model: explanation.model,
             coordinates: explanation.coordinates.len(),

@@ -8,9 +8,10 @@ use super::progress::Progress;
 use super::run::{results_of, set_once};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
-use crate::batch::{self, CostOptions};
+use crate::export::{prepare_folder, write_cost};
 use crate::model::{BoundsRequest, Description, Stepping};
-use crate::report::{CostPoint, CostStudy, Deviation, cost_curves, pareto, prepare_folder, write_cost};
+use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
+use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
     set_once(&args.set)?;
@@ -30,7 +31,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         interrupted: &interrupt::asked,
     };
     interrupt::listen();
-    let study = match batch::cost(&model, &options) {
+    let study = match study::cost(&model, &options) {
         Ok(study) => study,
         Err(_) if interrupt::asked() => {
             drop(progress);
@@ -208,8 +209,8 @@ fn choice(study: &CostStudy) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::Scheme;
-    use crate::report::{CostMethod, CostReference};
+    use crate::compile::Scheme;
+    use crate::results::{CostMethod, CostReference};
 
     fn study() -> CostStudy {
         let point = |method, order, points, seconds, over_width, under_coverage| CostPoint {

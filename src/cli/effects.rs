@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::Failure;
 use super::console::BOLD;
 use super::table::{Align, Table};
-use crate::batch::language_costs;
-use crate::mechanics::SHEETS;
+use crate::assemble::SHEETS;
 use crate::model::{Key, effect_grammar};
-use crate::report::EffectCost;
+use crate::results::EffectCost;
+use crate::study::language_costs;
 
 /// What there is to tell of an effect.
 #[derive(Debug, Serialize)]

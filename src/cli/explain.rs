@@ -6,8 +6,8 @@ use super::console::{BOLD, Console, count};
 use super::effects::adds;
 use super::table::{Align, Table};
 use super::{Failure, Status, effects, load};
-use crate::batch;
-use crate::report::{Decision, Explanation};
+use crate::results::{Decision, Explanation};
+use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
@@ -20,7 +20,7 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
     let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
-    let explanation = batch::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+    let explanation = study::explain(&model).map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
     console.print(&match args.format {
         Format::Text => text(&explanation),
         Format::Json => to_json(&explanation)?,
@@ -129,7 +129,7 @@ fn indented(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{
+    use crate::results::{
         Each, EffectCost, EffectExplanation, InstructionCounts, LeftOut, NewtonMatrix, Saving, StepInstructions,
     };
 

@@ -9,14 +9,13 @@ use super::progress::Progress;
 use super::scenes::Scenes;
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
-use crate::batch;
-use crate::bounds::{Bounds, Method, OutputBounds};
-use crate::mechanics;
+use crate::assemble;
+use crate::export::{file_stem, prepare_folder, write_results};
 use crate::model::Description;
 use crate::model::{Override, shown};
-use crate::report::{
-    ContributionSummary, ErrorSummary, ParameterSummary, Summary, file_stem, prepare_folder, write_results,
-};
+use crate::results::{Bounds, Method, OutputBounds};
+use crate::results::{ContributionSummary, ErrorSummary, ParameterSummary, Summary};
+use crate::study;
 
 /// What a run needs, checked.
 pub(super) struct Request {
@@ -77,7 +76,7 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
                 Work::Alone(_) => Failure::Wrong(format!("{}: {error}", shown(path))),
                 Work::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
             };
-            mechanics::build(&job.model).map_err(wrong)?;
+            assemble::build(&job.model).map_err(wrong)?;
         }
     }
     for job in work.iter().flat_map(Work::jobs) {
@@ -125,7 +124,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
     let progress = Progress::new(name, !request.quiet);
     let report = |fraction| progress.set(fraction);
-    let options = batch::Options {
+    let options = study::Options {
         methods: request.methods.clone(),
         threads: request.threads,
         certify_time: request.certify_time,
@@ -133,7 +132,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
         progress: &report,
         interrupted: &interrupt::asked,
     };
-    let (bounds, summary) = batch::run(&job.model, options).map_err(|error| failed(&error))?;
+    let (bounds, summary) = study::run(&job.model, options).map_err(|error| failed(&error))?;
     drop(progress);
 
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
@@ -398,7 +397,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::MethodSummary;
+    use crate::results::MethodSummary;
 
     #[test]
     fn the_overview_is_aligned() {

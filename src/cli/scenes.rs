@@ -7,8 +7,9 @@ use super::console::{BOLD, Console, count, file_names};
 use super::run::{Done, Job, Request, complain, run_one};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
-use crate::bounds::foremost;
-use crate::report::{ErrorSummary, SceneBounds, Summary, write_scenes};
+use crate::export::{SceneBounds, write_scenes};
+use crate::results::foremost;
+use crate::results::{ErrorSummary, Summary};
 
 /// A model's scenes that are run together.
 pub(super) struct Scenes {

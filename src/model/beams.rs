@@ -9,7 +9,7 @@ use super::file;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::Reader;
-use super::yaml::{Entry, Value};
+use crate::syntax::yaml::{Entry, Value};
 
 /// Elements of a beam that does not say how many.
 const USUAL: usize = 4;

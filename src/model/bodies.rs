@@ -4,15 +4,15 @@ use symdiff::Formula;
 
 use super::beams;
 use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
-use super::diagnostic::Diagnostic;
 use super::file;
 use super::kinds::JointCoordinate;
 use super::motions::is_motion;
 use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::suggest::{self, clip};
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Names of coordinates, and what they stand for. The last leave the plane.
 const COORDINATES: [(&str, &[Coordinate]); 5] = [
@@ -138,7 +138,7 @@ fn usual(reader: &Reader) -> Vec<Coordinate> {
 }
 
 /// `[xx, yy, zz]` or `{ xx: …, xy: … }`; positive definite at all corners.
-fn tensor(reader: &mut Reader, node: &Node, at: super::source::Span) -> Option<Inertia> {
+fn tensor(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) -> Option<Inertia> {
     if !reader.model.space.spatial {
         reader.leaves_the_plane(node);
     }

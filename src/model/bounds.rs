@@ -5,13 +5,13 @@ use std::collections::HashMap;
 use super::bounds_request::{
     BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, RangeKind, ScanRequest, TaylorRequest,
 };
-use super::diagnostic::Diagnostic;
 use super::file;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::source::Span;
-use super::suggest::{self, clip};
-use super::yaml::{Node, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Node, Value};
 
 /// Coefficients of a Taylor polynomial.
 const MOST_COEFFICIENTS: f64 = 1e5;

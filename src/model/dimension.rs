@@ -8,7 +8,7 @@ use symdiff::formula::Term;
 use symdiff::{Binary, Formula, Spline, Unary};
 
 use super::quantity::Dimension;
-use super::source::Span;
+use crate::syntax::source::Span;
 
 /// What is known of the dimension of a part of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use super::kinds::JointCoordinate;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Reads the effects. A formula may speak of what its own effect and those before it measure.
 pub fn read(reader: &mut Reader, entries: &[Entry]) {

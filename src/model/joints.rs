@@ -8,7 +8,7 @@ use super::kinds::{JointCoordinate, JointKind, Turning};
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader, Written};
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
 pub fn declare(reader: &mut Reader, entries: &[Entry]) {

@@ -6,16 +6,16 @@ use std::io::Read;
 use std::path::Path;
 
 use super::description::{Description, Space};
-use super::diagnostic::{Diagnostic, Diagnostics};
 use super::file;
 use super::overrides::Override;
 use super::reader::Reader;
 use super::scenes::{Scenes, Variant};
-use super::source::Span;
-use super::suggest::{self, clip};
 use super::urdf::{self, Urdf};
-use super::yaml::{self, Entry, Node};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
+use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{self, Entry, Node};
 
 /// Largest file that is read.
 pub(super) const MAX_BYTES: u64 = 10_000_000;

@@ -6,20 +6,13 @@
 mod bounds_request;
 mod catalog;
 mod description;
-mod diagnostic;
+mod dimension;
 mod effect_kinds;
 mod kinds;
-mod references;
-mod render;
-mod source;
-mod suggest;
-
-mod yaml;
-
-mod dimension;
 mod motions;
 mod names;
 mod quantity;
+mod references;
 
 mod file;
 mod reader;
@@ -45,11 +38,9 @@ mod vectors;
 pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
-pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
 pub use effect_kinds::*;
 pub use file::schema;
 pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;
 pub use references::Reference;
-pub use source::{Place, Source, Sources, Span};

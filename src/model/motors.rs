@@ -10,8 +10,8 @@ use super::kinds::{JointCoordinate, JointKind, Prescribed, Profile};
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::source::Span;
-use super::yaml::Node;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::Node;
 
 /// Part of a trapezoidal profile's duration that each acceleration takes.
 const RAMP: f64 = 0.25;

@@ -9,7 +9,7 @@ use super::motions::{
     ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
-use super::suggest;
+use crate::syntax::suggest;
 
 /// The ground's name.
 pub const GROUND: &str = "ground";

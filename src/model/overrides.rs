@@ -1,8 +1,8 @@
 //! `--set l1=0.16±2%`: parameters from the command line.
 
-use super::diagnostic::{Diagnostic, Diagnostics};
-use super::source::Span;
-use super::yaml::{Node, Scalar, Value};
+use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{Node, Scalar, Value};
 
 /// A parameter's new value; it replaces the file's value and tolerance. Bare numbers are in the unit that the file
 /// gives.

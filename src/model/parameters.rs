@@ -5,17 +5,17 @@ use std::collections::{HashMap, HashSet};
 use symdiff::Formula;
 
 use super::description::{Parameter, ParameterValue, Referent};
-use super::diagnostic::Diagnostic;
 use super::dimension::Kind;
 use super::file;
 use super::names::Context;
 use super::overrides::Override;
 use super::quantity::{Unit, number_and_unit};
 use super::reader::{Corner, Reader, Written, evaluate};
-use super::source::Span;
-use super::suggest;
 use super::urdf;
-use super::yaml::{Entry, Node};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest;
+use crate::syntax::yaml::{Entry, Node};
 
 /// Uncertain parameters up to which every corner is checked; beyond, one parameter at a time.
 const MOST_FOR_CORNERS: usize = 5;
@@ -111,7 +111,7 @@ fn find_overrides<'o>(
 fn draft<'n>(reader: &mut Reader, entry: &'n Entry, replaced: Option<&'n Override>) -> Draft<'n> {
     let name_span = entry.key_span.clone();
     let mut spec = Spec::default();
-    if matches!(entry.value.value, super::yaml::Value::Mapping(_)) {
+    if matches!(entry.value.value, crate::syntax::yaml::Value::Mapping(_)) {
         if let Some(fields) = reader.fields::<file::Parameter>(&entry.value, name_span.clone()) {
             spec = Spec {
                 value: fields.get("value"),

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use super::source::Span;
-use super::suggest;
+use crate::syntax::source::Span;
+use crate::syntax::suggest;
 
 /// Exponents are counted in twelfths, so that square and cube roots stay exact.
 const ONE: i32 = 12;

@@ -9,15 +9,15 @@ use std::path::PathBuf;
 use symdiff::{Formula, Graph, Spline};
 
 use super::description::{Description, ReactionComponent, Referent};
-use super::diagnostic::{Diagnostic, Diagnostics};
 use super::dimension::{self, Kind};
 use super::file::Grammar;
 use super::kinds::JointKind;
 use super::names::{self, Context};
 use super::quantity::{Dimension, Unit, number_and_unit};
-use super::source::Span;
-use super::suggest::{self, clip};
-use super::yaml::{Entry, Node, Scalar, Value};
+use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Operations in one formula.
 const MAX_TERMS: usize = 10_000;

@@ -3,15 +3,15 @@
 use super::description::{
     Coordinate, Formulation, Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder,
 };
-use super::diagnostic::Diagnostic;
 use super::dimension::Kind;
 use super::file;
 use super::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
 use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader, Written};
-use super::suggest::clip;
-use super::yaml::{Entry, Node};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Entry, Node};
 
 /// Steps of a simulation, beyond which the step must be a slip.
 const MOST_STEPS: f64 = 1e9;
@@ -268,7 +268,7 @@ fn tidy(value: f64) -> f64 {
 }
 
 /// Reads the whole section.
-pub fn simulation_section(reader: &mut Reader, node: &Node, at: super::source::Span) {
+pub fn simulation_section(reader: &mut Reader, node: &Node, at: crate::syntax::source::Span) {
     if let Some(fields) = reader.fields::<file::Simulation>(node, at)
         && let Some(simulation) = simulation(reader, &fields)
     {

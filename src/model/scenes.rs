@@ -5,13 +5,13 @@
 
 use std::collections::HashSet;
 
-use super::diagnostic::Diagnostic;
 use super::file;
 use super::reader::{Fields, Reader};
-use super::source::Span;
-use super::suggest::{self, clip};
 use super::urdf;
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Most scenes of a model: each is read, compiled and run.
 const MOST: usize = 200;

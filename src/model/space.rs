@@ -4,7 +4,7 @@
 
 use super::description::Space;
 use super::reader::{Fields, Reader};
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Kinds of joints that only make sense in space.
 pub const SPATIAL_JOINTS: [&str; 5] = ["spherical", "cylindrical", "screw", "universal", "planar"];

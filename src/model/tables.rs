@@ -2,15 +2,15 @@
 
 use symdiff::{Spline, SplineError};
 
-use super::diagnostic::Diagnostic;
 use super::file;
 use super::load::{MAX_BYTES, read_text};
 use super::parameters::unit;
 use super::quantity::Unit;
 use super::reader::{Fields, Reader, Table};
-use super::source::Span;
-use super::suggest::{self, clip};
-use super::yaml::{Entry, Node, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A value of a table and its place.
 type Number = (f64, Span);

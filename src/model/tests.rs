@@ -207,7 +207,7 @@ fn warnings_do_not_stop_a_model() {
     assert!(reading.description.is_some());
     let record = reading.diagnostics.records().remove(0);
     assert_eq!((record.message.as_str(), record.line), ("parameter `l` is used nowhere", Some(2)));
-    assert_eq!(record.severity, Severity::Warning);
+    assert_eq!(record.severity, crate::syntax::Severity::Warning);
 }
 
 #[test]
@@ -275,8 +275,12 @@ fn more_parameters_than_anyone_has_are_refused() {
         let text = BAR.replace("parameters:\n", &format!("parameters:\n{lines}"));
         read_str("x.yaml", &text, &[]).diagnostics.records()
     };
-    let errors = |records: Vec<Record>| -> Vec<String> {
-        records.into_iter().filter(|record| record.severity == Severity::Error).map(|record| record.message).collect()
+    let errors = |records: Vec<crate::syntax::Record>| -> Vec<String> {
+        records
+            .into_iter()
+            .filter(|record| record.severity == crate::syntax::Severity::Error)
+            .map(|record| record.message)
+            .collect()
     };
     // `l`, which the bar needs, comes last.
     let found = errors(with(20_000, "1"));

@@ -7,9 +7,9 @@ use super::file;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Reader, Written};
-use super::source::Span;
 use super::space;
-use super::yaml::{Node, Value};
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{Node, Value};
 
 impl Reader<'_> {
     /// Components of a dimension: two, in the plane z = 0, or three.

@@ -1,9 +1,10 @@
 //! Boxes in part of which the mechanism cannot be assembled, or locks.
 
-use mbint::batch::{self, Options};
-use mbint::bounds::{Band, Bounds, Method};
+use mbint::export::bounds_csv;
 use mbint::model::{self, Description};
-use mbint::report::{Summary, bounds_csv};
+use mbint::results::Summary;
+use mbint::results::{Band, Bounds, Method};
+use mbint::study::{self, Options};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
@@ -11,7 +12,7 @@ fn read(text: &str) -> Description {
 
 fn run(description: &Description, skip_infeasible: bool) -> Result<(Bounds, Summary), String> {
     let options = Options { threads: Some(2), skip_infeasible, ..Options::default() };
-    batch::run(description, options).map_err(|error| error.to_string())
+    study::run(description, options).map_err(|error| error.to_string())
 }
 
 fn band(bounds: &Bounds, method: Method) -> &Band {

@@ -1,7 +1,7 @@
 //! Models of one to many bodies: a chain, swinging from one end.
 
-use mbint::batch::{self, Options};
 use mbint::model::{self, Description};
+use mbint::study::{self, Options};
 
 fn chain(bodies: usize, duration: f64) -> Description {
     let each = |line: &dyn Fn(usize) -> String| (0..bodies).map(line).collect::<Vec<_>>().join("\n  ");
@@ -37,7 +37,7 @@ bounds: {{ chebyshev: {{ order: 1, expand: output }} }}
 fn long_chains_swing_and_keep_their_energy() {
     for (bodies, duration) in [(1, 0.1), (10, 0.1), (100, 0.02), (500, 0.005)] {
         let (bounds, summary) =
-            batch::run(&chain(bodies, duration), Options { threads: Some(2), ..Options::default() })
+            study::run(&chain(bodies, duration), Options { threads: Some(2), ..Options::default() })
                 .unwrap_or_else(|error| panic!("{bodies} bodies: {error}"));
         assert_eq!((summary.failure, summary.degrees_of_freedom), (None, bodies));
         let of = |output: usize| &bounds.outputs[output].nominal;
@@ -54,6 +54,6 @@ fn long_chains_swing_and_keep_their_energy() {
 /// A file of this size is read and assembled.
 #[test]
 fn ten_thousand_bodies_are_counted() {
-    let simulator = batch::prepare(&chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3)).unwrap();
+    let simulator = study::prepare(&chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3)).unwrap();
     assert_eq!(simulator.mobility.degrees_of_freedom, simulator.system.q.len() / 3);
 }

@@ -1,15 +1,15 @@
 //! Intervals without width, parameters of very different sizes, bifurcations.
 
-use mbint::batch::{self, Options};
-use mbint::bounds::{Bounds, Method};
 use mbint::model::{self, Description};
+use mbint::results::{Bounds, Method};
+use mbint::study::{self, Options};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
 }
 
 fn run(description: &Description) -> Bounds {
-    let (bounds, summary) = batch::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
+    let (bounds, summary) = study::run(description, Options { threads: Some(2), ..Options::default() }).unwrap();
     assert_eq!(summary.failure, None);
     bounds
 }

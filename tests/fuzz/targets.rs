@@ -1,9 +1,9 @@
 //! What is fuzzed. Each takes any text and may say of it what it likes, but not panic, hang or take much memory.
 
-use mbint::batch::{self, Options};
 use mbint::model::{
     self, BoundsRequest, ChebyshevRequest, Description, Override, ScanRequest, Stepping, TaylorRequest,
 };
+use mbint::study::{self, Options};
 
 /// Reads a model, and renders what is wrong with it.
 pub fn model(text: &str) {
@@ -50,7 +50,7 @@ pub fn short_run(text: &str) {
         && let Some(description) = shortened(description)
     {
         // Whether it can be run is not asked.
-        let _ = batch::run(&description, Options { threads: Some(1), ..Options::default() });
+        let _ = study::run(&description, Options { threads: Some(1), ..Options::default() });
     }
 }
 

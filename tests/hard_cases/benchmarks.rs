@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::bounds::Bounds;
 use mbint::model::Description;
+use mbint::results::Bounds;
 
 use super::common::{Findings, Vary, curve, largest, model, nominal, order, read, reference, row, run_methods};
 

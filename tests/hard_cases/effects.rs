@@ -1,8 +1,8 @@
 //! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same laws
 //! in minimal coordinates solved by another method whose steps fall at events.
 
-use mbint::bounds::Method;
 use mbint::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest};
+use mbint::results::Method;
 
 use super::common::{Vary, band, curve, largest, nominal, order, output, read, run, run_methods, uncertain_count};
 use super::dormand_prince::dormand_prince;

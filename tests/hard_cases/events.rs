@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
-use mbint::batch::{self, Options};
-use mbint::bounds::Method;
+use mbint::results::Method;
+use mbint::study::{self, Options};
 
 use super::common::{Vary, largest, read, run_methods};
 
@@ -112,7 +112,7 @@ simulation: { duration: 3, step: 1e-3, output_step: 0.05 }
 fn failure(text: &str, tolerance: f64) -> String {
     let description = read(text).tolerance(tolerance);
     let options = Options { methods: Some(Vec::<Method>::new()), threads: Some(2), ..Options::default() };
-    batch::run(&description, options).unwrap().1.failure.expect("the run ends early")
+    study::run(&description, options).unwrap().1.failure.expect("the run ends early")
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Positions that are hard: dead centres, change points, toggles, and those where a mechanism locks.
 
-use mbint::batch::{self, Options};
-use mbint::bounds::Method;
+use mbint::results::Method;
+use mbint::study::{self, Options};
 
 use super::common::{Vary, curve, largest, nominal, order, read, run_methods};
 
@@ -29,7 +29,7 @@ simulation: {{ duration: 4, {stepping}, output_step: 0.01 }}
 
 fn failure(text: &str) -> String {
     let options = Options { methods: Some(Vec::<Method>::new()), threads: Some(2), ..Options::default() };
-    batch::run(&read(text), options).unwrap().1.failure.expect("the mechanism cannot go on")
+    study::run(&read(text), options).unwrap().1.failure.expect("the mechanism cannot go on")
 }
 
 /// The crank of 0.3 m cannot turn: coupler and rocker are stretched where B is 0.45 m from D,

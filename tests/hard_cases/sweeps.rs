@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::batch;
-use mbint::integrate::{Simulator, Stepper};
+use mbint::simulate::{Simulator, Stepper};
+use mbint::study;
 use nalgebra::DMatrix;
 
 use super::common::{Vary, curve, distance, largest, model, nominal, order, read, row};
@@ -89,7 +89,7 @@ fn the_newton_matrix_is_as_well_conditioned_with_any_step() {
         let conditions: Vec<f64> = (longest..=8)
             .map(|exponent| {
                 let h = 10.0_f64.powi(-exponent);
-                condition(&batch::prepare(&model(name).step(h)).unwrap(), h)
+                condition(&study::prepare(&model(name).step(h)).unwrap(), h)
             })
             .collect();
         let texts: Vec<String> = conditions.iter().map(|condition| format!("{condition:.3e}")).collect();

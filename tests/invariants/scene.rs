@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use mbint::batch::{self, Options};
-use mbint::bounds::Bounds;
 use mbint::model;
+use mbint::results::Bounds;
+use mbint::study::{self, Options};
 
 use super::mechanism::Mechanism;
 use super::quaternion::{Quaternion, Vector, add};
@@ -185,7 +185,7 @@ impl Scene {
         let description =
             model::load_str("drawn", &text, &[]).unwrap_or_else(|diagnostics| panic!("{text}\n{diagnostics}"));
         let options = Options { methods: Some(Vec::new()), threads: Some(1), ..Options::default() };
-        let (bounds, summary) = batch::run(&description, options).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{text}\n{error}"));
         assert_eq!(summary.failure, None, "{text}");
         bounds
     }

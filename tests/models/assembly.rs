@@ -1,6 +1,6 @@
 //! Initial velocities that do not fit say which joint they do not fit. (Positions that do not: `tests/faults/infeasible.rs`.)
 
-use mbint::batch::{self, Options};
+use mbint::study::{self, Options};
 
 use super::common::read;
 
@@ -15,7 +15,7 @@ outputs: { angle: rod.angle }
 simulation: { duration: 0.1, step: 1e-3, output_step: 0.05 }
 ",
     );
-    let message = batch::run(&description, Options::default()).expect_err("it cannot be assembled").to_string();
+    let message = study::run(&description, Options::default()).expect_err("it cannot be assembled").to_string();
     println!("{message}");
     assert!(message.contains("initial velocities do not fit joint `hinge`"), "{message}");
 }

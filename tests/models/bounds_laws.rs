@@ -1,12 +1,12 @@
 //! Laws that bounds obey whatever the mechanism.
 
-use mbint::bounds::{Bounds, Method};
 use mbint::model::{Description, ParameterValue, RangeKind, TaylorRequest};
+use mbint::results::{Bounds, Method};
 
 use super::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
 
 /// Share of the times at which a method's band leaves another's by more than the errors of both.
-fn outside(output: &mbint::bounds::OutputBounds, inner: Method, outer: Method) -> f64 {
+fn outside(output: &mbint::results::OutputBounds, inner: Method, outer: Method) -> f64 {
     let (inner, outer) = (band(output, inner), band(output, outer));
     let rows = inner.lower.len();
     let leaves = |row: &usize| {

@@ -4,9 +4,9 @@
 //! The ordinary integration ends Newton's iteration at 1e-11 of a position; its samples are therefore allowed to lie
 //! outside by `NEWTON` times the size of what is observed, and no more.
 
-use mbint::batch::{self, Options};
-use mbint::bounds::{Bounds, Method};
 use mbint::model::Description;
+use mbint::results::{Bounds, Method};
+use mbint::study::{self, Options};
 
 use super::common::*;
 
@@ -16,7 +16,7 @@ const NEWTON: f64 = 1e-9;
 fn certify(description: Description) -> (Bounds, Option<String>) {
     let options =
         Options { methods: Some(vec![Method::Scan, Method::Certified]), threads: Some(2), ..Options::default() };
-    let (bounds, summary) = batch::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
+    let (bounds, summary) = study::run(&description, options).unwrap_or_else(|error| panic!("{error}"));
     (bounds, summary.failure)
 }
 
@@ -110,7 +110,7 @@ fn what_is_lost_is_unknown_and_said() {
 fn what_cannot_be_certified_is_refused() {
     let refused = |description: &Description| {
         let options = Options { methods: Some(vec![Method::Certified]), threads: Some(1), ..Options::default() };
-        batch::run(description, options).unwrap_err().to_string()
+        study::run(description, options).unwrap_err().to_string()
     };
     let many = read(
         "model: many\nparameters: { a: { value: 1, tolerance: 1% }, b: { value: 1, tolerance: 1% }, c: { value: 1, tolerance: 1% } }\n\

@@ -3,8 +3,8 @@
 //! Where the acceleration is constant the scheme is exact: it integrates quadratics. Elsewhere the error is of second
 //! order, so that runs at h and h/2, extrapolated to h = 0, must meet the closed form far more closely than either.
 
-use mbint::bounds::Bounds;
 use mbint::model::{Description, Formulation};
+use mbint::results::Bounds;
 
 use super::common::{Vary, curve, distance_from, largest, model, nominal, order, read, richardson};
 

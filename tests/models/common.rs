@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use mbint::batch::{self, Options};
-use mbint::bounds::{Band, Bounds, Method, OutputBounds};
 use mbint::model::{
     self, ChebyshevRequest, Description, Expand, Output, ParameterValue, RangeKind, ScanRequest, Stepping,
 };
-use mbint::report::Summary;
+use mbint::results::Summary;
+use mbint::results::{Band, Bounds, Method, OutputBounds};
+use mbint::study::{self, Options};
 
 /// The files of `models/`, in alphabetical order.
 pub fn model_files() -> Vec<PathBuf> {
@@ -67,7 +67,7 @@ pub fn nominal(description: &Description) -> Bounds {
 pub fn run_methods(description: &Description, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
     let options = Options { methods, threads: Some(2), ..Options::default() };
     let (bounds, summary) =
-        batch::run(description, options).unwrap_or_else(|error| panic!("{}: {error}", description.name));
+        study::run(description, options).unwrap_or_else(|error| panic!("{}: {error}", description.name));
     assert_eq!(summary.failure, None, "{}", description.name);
     (bounds, summary)
 }

@@ -1,7 +1,7 @@
 //! Bounds whose outputs are evaluated from the expanded independent coordinates (`expand: coordinates`).
 
-use mbint::bounds::{Method, OutputBounds};
 use mbint::model::{ChebyshevRequest, Degree, Description, Expand, ParameterValue, ScanRequest};
+use mbint::results::{Method, OutputBounds};
 
 use super::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
 
@@ -17,7 +17,8 @@ fn composed(mut description: Description, order: usize, points: usize) -> Descri
 /// Mean width over the scan's mean width, and how far the scan leaves the bounds at worst, in its own width then.
 fn against_scan(output: &OutputBounds) -> (f64, f64) {
     let (bounds, scan) = (band(output, Method::Chebyshev), band(output, Method::Scan));
-    let width = |band: &mbint::bounds::Band| band.upper.iter().zip(&band.lower).map(|(u, l)| u - l).collect::<Vec<_>>();
+    let width =
+        |band: &mbint::results::Band| band.upper.iter().zip(&band.lower).map(|(u, l)| u - l).collect::<Vec<_>>();
     let (ours, true_width) = (width(bounds), width(scan));
     let outside = (0..ours.len())
         .filter(|&row| true_width[row] > 0.0)

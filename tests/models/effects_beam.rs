@@ -1,7 +1,7 @@
 //! Beams against the textbook: deflections, the elastica, and natural frequencies.
 
-use mbint::bounds::Bounds;
 use mbint::model::Description;
+use mbint::results::Bounds;
 
 use super::common::{curve, nominal, order, read};
 

@@ -2,8 +2,8 @@
 
 use super::common::{Vary, curve, distance_from, largest, nominal, order, read, row};
 use super::restitution::restitution;
-use mbint::bounds::Bounds;
 use mbint::model::Description;
+use mbint::results::Bounds;
 
 fn ball(impact: &str) -> Description {
     read(&format!(

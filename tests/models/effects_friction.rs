@@ -2,7 +2,7 @@
 //!
 //! What the smooth law leaves of Coulomb's is ½ (u₀/u)² of it: the bounds of errors below are made of that.
 
-use mbint::bounds::Method;
+use mbint::results::Method;
 
 use super::common::{
     Findings, Vary, band, curve, distance, distance_from, largest, nominal, output, read, richardson, row, run,

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use mbint::batch::{self, Options, prepare};
-use mbint::integrate::{Simulator, Stepper};
+use mbint::export::bounds_csv;
 use mbint::model::Description;
-use mbint::report::bounds_csv;
+use mbint::simulate::{Simulator, Stepper};
+use mbint::study::{self, Options, prepare};
 use symdiff::Tape;
 
 use super::common::{Vary, read, run};
@@ -149,7 +149,7 @@ bounds: {{ scan: {{ points: 5 }} }}
     ));
     let runs = [1, 2, 7].map(|threads| {
         let options = Options { threads: Some(threads), ..Options::default() };
-        let (bounds, _) = batch::run(&balls.clone().duration(0.6).scan(37), options).unwrap();
+        let (bounds, _) = study::run(&balls.clone().duration(0.6).scan(37), options).unwrap();
         bounds_csv(&bounds).unwrap()
     });
     assert!(runs[0] == runs[1] && runs[0] == runs[2], "results depend on the number of threads");

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use mbint::bounds::{Bounds, Method};
-use mbint::mechanics;
+use mbint::assemble;
 use mbint::model::Description;
+use mbint::results::{Bounds, Method};
 use nalgebra::DMatrix;
 
 use super::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, richardson, run};
@@ -126,7 +126,7 @@ outputs: {{ x: rod.end.x }}
 simulation: {{ duration: 1, step: 0.1 }}
 "
     ));
-    let system = mechanics::build(&description).unwrap();
+    let system = assemble::build(&description).unwrap();
     let mut g = system.graph.clone();
     let slopes = g.jacobian(&system.force, &system.q);
     let value = |symbol| {
@@ -347,7 +347,7 @@ fn instructions_grow_with_the_elements() {
     let weight = "{ gravity: { acceleration: [0, -9.81] } }";
     let instructions = [8, 16, 32].map(|elements| {
         let description = cantilever(elements, 1.0, 1e4, 0.0, weight, "duration: 1");
-        let simulator = mbint::batch::prepare(&description).unwrap();
+        let simulator = mbint::study::prepare(&description).unwrap();
         simulator.program.factor().len() + simulator.program.correct().len()
     });
     println!("{instructions:?}");
@@ -384,7 +384,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     let around = (750.0 * period) as usize..(1250.0 * period) as usize;
     let back = around.max_by(|&a, &b| y[a].total_cmp(&y[b])).unwrap();
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
-    let failure = mbint::batch::run(&clamped(0.99), mbint::batch::Options::default()).unwrap_err().to_string();
+    let failure = mbint::study::run(&clamped(0.99), mbint::study::Options::default()).unwrap_err().to_string();
     println!("{failure}");
     assert!(failure.contains("beam `rod`, which starts straight unless `initial` has x, y and angle of all its nodes"));
 }
@@ -394,7 +394,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
 fn a_beam_has_absolute_coordinates() {
     let run = "duration: 1, formulation: joint";
     let description = cantilever(1, 1.0, 1e4, 0.0, "{ gravity: { acceleration: [0, -9.81] } }", run);
-    let failure = mechanics::build(&description).unwrap_err().to_string();
+    let failure = assemble::build(&description).unwrap_err().to_string();
     assert!(failure.contains("beam `rod` bends"), "{failure}");
 }
 

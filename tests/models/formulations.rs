@@ -1,11 +1,11 @@
 //! Joint and absolute coordinates are two ways to write down one motion: at the start they agree to rounding, in positions,
 //! velocities, accelerations and reactions, and later to the scheme's error.
 
-use mbint::batch;
-use mbint::integrate::{SimulationError, Simulator};
-use mbint::mechanics;
+use mbint::assemble;
+use mbint::compile::Scheme;
 use mbint::model::{Description, Formulation};
-use mbint::program::Scheme;
+use mbint::simulate::{SimulationError, Simulator};
+use mbint::study;
 
 use super::common::{Vary, largest, load, model_files, nominal, read, richardson};
 
@@ -15,7 +15,7 @@ fn within(mut description: Description, formulation: Formulation) -> Description
 }
 
 fn has_both(description: &Description) -> bool {
-    mechanics::in_joint_coordinates(description, None).unwrap().is_ok()
+    assemble::in_joint_coordinates(description, None).unwrap().is_ok()
 }
 
 /// Every output's course.
@@ -141,7 +141,7 @@ fn agree(description: &Description, h: f64, later: f64) {
         has_both(description),
         "{}: {:?}",
         description.name,
-        mechanics::in_joint_coordinates(description, None).unwrap().err()
+        assemble::in_joint_coordinates(description, None).unwrap().err()
     );
     for (name, at_start, apart) in differences(description, h) {
         println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name);
@@ -194,7 +194,7 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: {form
 
 /// Instructions of a step with one correction.
 fn instructions(description: &Description) -> (bool, usize) {
-    let simulator = batch::prepare(description).unwrap();
+    let simulator = study::prepare(description).unwrap();
     let p = &simulator.program;
     let count = p.step().len() + p.factor().len() + p.correct().len() + p.advance().len();
     (simulator.system.formulation.joint, count)
@@ -220,7 +220,7 @@ fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_jo
 /// What takes too long is given up; what does not is compiled as ever.
 #[test]
 fn a_program_is_given_up_beyond_its_limit_and_not_before() {
-    let system = mechanics::in_absolute_coordinates(&read(&tree(false))).unwrap();
+    let system = assemble::in_absolute_coordinates(&read(&tree(false))).unwrap();
     let within = |limit| Simulator::within(system.clone(), Scheme::Hht { alpha: -0.1 }, 1e-3, limit);
     assert_eq!(within(Some(1000)).map(|_| ()), Err(SimulationError::TooLong));
     let [free, limited] = [None, Some(1_000_000)].map(|limit| within(limit).unwrap());

@@ -2,8 +2,8 @@
 //! more than ten times as large. The truths are closed forms, references, and other equations (minimal coordinates) solved by
 //! another method (Runge and Kutta's), over dense grids of the parameters.
 
-use mbint::bounds::{Method, OutputBounds};
 use mbint::model::{BoundsRequest, ChebyshevRequest, Description, RangeKind, ScanRequest, TaylorRequest};
+use mbint::results::{Method, OutputBounds};
 
 use super::common::{Findings, Vary, band, model, output, read, reference, run, uncertain_count};
 use super::runge_kutta::runge_kutta;

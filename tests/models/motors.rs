@@ -1,6 +1,6 @@
 //! Motors: prescribed motions against their formulas, and the torques that they take.
 
-use mbint::bounds::Bounds;
+use mbint::results::Bounds;
 
 use super::common::{Findings, curve, distance_from, nominal, read, row};
 

@@ -1,14 +1,14 @@
 //! A run is a function of its model: the same bytes whatever the number of threads, and each time.
 
-use mbint::batch::{self, Options};
+use mbint::export::bounds_csv;
 use mbint::model::Description;
-use mbint::report::bounds_csv;
+use mbint::study::{self, Options};
 
 use super::common::{Vary, load, model, model_files};
 
 fn bytes(description: &Description, threads: usize) -> (Vec<u8>, String) {
     let options = Options { threads: Some(threads), ..Options::default() };
-    let (bounds, summary) = batch::run(description, options).unwrap();
+    let (bounds, summary) = study::run(description, options).unwrap();
     (bounds_csv(&bounds).unwrap(), serde_json::to_string_pretty(&summary.without_seconds()).unwrap())
 }
 

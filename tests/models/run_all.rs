@@ -1,7 +1,7 @@
 //! Every file of `models/` is one that a user can run.
 
-use mbint::bounds::Method;
 use mbint::model;
+use mbint::results::Method;
 
 use super::common::{load, load_all, model_files, run_methods};
 

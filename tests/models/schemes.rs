@@ -1,9 +1,9 @@
 //! The schemes beside HHT: their order, what they leave of high frequencies, and what index 2 does to the constraints.
 
-use mbint::integrate::{Fleet, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
-use mbint::mechanics;
+use mbint::assemble;
+use mbint::compile::Scheme;
 use mbint::model::Description;
-use mbint::program::Scheme;
+use mbint::simulate::{Fleet, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
 
@@ -24,7 +24,7 @@ const SCHEMES: [Scheme; 5] = [
 ];
 
 fn compiled(description: &Description, scheme: Scheme, h: f64) -> Simulator {
-    Simulator::new(mechanics::build(description).unwrap(), scheme, h).unwrap()
+    Simulator::new(assemble::build(description).unwrap(), scheme, h).unwrap()
 }
 
 fn nominal_sample(simulator: &Simulator) -> Vec<f64> {

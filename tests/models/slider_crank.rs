@@ -2,8 +2,8 @@
 //!
 //! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are made of.
 
-use mbint::bounds::Method;
 use mbint::model::{Description, RangeKind, TaylorRequest};
+use mbint::results::Method;
 
 use super::common::{
     Vary, band, curve, distance, largest, model, nominal, order, output, reference, richardson, row, run,

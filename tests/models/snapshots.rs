@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use mbint::bounds::{Bounds, OutputBounds};
+use mbint::results::{Bounds, OutputBounds};
 
 use super::common::{load_all, model_files, run};
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::bounds::Method;
 use mbint::model;
+use mbint::results::Method;
 
 use super::common::{band, curve, distance, distance_from, nominal, output, read, run};
 

@@ -1,7 +1,7 @@
 //! Bounds to a tolerance, of few and of many parameters, against truths of other methods.
 
-use mbint::bounds::{Bounds, Method};
 use mbint::model::{BoundsRequest, Budget, ChebyshevRequest, Description, ParameterValue};
+use mbint::results::{Bounds, Method};
 
 use super::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
 use super::runge_kutta::runge_kutta;

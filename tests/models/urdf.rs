@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use mbint::batch::{self, Options};
-use mbint::bounds::Bounds;
 use mbint::model::{self, Description, EffectKind, Reading};
+use mbint::results::Bounds;
+use mbint::study::{self, Options};
 use symdiff::{Formula, Graph};
 
 use super::common::{
@@ -362,7 +362,7 @@ fn robots_of_a_collection_run() {
                     Ok(description) => {
                         let description = description.duration(0.1);
                         let options = Options { methods: Some(Vec::new()), threads: Some(2), ..Options::default() };
-                        match batch::run(&description, options) {
+                        match study::run(&description, options) {
                             Err(error) => findings.check(false, format_args!("{name}: {error}")),
                             Ok((_, summary)) => {
                                 findings

@@ -11,8 +11,8 @@ use crate::model::motors::{dimensions_of, on_joint};
 use crate::model::names::Context;
 use crate::model::quantity::Dimension;
 use crate::model::reader::Reader;
-use crate::model::source::Span;
-use crate::model::yaml::Node;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::Node;
 
 /// Stretch over which a cable becomes taut, over its length.
 const TAUT: f64 = 1e-4;

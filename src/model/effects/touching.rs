@@ -12,8 +12,8 @@ use crate::model::motors::{dimensions_of, on_joint};
 use crate::model::names::Context;
 use crate::model::quantity::Dimension;
 use crate::model::reader::{Fields, Reader};
-use crate::model::source::Span;
-use crate::model::yaml::Node;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::Node;
 
 /// Speed that counts as rest, m/s or rad/s.
 const AT_REST: f64 = 1e-3;

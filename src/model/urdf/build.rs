@@ -18,9 +18,9 @@ use crate::model::description::{
     Body, Coordinate, Inertia, Joint, Output, Point, PointRef, RobotTree, Rotation, StartValue, TimeOrder, TreeJoint,
     TreeLink,
 };
-use crate::model::diagnostic::Diagnostic;
 use crate::model::kinds::{JointCoordinate, JointKind, Turning};
 use crate::model::reader::Reader;
+use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
 const LEAST_MASS: f64 = 1e-3;

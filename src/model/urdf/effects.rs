@@ -16,8 +16,8 @@ use crate::model::kinds::JointCoordinate;
 use crate::model::motors::dimensions_of;
 use crate::model::reader::Reader;
 use crate::model::scenes::{self, LeftOut};
-use crate::model::source::Span;
-use crate::model::yaml::Node;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::Node;
 
 /// Velocities at which Coulomb friction has three quarters of its size: rad/s, m/s.
 const SLOW_TURN: f64 = 0.05;

@@ -18,13 +18,13 @@ use std::path::Path;
 use self::build::{Built, Source};
 use self::robot::Robot;
 pub use self::uncertain::is_number;
-use super::diagnostic::Diagnostic;
 use super::load;
 use super::overrides::Override;
 use super::reader::{Fields, Reader};
 use super::scenes::LeftOut;
-use super::source::Span;
-use super::yaml::{Entry, Node, Scalar, Value};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Largest URDF that is read.
 const MAX_BYTES: u64 = 50_000_000;

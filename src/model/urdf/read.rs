@@ -6,10 +6,10 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
 use super::tree;
-use crate::model::diagnostic::{Diagnostic, Diagnostics};
 use crate::model::names;
-use crate::model::source::Span;
-use crate::model::suggest::{self, clip};
+use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
 
 /// Namespace of mbint's own attributes.
 pub const NAMESPACE: &str = "urn:mbint";

@@ -1,6 +1,6 @@
 //! What a URDF says, typed: links, joints, and every number with its place and the name it has as a parameter.
 
-use crate::model::source::Span;
+use crate::syntax::source::Span;
 
 /// A number of the file.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Links and joints must be one tree.
 
 use super::robot::Robot;
-use crate::model::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 
 /// Finds the root and the order of the joints; says why there is none.
 pub fn order(robot: &mut Robot, diagnostics: &mut Diagnostics) -> bool {

@@ -5,9 +5,9 @@ use std::collections::{HashMap, HashSet};
 use super::robot::{Number, Robot};
 use crate::model::overrides::Override;
 use crate::model::reader::Reader;
-use crate::model::source::Span;
-use crate::model::suggest::{self, clip};
-use crate::model::yaml::{Entry, Node, Scalar, Value};
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Whether a name is that of a number of a URDF.
 pub fn is_number(name: &str) -> bool {

@@ -1,0 +1,34 @@
+//! Gravity: the same acceleration on every body.
+//!
+//! ```text
+//! F = m g at the centre of mass,   V = −m g · r_c          N, J
+//! ```
+//!
+//! and on the mass along beams (`flexible`).
+//! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
+
+use symdiff::{Formula, Graph};
+
+use crate::assemble::error::BuildError;
+use crate::assemble::mechanism::{Context, Mechanism};
+use crate::assemble::space;
+
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet { keyword: "gravity", formulas: &["F = m g at each centre of mass"], source: "Newton" };
+
+pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
+    let acceleration = m.vector(g, acceleration, Context::Motion)?;
+    for (index, body) in m.bodies.iter().enumerate() {
+        let weight = space::scale(g, body.mass, acceleration);
+        let center = m.point_at(g, index, body.center);
+        loads.add_weight(g, m, &center, weight);
+        let height = space::dot(g, weight, center.position);
+        let potential = g.neg(height);
+        loads.add_potential(g, m, &weight, potential);
+    }
+    m.weigh_beams(g, loads, acceleration)?;
+    loads.add_field(g, acceleration);
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! Torsional spring and damper between two bodies' angles, or on the angle of a joint.
+//!
+//! ```text
+//! τ = k (φ − φ₀) + c φ̇,   φ = θ₂ − θ₁ or the joint's angle,   V = ½ k (φ − φ₀)²          N m, J
+//! −τ about the axis on the second body, +τ on the first
+//! ```
+//!
+//! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
+//! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
+
+use symdiff::{Formula, Graph};
+
+use crate::assemble::body::ANGLE;
+use crate::assemble::error::BuildError;
+use crate::assemble::mechanism::{Context, Mechanism};
+use crate::model::{JointCoordinate, Measure, TimeOrder, Twisted};
+
+use super::{Loads, Sheet};
+
+/// For `mbint explain --effects`.
+pub const SHEET: Sheet = Sheet {
+    keyword: "torsional_spring_damper",
+    formulas: &["τ = k (φ − φ₀) + c φ̇ + torque(φ, φ̇), turns back"],
+    source: "Hooke; Kelvin and Voigt",
+};
+
+pub fn apply(
+    g: &mut Graph,
+    m: &Mechanism,
+    loads: &mut Loads,
+    on: Twisted,
+    [stiffness, damping, free_angle]: [&Formula; 3],
+    further: Option<&Formula>,
+) -> Result<(), BuildError> {
+    let stiffness = m.formula(g, stiffness, Context::Motion)?;
+    let damping = m.formula(g, damping, Context::Motion)?;
+    let free_angle = m.formula(g, free_angle, Context::Motion)?;
+    let (turned, rate) = match on {
+        Twisted::Bodies([first, second]) => (
+            g.sub(m.bodies[second].position[ANGLE], m.bodies[first].position[ANGLE]),
+            g.sub(m.bodies[second].velocity[ANGLE], m.bodies[first].velocity[ANGLE]),
+        ),
+        Twisted::Joint(joint) => {
+            let mut coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
+            (coordinate(TimeOrder::Position), coordinate(TimeOrder::Velocity))
+        }
+    };
+    let twist = g.sub(turned, free_angle);
+    let elastic = g.mul(stiffness, twist);
+    let viscous = g.mul(damping, rate);
+    let mut torque = g.add(elastic, viscous);
+    if let Some(further) = further {
+        let further = m.own_formula(g, further, &[(Measure::Angle, turned), (Measure::Rate, rate)])?;
+        torque = g.add(torque, further);
+    }
+    for (measure, value) in [(Measure::Angle, turned), (Measure::Rate, rate), (Measure::Torque, torque)] {
+        loads.measure(measure, value);
+    }
+    match on {
+        Twisted::Bodies([first, second]) => {
+            let zero = g.constant(0.0);
+            loads.add_torque_pair(g, second, first, [zero, zero, torque]);
+        }
+        Twisted::Joint(joint) => {
+            let back = g.neg(torque);
+            loads.add_joint_torque(g, m, joint, back)?;
+        }
+    }
+    let square = g.mul(twist, twist);
+    let doubled = g.mul(stiffness, square);
+    let potential = g.scale(0.5, doubled);
+    if further.is_none() {
+        loads.add_potential(g, m, &[stiffness, free_angle], potential);
+    }
+    Ok(())
+}

@@ -1,0 +1,134 @@
+//! The equations themselves as tapes, with no scheme and no elimination in them: what an enclosure of a solution is
+//! verified with.
+
+use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Tape, lower};
+
+use super::equations::{equations_of_motion, time_derivative};
+use super::layout::Layout;
+use super::start::inputs;
+use crate::assemble::System;
+
+/// A matrix's entries: (row, column, slot).
+pub type Entries = Vec<(usize, usize, usize)>;
+
+/// Tapes over the parameters, t, q, v, w, λ, which stand where [`Layout`] says.
+#[derive(Clone, Debug)]
+pub struct EquationsProgram {
+    /// Shared with the step's program.
+    pub layout: Layout,
+    /// Slots of M w + Φ_qᵀ λ − Q, n, after [`residual`](Self::residual).
+    pub motion: Vec<usize>,
+    /// Slots of Φ, m, after [`residual`](Self::residual).
+    pub constraint: Vec<usize>,
+    /// Slots of Φ̇ and of Φ̈, m each, after [`rates`](Self::rates).
+    pub constraint_rates: [Vec<usize>; 2],
+    /// Derivatives of the motion's equations after [`slopes`](Self::slopes): by q, v, w and λ.
+    pub motion_by: [Entries; 4],
+    /// Φ_q after [`slopes`](Self::slopes).
+    pub constraint_by_position: Entries,
+    /// Slots of the outputs after [`observe`](Self::observe).
+    pub outputs: Vec<usize>,
+    /// Slots and places of the positions, and of the velocities, that are kept at the start, after [`given`](Self::given).
+    pub kept: [Vec<(usize, usize)>; 2],
+    lowered: Lowered,
+}
+
+const RESIDUAL: usize = 0;
+const RATES: usize = 1;
+const SLOPES: usize = 2;
+const OBSERVE: usize = 3;
+const GIVEN: usize = 4;
+
+impl EquationsProgram {
+    /// Number of slots of a memory.
+    pub fn slots(&self) -> usize {
+        self.lowered.slots
+    }
+
+    /// Numbers that a new memory holds.
+    pub fn constants(&self) -> &[(u32, f64)] {
+        &self.lowered.constants
+    }
+
+    /// Once a box of parameters.
+    pub fn sample(&self) -> &Tape {
+        &self.lowered.stages[0]
+    }
+
+    /// The equations of motion and Φ.
+    pub fn residual(&self) -> &Tape {
+        &self.lowered.kernels[RESIDUAL]
+    }
+
+    /// Φ̇ and Φ̈.
+    pub fn rates(&self) -> &Tape {
+        &self.lowered.kernels[RATES]
+    }
+
+    /// All first derivatives.
+    pub fn slopes(&self) -> &Tape {
+        &self.lowered.kernels[SLOPES]
+    }
+
+    /// The outputs.
+    pub fn observe(&self) -> &Tape {
+        &self.lowered.kernels[OBSERVE]
+    }
+
+    /// What is kept at the start.
+    pub fn given(&self) -> &Tape {
+        &self.lowered.kernels[GIVEN]
+    }
+}
+
+/// Compiles a system's equations.
+pub fn compile_equations(system: &System) -> EquationsProgram {
+    let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
+    let mut graph = system.graph.clone();
+    let (motion, slopes) = equations_of_motion(system, &mut graph);
+    let rate = time_derivative(system, &mut graph, &system.constraint);
+    let rate_of_rate = time_derivative(system, &mut graph, &rate);
+    let by = |graph: &mut Graph, symbols: &[Expr]| graph.jacobian(&motion, symbols);
+    let mut matrices: Vec<SparseMatrix> =
+        [&system.q, &system.v, &system.w, &system.lambda].map(|symbols| by(&mut graph, symbols)).into();
+    matrices.push(slopes);
+    let kept = [&system.start.position, &system.start.velocity];
+    let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
+    let free = |values: &[Expr]| values.iter().map(|&value| (value, None)).collect::<Vec<_>>();
+    let kernels = [
+        free(&[&motion[..], &system.constraint].concat()),
+        free(&[rate, rate_of_rate].concat()),
+        matrices.iter().flat_map(|matrix| matrix.entries().map(|(_, _, value)| (value, None))).collect(),
+        system.outputs.iter().map(|output| (output.expr, None)).collect(),
+        free(&given),
+    ];
+    let inputs: Vec<Input> = inputs(system, &layout);
+    let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
+
+    let (n, m) = (system.q.len(), system.lambda.len());
+    let slots = |kernel: usize| lowered.outputs[kernel].iter().map(|&slot| slot as usize);
+    let mut derivatives = slots(SLOPES);
+    let mut entries = |matrix: &SparseMatrix| -> Entries {
+        matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), slot)| (row, column, slot)).collect()
+    };
+    let motion_by = std::array::from_fn(|place| entries(&matrices[place]));
+    let constraint_by_position = entries(&matrices[4]);
+    drop(derivatives);
+    let mut given = slots(GIVEN);
+    let kept = kept.map(|values| {
+        let places = (0..n).filter(|&place| values[place].is_some());
+        places.zip(given.by_ref()).collect::<Vec<_>>()
+    });
+    drop(given);
+    EquationsProgram {
+        motion: slots(RESIDUAL).take(n).collect(),
+        constraint: slots(RESIDUAL).skip(n).collect(),
+        constraint_rates: [slots(RATES).take(m).collect(), slots(RATES).skip(m).collect()],
+        outputs: slots(OBSERVE).collect(),
+        motion_by,
+        constraint_by_position,
+        kept,
+        layout,
+        lowered,
+    }
+}

@@ -1,0 +1,285 @@
+//! A step of HHT-I3, or of another scheme of its family, as expressions: residual, Newton matrix, and the state at its end.
+//!
+//! Negrut, Rampalli, Ottarsson & Sajdak, J. Comput. Nonlinear Dynam. 2 (2007) 73, in the form of Arnold & Brüls,
+//! Multibody Syst. Dyn. 18 (2007) 185, which keeps the algorithmic acceleration a apart from the true one, w = v̇:
+//!
+//! ```text
+//! M(q₊) w₊ + Φ_q(q₊,t₊)ᵀ λ₊ − Q(t₊,q₊,v₊,λ₊) = 0            Φ(q₊,t₊) / (βh²(1+α)) = 0
+//! a₊ = (1+α) w₊ − α w
+//! q₊ = q + h v + h²/2 [(1−2β) a + 2β a₊]                      v₊ = v + h [(1−γ) a + γ a₊]
+//! β = (1−α)²/4,   γ = 1/2 − α
+//! ```
+//!
+//! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂ + b x
+//! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂, v̂ are known when the step begins. The constraint is divided
+//! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place.
+
+use rustc_hash::FxHashMap;
+use symdiff::{Expr, Graph, Input, SparseMatrix};
+
+use super::equations::{equations_of_motion, time_derivative};
+use super::layout::Layout;
+use super::scheme::{Coefficients, ConstraintLevel};
+use crate::assemble::System;
+
+/// Stage of what changes with the sample only.
+pub const SAMPLE: usize = 0;
+/// Stage of what changes with the step size.
+pub const STEP_SIZE: usize = 1;
+/// Stage of what changes from step to step.
+pub const STEP: usize = 2;
+/// Stage of what changes in Newton's iteration.
+pub const ITERATION: usize = 3;
+
+/// A step's equations over the symbols of [`step_inputs`].
+#[derive(Clone, Debug)]
+pub struct NewtonSystem {
+    /// n + m residuals: equations of motion, then constraints over b (their rates over c).
+    pub residual: Vec<Expr>,
+    /// ∂residual/∂(w₊, λ₊), (n + m)².
+    pub matrix: SparseMatrix,
+    /// q₊, n.
+    pub position: Vec<Expr>,
+    /// v₊, n.
+    pub velocity: Vec<Expr>,
+    /// a₊, n.
+    pub algorithmic: Vec<Expr>,
+    /// w₊, n: the iterate itself.
+    pub acceleration: Vec<Expr>,
+    /// M(q₊) (a₊ − a), n: what local errors are made of.
+    pub inertial_change: Vec<Expr>,
+    /// Where it is not positive, nothing acts that acts only sometimes.
+    pub touching: Option<Expr>,
+}
+
+/// The symbols of a step that the system does not have: the state at its beginning, h and the iterate.
+struct StepSymbols {
+    q: Vec<Expr>,
+    v: Vec<Expr>,
+    a: Vec<Expr>,
+    w: Vec<Expr>,
+    x: Vec<Expr>,
+    h: Expr,
+    t: Expr,
+}
+
+impl StepSymbols {
+    fn new(graph: &mut Graph, n: usize) -> Self {
+        let mut block = |name: &str| (0..n).map(|i| graph.symbol(&format!("step:{name}{i}"))).collect::<Vec<_>>();
+        let (q, v, a, w, x) = (block("q"), block("v"), block("a"), block("w"), block("x"));
+        Self { q, v, a, w, x, h: graph.symbol("step:h"), t: graph.symbol("step:t") }
+    }
+
+    fn inputs(&self, layout: &Layout, system: &System) -> Vec<Input> {
+        let mut inputs = Vec::new();
+        let mut add = |symbols: &[Expr], start: usize, stage: usize| {
+            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input {
+                symbol,
+                stage,
+                slot: slot as u32,
+            }));
+        };
+        let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+        add(&parameters, layout.parameters.start, SAMPLE);
+        add(&[self.h], layout.step, STEP_SIZE);
+        add(&[self.t], layout.time, STEP);
+        add(&self.q, layout.q.start, STEP);
+        add(&self.v, layout.v.start, STEP);
+        add(&self.a, layout.a.start, STEP);
+        add(&self.w, layout.w.start, STEP);
+        add(&self.x, layout.iterate.start, ITERATION);
+        // The system's own symbols stand for the state wherever a kernel looks at it between steps.
+        add(&system.lambda, layout.lambda.start, ITERATION);
+        add(&[system.time], layout.time, ITERATION);
+        add(&system.q, layout.q.start, ITERATION);
+        add(&system.v, layout.v.start, ITERATION);
+        add(&system.w, layout.w.start, ITERATION);
+        inputs
+    }
+}
+
+/// The equations of a step and their inputs.
+pub fn newton_system(
+    system: &System,
+    graph: &mut Graph,
+    layout: &Layout,
+    coefficients: Coefficients,
+) -> (NewtonSystem, Vec<Input>) {
+    let (n, m) = (system.q.len(), system.lambda.len());
+    let Coefficients { beta, gamma, .. } = coefficients;
+    let (of_new, of_old, of_algorithmic) =
+        (coefficients.of_new(), coefficients.of_old(), coefficients.of_algorithmic());
+    let symbols = StepSymbols::new(graph, n);
+    let h = symbols.h;
+    let h2 = graph.mul(h, h);
+    let b = graph.scale(beta * of_new, h2);
+    let c = graph.scale(gamma * of_new, h);
+
+    // q₊ and v₊, step by step in the paper's order.
+    let (mut position, mut velocity, mut algorithmic) = (Vec::new(), Vec::new(), Vec::new());
+    let (q_a, q_w) = (graph.scale(0.5 - beta * (1.0 + of_algorithmic), h2), graph.scale(beta * of_old, h2));
+    let (v_a, v_w) = (graph.scale(1.0 - gamma * (1.0 + of_algorithmic), h), graph.scale(gamma * of_old, h));
+    for i in 0..n {
+        let (q, v, a, w, x) = (symbols.q[i], symbols.v[i], symbols.a[i], symbols.w[i], symbols.x[i]);
+        let drift = graph.mul(h, v);
+        let predicted = graph.add(q, drift);
+        let (from_a, from_w, from_x) = (graph.mul(q_a, a), graph.mul(q_w, w), graph.mul(b, x));
+        let known = graph.add(predicted, from_a);
+        let known = graph.add(known, from_w);
+        position.push(graph.add(known, from_x));
+        let (from_a, from_w, from_x) = (graph.mul(v_a, a), graph.mul(v_w, w), graph.mul(c, x));
+        let known = graph.add(v, from_a);
+        let known = graph.add(known, from_w);
+        velocity.push(graph.add(known, from_x));
+        let (new, old, before) = (graph.scale(of_new, x), graph.scale(of_old, w), graph.scale(of_algorithmic, a));
+        let true_ones = graph.add(new, old);
+        algorithmic.push(graph.sub(true_ones, before));
+    }
+
+    let (motion, slopes) = equations_of_motion(system, graph);
+    let by_position = graph.jacobian(&motion, &system.q);
+    let by_velocity = graph.jacobian(&motion, &system.v);
+    let by_acceleration = graph.jacobian(&motion, &system.w);
+    let by_multiplier = graph.jacobian(&motion, &system.lambda);
+    let mut matrix = SparseMatrix::zero(n + m, n + m);
+    for (row, column, value) in by_acceleration.entries() {
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_position.entries() {
+        let value = graph.mul(b, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_velocity.entries() {
+        let value = graph.mul(c, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_multiplier.entries() {
+        matrix.add(graph, row, n + column, value);
+    }
+    for (row, column, value) in slopes.entries() {
+        matrix.add(graph, n + row, column, value);
+    }
+    let mut residual = motion;
+    match coefficients.level {
+        ConstraintLevel::Position => residual.extend(system.constraint.iter().map(|&gap| graph.div(gap, b))),
+        ConstraintLevel::Velocity => {
+            let rates = time_derivative(system, graph, &system.constraint);
+            // ∂Φ̇/∂v₊ = Φ_q stands there already.
+            let ratio = graph.div(b, c);
+            for (row, column, slope) in graph.jacobian(&rates, &system.q).entries() {
+                let value = graph.mul(ratio, slope);
+                matrix.add(graph, n + row, column, value);
+            }
+            residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
+        }
+    }
+
+    // Everything at t₊: the system's symbols become the step's expressions.
+    let mut at_end: FxHashMap<Expr, Expr> = FxHashMap::default();
+    at_end.insert(system.time, symbols.t);
+    for i in 0..n {
+        at_end.insert(system.q[i], position[i]);
+        at_end.insert(system.v[i], velocity[i]);
+        at_end.insert(system.w[i], symbols.x[i]);
+    }
+    let residual = graph.substitute(&residual, &at_end);
+    let masses: Vec<Expr> = system.mass.iter().map(|&(_, _, mass)| mass).collect();
+    let masses = graph.substitute(&masses, &at_end);
+    let mut inertial_change = vec![graph.constant(0.0); n];
+    for (&(row, column, _), mass) in system.mass.iter().zip(masses) {
+        let change = graph.sub(algorithmic[column], symbols.a[column]);
+        let change = graph.mul(mass, change);
+        inertial_change[row] = graph.add(inertial_change[row], change);
+    }
+    let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+    let mut values = graph.substitute(&values, &at_end).into_iter();
+    for entry in matrix.rows.iter_mut().flatten() {
+        entry.1 = values.next().expect("one value an entry");
+    }
+    let touching = system.touching.map(|touching| graph.substitute(&[touching], &at_end)[0]);
+    let inputs = symbols.inputs(layout, system);
+    let acceleration = symbols.x;
+    let system =
+        NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration, inertial_change, touching };
+    (system, inputs)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+    use crate::assemble::tests::model::{Model, formula};
+    use crate::compile::scheme::Scheme;
+    use crate::model::{DryFriction, EffectKind, JointFriction, Rubbing};
+
+    /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
+    #[test]
+    fn the_matrix_is_the_residuals_slope_where_forces_depend_on_reactions() {
+        let mut m = Model::new();
+        m.body("rod", "2", "0.1", "xya", &[("pin", "-0.3", "0.1"), ("tip", "0.4", "0")]);
+        m.body("bob", "1", "0.1", "xya", &[]);
+        m.revolute("pin", "ground", "rod.pin");
+        m.revolute("knee", "rod.tip", "bob");
+        m.gravity();
+        for joint in 0..2 {
+            let dry = DryFriction {
+                coefficient: formula("0.4"),
+                breakaway: formula("1.5"),
+                stribeck: Some(formula("0.7")),
+                transition: formula("0.2"),
+            };
+            let (coulomb, viscous, radius) = (formula("0.1"), formula("0.2"), formula("0.05"));
+            let rubbing = Rubbing::Turning;
+            m.effect(EffectKind::JointFriction(JointFriction {
+                joint,
+                rubbing,
+                dry,
+                coulomb,
+                viscous,
+                radius,
+                length: None,
+            }));
+        }
+        let system = m.build();
+        let (n, count) = (system.q.len(), system.lambda.len());
+        let layout = Layout::new(0, n, count);
+        let mut graph = system.graph.clone();
+        let (newton, inputs) = newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients());
+        let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
+        let mut values: HashMap<usize, f64> =
+            (0..layout.slots()).map(|slot| (slot, (1.7 * slot as f64 + 0.3).sin())).collect();
+        values.insert(layout.step, 0.05);
+        let residual = |values: &HashMap<usize, f64>| {
+            graph.evaluate(&newton.residual, |symbol| {
+                let input = inputs.iter().find(|input| input.symbol == symbol).unwrap();
+                values[&(input.slot as usize)]
+            })
+        };
+        let entries: Vec<_> = newton.matrix.entries().collect();
+        let exprs: Vec<Expr> = entries.iter().map(|entry| entry.2).collect();
+        let numbers = graph.evaluate(&exprs, |symbol| {
+            values[&(inputs.iter().find(|input| input.symbol == symbol).unwrap().slot as usize)]
+        });
+        let mut by_friction = 0;
+        for (column, slot) in unknowns.enumerate() {
+            let ends = [1e-6, -1e-6].map(|step| {
+                let mut moved = values.clone();
+                *moved.get_mut(&slot).unwrap() += step;
+                residual(&moved)
+            });
+            for (row, (ahead, behind)) in ends[0].iter().zip(&ends[1]).enumerate() {
+                let slope = (ahead - behind) / 2e-6;
+                let entry = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (row, column));
+                let entry = entry.map_or(0.0, |(_, number)| *number);
+                assert!((slope - entry).abs() < 1e-6 * (1.0 + slope.abs()), "({row}, {column}): {entry}, not {slope}");
+                // The constraints' slopes are the columns' other half; the rest is friction's.
+                if row < n && column >= n {
+                    let transposed = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (column, row));
+                    by_friction += usize::from((entry - transposed.map_or(0.0, |(_, number)| *number)).abs() > 1e-6);
+                }
+            }
+        }
+        assert!(by_friction >= 6, "only {by_friction} entries depend on friction");
+    }
+}

@@ -1,0 +1,25 @@
+//! Bounds → files: CSV, summary and plots.
+
+mod axis;
+mod canvas;
+mod contributions;
+mod cost;
+mod csv;
+mod figure;
+mod files;
+mod folder;
+mod overlay;
+mod panel;
+mod plot;
+mod polyline;
+mod scenes;
+mod view;
+
+pub use self::csv::bounds_csv;
+pub use contributions::{contributions_csv, contributions_svg};
+pub use cost::{cost_csv, cost_svg, write_cost};
+pub use files::{ReportError, file_stem, write_results};
+pub use folder::prepare_folder;
+pub use overlay::overlay_svg;
+pub use plot::plot_svg;
+pub use scenes::{SceneBounds, scenes_csv, write_scenes};

@@ -1,0 +1,47 @@
+//! Trajectories → [`Bounds`]: which parameters to run, and what their responses say of the whole box.
+//!
+//! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
+//!
+//! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
+//! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
+//!   [`SparseBasis`], for many parameters → [`VarianceShares`];
+//! - [`TaylorRange`]: the response's jet → range;
+//! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
+//! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
+
+mod bernstein;
+mod chebyshev;
+mod domain;
+mod error;
+mod extremes;
+mod leja;
+mod peak;
+mod range;
+mod samples;
+mod scan;
+mod search;
+mod shares;
+mod sparse_basis;
+mod sparse_grid;
+mod sparse_transform;
+mod surrogate;
+mod taylor;
+mod tensor;
+
+pub use chebyshev::{ChebyshevBasis, clenshaw};
+pub use domain::ParameterBox;
+pub use error::{
+    BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
+};
+pub use extremes::{Extent, extremes, extremes_near};
+pub use range::{Enclosed, PolynomialRange, Range};
+pub use samples::{TensorGrid, corners, probes, spread, validation};
+pub use scan::ScanBounds;
+pub use search::{ExtremeSearch, Extremes};
+pub use shares::{Shares, VarianceShares};
+pub use sparse_basis::{SparseBasis, SparseWork};
+pub use sparse_grid::SparseGrid;
+pub use sparse_transform::{SparseTransform, TransformWork};
+pub use surrogate::{Surrogate, SurrogateWork};
+pub use taylor::TaylorRange;
+pub use tensor::Work;

@@ -1,0 +1,82 @@
+//! What a run yields: bounds of every output over time.
+
+use crate::numerics::BandError;
+
+/// Bounds of every output of a model at the output times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Output times, s, ascending.
+    pub times: Vec<f64>,
+    /// In the model's order.
+    pub outputs: Vec<OutputBounds>,
+    /// Which tolerance matters, output by output; empty where it is not known.
+    pub contributions: Vec<Vec<Contribution>>,
+    /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
+    pub covered: Vec<f64>,
+}
+
+/// A parameter's part in the spread of an output over the times; not a number where it is not known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contribution {
+    /// Its name.
+    pub parameter: String,
+    /// Share of the variance (every parameter spread evenly over its interval) that is its alone.
+    pub main: Vec<f64>,
+    /// The same with what it has together with others.
+    pub total: Vec<f64>,
+    /// Width of the output's range if this parameter were at its nominal value.
+    pub width_without: Vec<f64>,
+}
+
+/// One output's nominal course and its bands; each vector runs over the times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputBounds {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit, empty where dimensionless or unknown.
+    pub unit: String,
+    /// With every parameter at its nominal value.
+    pub nominal: Vec<f64>,
+    /// In the order of [`Method`].
+    pub bands: Vec<Band>,
+}
+
+/// Of one output's bands, the one to look at: the first that is resolved to the end, or else the first.
+pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> {
+    bands.iter().find(|band| is_resolved(band)).or(bands.first())
+}
+
+/// A method's bounds of one output over time, and how far they may be from the truth.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Band {
+    pub method: Method,
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    pub error: BandError,
+}
+
+/// A bounding method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Method {
+    Chebyshev,
+    Taylor,
+    Scan,
+    Certified,
+}
+
+impl Method {
+    /// All of them, in the order in which they are reported.
+    pub const ALL: [Self; 4] = [Self::Chebyshev, Self::Taylor, Self::Scan, Self::Certified];
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Chebyshev => "chebyshev",
+            Self::Taylor => "taylor",
+            Self::Scan => "scan",
+            Self::Certified => "certified",
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! What an effect adds to the instructions of a step: data for `mbint explain` and the documentation.
+
+use serde::Serialize;
+
+use crate::compile::Program;
+
+/// Instructions of the parts of a step, or differences of them: without an effect elimination may take another order, and a
+/// part then even becomes longer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct StepInstructions {
+    /// Once a step: prediction, and what is known when it begins.
+    pub step: i64,
+    /// When the Newton matrix is factored.
+    pub factor: i64,
+    /// Every Newton iteration.
+    pub iteration: i64,
+}
+
+impl StepInstructions {
+    /// Of a program, where everything touches that can, or nothing does.
+    pub fn of(program: &Program, touching: bool) -> Self {
+        let count = |tape: &symdiff::Tape| tape.len_where(touching) as i64;
+        Self {
+            step: count(program.step()) + count(program.advance()),
+            factor: count(program.factor()),
+            iteration: count(program.correct()),
+        }
+    }
+
+    /// What is more here than in `less`.
+    #[must_use]
+    pub fn beyond(self, less: Self) -> Self {
+        Self {
+            step: self.step - less.step,
+            factor: self.factor - less.factor,
+            iteration: self.iteration - less.iteration,
+        }
+    }
+}
+
+impl std::ops::Add for StepInstructions {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            step: self.step + other.step,
+            factor: self.factor + other.factor,
+            iteration: self.iteration + other.iteration,
+        }
+    }
+}
+
+/// What one effect adds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct EffectCost {
+    /// Where it acts.
+    pub acting: StepInstructions,
+    /// Where it and its like touch nothing in any sample of a tile; absent where it always acts.
+    pub apart: Option<StepInstructions>,
+}
+
+impl EffectCost {
+    /// In two programs.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let apart = |cost: &Self| cost.apart.unwrap_or(cost.acting);
+        let sometimes = self.apart.is_some() || other.apart.is_some();
+        Self { acting: self.acting + other.acting, apart: sometimes.then(|| apart(&self) + apart(&other)) }
+    }
+}

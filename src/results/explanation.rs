@@ -1,0 +1,202 @@
+//! What a model was compiled to, and what was left out: the facts behind `mbint explain`.
+
+use serde::Serialize;
+
+use super::Decision;
+use super::effect_cost::EffectCost;
+use crate::compile::Program;
+use crate::simulate::Simulator;
+
+/// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Explanation {
+    /// The model's name.
+    pub model: String,
+    /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
+    pub space: String,
+    /// By which coordinates, and why: `joint coordinates: 148 instructions a step instead of 187`.
+    pub formulation: String,
+    /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.
+    pub coordinates: Vec<String>,
+    /// Constraint equations by name, e.g. `pin.x`.
+    pub constraints: Vec<String>,
+    /// Coordinates less independent constraints.
+    pub degrees_of_freedom: usize,
+    /// Names of constraints that others imply.
+    pub redundant_constraints: Vec<String>,
+    /// Names of constraints that depend on others at the start only: it is a singular configuration.
+    pub singular_at_start: Vec<String>,
+    /// Outputs that hang on reactions which equilibrium does not determine.
+    pub undetermined_outputs: Vec<String>,
+    /// Uncertain parameters; the others were folded into the instructions as numbers.
+    pub parameters: Vec<String>,
+    /// Forces and torques, in file order.
+    pub effects: Vec<EffectExplanation>,
+    /// Outputs by name.
+    pub outputs: Vec<String>,
+    /// How the work is divided; where effects act only sometimes, with all of them acting.
+    pub instructions: InstructionCounts,
+    /// The same where none of them acts in any sample of a tile, if that is less.
+    pub apart: Option<InstructionCounts>,
+    /// The matrix of Newton's method.
+    pub newton: NewtonMatrix,
+    /// What the model says and the program does not hold.
+    pub left_out: Vec<LeftOut>,
+    /// What is not computed, or less often than it might be.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub decisions: Vec<Decision>,
+}
+
+impl Explanation {
+    /// Of a model by this name.
+    pub fn new(model: &str, simulator: &Simulator) -> Self {
+        let (system, program) = (&simulator.system, &simulator.program);
+        let (nonzeros, factor_nonzeros) = program.nonzeros;
+        Self {
+            model: model.to_owned(),
+            space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
+            formulation: format!(
+                "{} coordinates: {}",
+                if system.formulation.joint { "joint" } else { "absolute" },
+                system.formulation.why
+            ),
+            coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
+            constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
+            degrees_of_freedom: simulator.mobility.degrees_of_freedom,
+            redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+            singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
+            undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+            parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            effects: system
+                .effects
+                .iter()
+                .map(|effect| EffectExplanation {
+                    name: effect.name.clone(),
+                    kind: effect.kind.to_owned(),
+                    forces: effect.forces,
+                    expressions: effect.expressions,
+                    adds: None,
+                })
+                .collect(),
+            outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+            instructions: InstructionCounts::of(program, true),
+            apart: Some(InstructionCounts::of(program, false))
+                .filter(|apart| *apart != InstructionCounts::of(program, true)),
+            newton: NewtonMatrix {
+                size: program.residual.len(),
+                nonzeros,
+                factor_nonzeros,
+                fill: factor_nonzeros.saturating_sub(nonzeros),
+                pivots: program.pivots.clone(),
+            },
+            left_out: system
+                .left_out
+                .iter()
+                .map(|left_out| LeftOut { what: left_out.what.clone(), why: left_out.why.clone() })
+                .collect(),
+            decisions: Vec::new(),
+        }
+    }
+}
+
+fn constraint_names(simulator: &Simulator, constraints: &[usize]) -> Vec<String> {
+    constraints.iter().map(|&constraint| simulator.system.constraints[constraint].name.clone()).collect()
+}
+
+/// What an effect came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EffectExplanation {
+    /// Its name in the model.
+    pub name: String,
+    /// E.g. `spring_damper`.
+    pub kind: String,
+    /// Generalized forces that it adds to.
+    pub forces: usize,
+    /// Nodes of its expressions, before they are shared with others.
+    pub expressions: usize,
+    /// What it adds to the instructions of a step, where that was asked for.
+    pub adds: Option<EffectCost>,
+}
+
+/// Instructions by how often they are run, seldom to often.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct InstructionCounts {
+    /// Once a sample: what depends on parameters alone.
+    pub sample: usize,
+    /// Once a step size: what depends on h and α.
+    pub step_size: usize,
+    /// Once a step: prediction, and what depends on t.
+    pub step: usize,
+    /// Once a step, and again where Newton's iteration needs it: the matrix and its factors.
+    pub factor: usize,
+    /// Once a Newton iteration: residual and substitution.
+    pub correct: usize,
+    /// Once a step, at its end.
+    pub advance: usize,
+    /// Once a row of output.
+    pub observe: usize,
+}
+
+impl InstructionCounts {
+    /// Of a program, where everything touches that can, or nothing does.
+    fn of(program: &Program, touching: bool) -> Self {
+        let count = |tape: &symdiff::Tape| tape.len_where(touching);
+        Self {
+            sample: count(program.sample()),
+            step_size: count(program.step_size()),
+            step: count(program.step()),
+            factor: count(program.factor()),
+            correct: count(program.correct()),
+            advance: count(program.advance()),
+            observe: count(program.observe()),
+        }
+    }
+
+    /// Adds those of another program.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.sample += other.sample;
+        self.step_size += other.step_size;
+        self.step += other.step;
+        self.factor += other.factor;
+        self.correct += other.correct;
+        self.advance += other.advance;
+        self.observe += other.observe;
+    }
+
+    /// Stages by name, with when they run and how many instructions they have.
+    pub fn stages(&self) -> [(&'static str, &'static str, usize); 7] {
+        [
+            ("sample", "once a sample", self.sample),
+            ("step size", "once a step size", self.step_size),
+            ("step", "once a step", self.step),
+            ("factor", "when the Newton matrix is factored", self.factor),
+            ("correct", "every Newton iteration", self.correct),
+            ("advance", "once a step, at its end", self.advance),
+            ("observe", "once a row of output", self.observe),
+        ]
+    }
+}
+
+/// The matrix of Newton's method, its factors and their pivots.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct NewtonMatrix {
+    /// Rows, coordinates and constraints together.
+    pub size: usize,
+    /// Entries that are not always zero.
+    pub nonzeros: usize,
+    /// Entries of L and U together, the diagonal once.
+    pub factor_nonzeros: usize,
+    /// Those of the factors that the matrix does not have.
+    pub fill: usize,
+    /// (row, column) in the order of elimination, counted from 0.
+    pub pivots: Vec<(usize, usize)>,
+}
+
+/// Something that the model says and the program does not hold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// E.g. `parameter k2`.
+    pub what: String,
+    /// E.g. `nothing depends on it`.
+    pub why: String,
+}

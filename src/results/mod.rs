@@ -1,0 +1,20 @@
+//! What a run yields, as data only.
+
+mod bounds;
+mod cost;
+mod decisions;
+mod effect_cost;
+mod explanation;
+mod summary;
+
+pub use bounds::{Band, Bounds, Contribution, Method, OutputBounds, foremost};
+#[cfg(test)]
+pub(crate) use cost::tests as cost_tests;
+pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};
+pub use decisions::{Decision, Each, Saving};
+pub use effect_cost::{EffectCost, StepInstructions};
+pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+pub use summary::{
+    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    Summary,
+};

@@ -1,0 +1,157 @@
+//! The whole motion from the independent coordinates: positions through the loop closure, velocities, accelerations and
+//! reactions through their linear systems, outputs through their formulas. No time integration.
+//!
+//! The tapes are those of the start; what is "kept" there are the independent coordinates here.
+
+use nalgebra::DMatrix;
+use symdiff::Tile;
+
+use super::initial::{Assembly, allowed_gap};
+use super::rank::free_columns;
+use super::simulator::{SimulationError, Simulator, no_factors};
+use crate::assemble::System;
+use crate::compile::{StartProgram, compile_start};
+
+/// How much rather a position is made dependent than an angle, which turns on and on and so tells more.
+const ANGLES_STAY: f64 = 0.3;
+
+/// Lanes evaluated at once.
+const WIDTH: usize = 32;
+
+/// The closure of a mechanism over one choice of independent coordinates.
+#[derive(Clone, Debug)]
+pub struct Closure<'s> {
+    simulator: &'s Simulator,
+    independent: Vec<usize>,
+    program: StartProgram,
+    /// Whether outputs depend on velocities; on accelerations or reactions.
+    needs: (bool, bool),
+}
+
+/// Points at which the closure is evaluated: values by point within each row.
+#[derive(Clone, Debug, Default)]
+pub struct Points {
+    /// Number of points.
+    pub count: usize,
+    /// k rows.
+    pub parameters: Vec<f64>,
+    /// 2n rows, positions and velocities: those of independent coordinates hold, the others say where to look.
+    pub motion: Vec<f64>,
+}
+
+/// Which coordinates are best taken as independent at a motion (its first n values).
+pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
+    let start = &simulator.start;
+    let layout = &start.layout;
+    let n = layout.q.len();
+    let mut tile = Tile::new(1, start.slots(), start.constants());
+    for (slot, &value) in layout.parameters.clone().zip(parameters).chain(layout.q.clone().zip(motion)) {
+        tile.lane_mut(slot)[0] = value;
+    }
+    tile.lane_mut(layout.time)[0] = time;
+    tile.run(start.sample());
+    tile.run(start.slopes());
+    let mut slopes = DMatrix::zeros(layout.lambda.len(), n);
+    for &(row, column, slot) in &start.slope_entries {
+        slopes[(row, column)] = tile.lane(slot)[0] * simulator.program.scale[column];
+    }
+    let weight: Vec<f64> = simulator
+        .system
+        .coordinates
+        .iter()
+        .map(|coordinate| if coordinate.is_angle { ANGLES_STAY } else { 1.0 })
+        .collect();
+    free_columns(&slopes, &weight)
+}
+
+impl<'s> Closure<'s> {
+    /// Compiles the closure over these coordinates.
+    ///
+    /// # Errors
+    /// Where its equations have no finite values at the start.
+    pub fn new(simulator: &'s Simulator, independent: Vec<usize>) -> Result<Self, SimulationError> {
+        let mut system: System = simulator.system.clone();
+        let n = system.q.len();
+        let kept = |symbols: &[symdiff::Expr]| (0..n).map(|i| independent.contains(&i).then_some(symbols[i])).collect();
+        system.start.position = kept(&system.q);
+        system.start.velocity = kept(&system.v);
+        system.start.conditions.clear();
+        let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
+            .map_err(|none| no_factors(&simulator.system, &none))?;
+        let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();
+        let used = system.graph.symbols_of(&outputs);
+        let uses = |symbols: &[symdiff::Expr]| symbols.iter().any(|symbol| used.binary_search(symbol).is_ok());
+        let forces = uses(&system.w) || uses(&system.lambda);
+        let needs = (forces || uses(&system.v), forces);
+        Ok(Self { simulator, independent, program, needs })
+    }
+
+    /// The independent coordinates.
+    pub fn independent(&self) -> &[usize] {
+        &self.independent
+    }
+
+    /// Whether outputs depend on velocities; where not, those of [`Points`] are not looked at.
+    pub fn needs_velocities(&self) -> bool {
+        self.needs.0
+    }
+
+    /// Outputs at all points: output by output, point by point; not a number where the closure has no solution near the
+    /// point's motion.
+    pub fn outputs(&self, time: f64, points: &Points, into: &mut Vec<f64>) {
+        let layout = &self.program.layout;
+        into.clear();
+        into.resize(self.program.outputs.len() * points.count, 0.0);
+        let mut assembly = Assembly::new(&self.program, &self.simulator.system, WIDTH, |_, _| 0.0);
+        let mut first = 0;
+        while first < points.count {
+            let count = WIDTH.min(points.count - first);
+            let tile = assembly.tile_mut();
+            let mut set = |slots: std::ops::Range<usize>, values: &[f64]| {
+                for (slot, values) in slots.zip(values.chunks_exact(points.count)) {
+                    for (lane, value) in tile.lane_mut(slot).iter_mut().enumerate() {
+                        *value = values[first + lane.min(count - 1)];
+                    }
+                }
+            };
+            set(layout.parameters.clone(), &points.parameters);
+            set(layout.q.start..layout.v.end, &points.motion);
+            (layout.w.start..layout.lambda.end).for_each(|slot| tile.lane_mut(slot).fill(0.0));
+            tile.lane_mut(layout.time).fill(time);
+            tile.run(self.program.sample());
+            self.close(&mut assembly);
+            let closed = self.closed(&assembly);
+            for (line, &slot) in into.chunks_exact_mut(points.count).zip(&self.program.outputs) {
+                for (lane, value) in line[first..first + count].iter_mut().enumerate() {
+                    *value = if closed[lane] { assembly.tile().lane(slot)[lane] } else { f64::NAN };
+                }
+            }
+            first += count;
+        }
+    }
+
+    fn close(&self, assembly: &mut Assembly) {
+        let layout = &self.program.layout;
+        let (velocities, accelerations) = self.needs;
+        assembly.correct_until_settled(self.program.position(), layout.q.start);
+        if velocities {
+            assembly.correct_until_settled(self.program.velocity(), layout.v.start);
+        }
+        if accelerations {
+            assembly.correct_until_settled(self.program.acceleration(), layout.w.start);
+        }
+        assembly.tile_mut().run(self.program.position());
+        assembly.tile_mut().run(self.program.observe());
+    }
+
+    fn closed(&self, assembly: &Assembly) -> Vec<bool> {
+        let allowed = allowed_gap(&self.simulator.program.scale);
+        let mut closed = vec![true; WIDTH];
+        for &slot in &self.program.constraint {
+            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(slot)) {
+                *closed &= gap.abs() <= allowed;
+            }
+        }
+        closed
+    }
+}

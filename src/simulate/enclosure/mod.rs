@@ -1,0 +1,189 @@
+//! Certified motions: what the scheme's equations yield, enclosed for a whole box of parameters at once.
+//!
+//! With q̂ and v̂ for what is known of q₊ and v₊ when a step begins (`program/newton_matrix.rs`), a step takes (q̂, v̂, w) to
+//! the next by
+//!
+//! ```text
+//! q₊ = q̂ + b x,   v₊ = v̂ + c x,   F(x, λ₊; q̂, v̂, ξ) = 0        F = (M w₊ + Φ_qᵀ λ₊ − Q, Φ/b) at (t₊, q₊, v₊, w₊ = x)
+//! ```
+//!
+//! and linear updates. Enclosed is the exact solution of these equations in real numbers, with the step size and the
+//! scheme's coefficients as they stand in `f64`: rounding and Newton's tolerance are bounded, the distance to the
+//! differential equation's solution is not.
+//!
+//! The state is kept as polynomials P(ξ) and a remainder A(ξ) z, |zᵢ| ≤ rᵢ, in a frame A(ξ) of polynomials ([`frame`]). A
+//! step ([`step`]) finds polynomials X(ξ) by Newton's iteration, bounds F at them in Taylor models (ρ), and proves by
+//! Krawczyk's operator that for every ξ and z there is a solution x = X + Y z + y with small y:
+//!
+//! ```text
+//! y = −C (ρ + (J Y + G) z) + (I − C J) y,      J ∋ ∂F/∂x,  G ∋ ∂F/∂(q̂, v̂) A over the enclosure,  C ≈ J⁻¹,  Y ≈ −C G
+//! ```
+//!
+//! Brouwer's theorem gives a solution where the right side maps a box |y| ≤ g into itself, ‖I − C J‖ < 1 that there is
+//! but one. C, X, Y and A need no proof: what they miss is in the bounds. The next z takes up the z before, turned into
+//! the next frame, and y.
+
+mod frame;
+mod krawczyk;
+mod matrix;
+mod start;
+mod step;
+
+use symdiff::taylor_model::ModelSpace;
+use symdiff::{Interval, ModelMemory};
+
+use super::simulator::Simulator;
+use super::steps::Schedule;
+use crate::compile::{Coefficients, EquationsProgram, compile_equations};
+use frame::{Frame, Units};
+use matrix::Models;
+
+/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder hangs on it.
+const MOTION_TIME: f64 = 0.1;
+
+/// Why an enclosure ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Lost {
+    /// The start is not determined, or over-determined, by what the model keeps.
+    #[error("the start is not the solution of as many equations as unknowns")]
+    Undetermined,
+    /// Krawczyk's operator does not contract.
+    #[error("no solution could be proven")]
+    Unproven,
+}
+
+/// What an enclosure needs that does not depend on the box.
+#[derive(Clone, Debug)]
+pub struct Certifier<'s> {
+    simulator: &'s Simulator,
+    program: EquationsProgram,
+}
+
+impl<'s> Certifier<'s> {
+    /// Compiles the equations of a mechanism.
+    pub fn new(simulator: &'s Simulator) -> Self {
+        Self { simulator, program: compile_equations(&simulator.system) }
+    }
+}
+
+/// The scheme's coefficients for one step size, each the exact number that the step's tapes compute with.
+#[derive(Clone, Copy, Debug)]
+struct Gains {
+    h: Interval,
+    b: Interval,
+    c: Interval,
+    /// q̂ = q + h v + q_a a − q_w w,   v̂ = v + v_a a − v_w w,   a₊ = a_x x − a_w w.
+    q_a: Interval,
+    q_w: Interval,
+    v_a: Interval,
+    v_w: Interval,
+    a_x: Interval,
+    a_w: Interval,
+}
+
+impl Gains {
+    /// Of HHT, the scheme of all models: α = α_m − α_f with α_m = 0.
+    fn new(coefficients: Coefficients, h: f64) -> Self {
+        let Coefficients { beta, gamma, .. } = coefficients;
+        let alpha = coefficients.shift();
+        let h = Interval::point(h);
+        let h2 = h.square();
+        let number = Interval::point;
+        Self {
+            h,
+            b: number(beta * (1.0 + alpha)) * h2,
+            c: number(gamma * (1.0 + alpha)) * h,
+            q_a: number(0.5 - beta) * h2,
+            q_w: number(beta * alpha) * h2,
+            v_a: number(1.0 - gamma) * h,
+            v_w: number(gamma * alpha) * h,
+            a_x: number(1.0 + alpha),
+            a_w: number(alpha),
+        }
+    }
+}
+
+/// A motion enclosed over a box of parameters, step by step.
+#[derive(Debug)]
+pub struct Enclosure<'s> {
+    space: &'s ModelSpace,
+    program: &'s EquationsProgram,
+    memory: ModelMemory<'s>,
+    gains: Gains,
+    /// q̂, v̂, w in that order, 3n: polynomials only.
+    state: Models,
+    /// A, in units of `scale`.
+    frame: Frame,
+    /// r.
+    radii: Vec<f64>,
+    units: Units,
+    /// X of the last steps, the last first.
+    before: Vec<Models>,
+    /// C.
+    inverse: Option<Models>,
+    /// Bound of y, for the next step's first guess.
+    spread: Vec<f64>,
+}
+
+impl<'s> Enclosure<'s> {
+    /// Encloses the start over the box from `lower` to `upper` for steps of length `h`.
+    ///
+    /// # Errors
+    /// Where the start cannot be proven to exist.
+    pub fn start(
+        certifier: &'s Certifier<'s>,
+        space: &'s ModelSpace,
+        lower: &[f64],
+        upper: &[f64],
+        h: f64,
+    ) -> Result<Self, Lost> {
+        let (simulator, program) = (certifier.simulator, &certifier.program);
+        let coefficients = simulator.program.coefficients;
+        let mut memory = ModelMemory::new(space, program.slots(), program.constants());
+        for (variable, slot) in program.layout.parameters.clone().enumerate() {
+            space.variable(variable, lower[variable], upper[variable], memory.model_mut(slot));
+        }
+        memory.run(program.sample());
+        start::assemble(simulator, program, space, &mut memory, coefficients.shift() * h)?;
+
+        let n = program.layout.q.len();
+        let unit = |size: f64| 2.0_f64.powi(size.log2().round() as i32);
+        let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
+        let scale: Vec<f64> =
+            [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
+        let units = Units { scale, step: h, motion: unit(MOTION_TIME / h) };
+        let gains = Gains::new(coefficients, h);
+        let (tangent, push, independent) = start::tangent(simulator, program, space, &mut memory)?;
+        let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);
+        let mut enclosure = Self {
+            space,
+            program,
+            memory,
+            gains,
+            state: Models::zero(space, 3 * n, 1),
+            frame,
+            radii: vec![0.0; 3 * n],
+            units,
+            before: Vec::new(),
+            inverse: None,
+            spread: Vec::new(),
+        };
+        enclosure.begin()?;
+        Ok(enclosure)
+    }
+
+    /// Outputs over the box now, a model each.
+    pub fn observe(&mut self, into: &mut Vec<f64>) {
+        self.memory.run(self.program.observe());
+        into.clear();
+        self.program.outputs.iter().for_each(|&slot| into.extend_from_slice(self.memory.model(slot)));
+    }
+
+    /// Steps up to a row of output, which follows the one before.
+    ///
+    /// # Errors
+    /// Where a step's solution cannot be proven, with the time of its end.
+    pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, Lost)> {
+        schedule.steps_to(row).try_for_each(|(_, end)| self.step(end).map_err(|lost| (end, lost)))
+    }
+}

@@ -1,0 +1,213 @@
+//! The start, enclosed: positions, velocities, accelerations and multipliers as solutions of their equations.
+
+use symdiff::taylor_model::ModelSpace;
+use symdiff::{Interval, ModelMemory, Tape};
+
+use super::Lost;
+use super::krawczyk::{self, Image};
+use super::matrix::{Models, apply_bounds};
+use crate::compile::EquationsProgram;
+use crate::simulate::closure::choose_independent;
+use crate::simulate::simulator::Simulator;
+
+/// A square system of equations among a program's slots.
+struct Equations<'p> {
+    /// What is solved for.
+    unknowns: Vec<usize>,
+    /// What is to be zero after `residual`.
+    residuals: Vec<usize>,
+    residual: [&'p Tape; 2],
+    slopes: &'p Tape,
+    /// (residual, unknown, slot) after `slopes`.
+    entries: Vec<(usize, usize, usize)>,
+}
+
+/// Leaves the start's q, v, a, w, λ in the memory at t = 0; `shift` is αh. The nominal start says which solution is meant.
+pub(super) fn assemble(
+    simulator: &Simulator,
+    program: &EquationsProgram,
+    space: &ModelSpace,
+    memory: &mut ModelMemory,
+    shift: f64,
+) -> Result<(), Lost> {
+    let layout = &program.layout;
+    for slot in layout.state() {
+        space.constant(Interval::point(simulator.nominal[slot]), memory.model_mut(slot));
+    }
+    set_time(space, memory, layout.time, 0.0);
+    memory.run(program.given());
+    let starts = [layout.q.start, layout.v.start];
+    for (kept, start) in program.kept.iter().zip(starts) {
+        for &(place, given) in kept {
+            let value = memory.model(given).to_vec();
+            memory.model_mut(start + place).copy_from_slice(&value);
+        }
+    }
+    let residuals = [&program.constraint, &program.constraint_rates[0]];
+    for ((kept, start), residuals) in program.kept.iter().zip(starts).zip(residuals) {
+        let free: Vec<usize> =
+            (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
+        let column = |place: usize| free.iter().position(|&known| known == place);
+        let slopes = program.constraint_by_position.iter();
+        let entries = slopes.filter_map(|&(row, place, slot)| Some((row, column(place)?, slot))).collect();
+        let equations = Equations {
+            unknowns: free.iter().map(|place| start + place).collect(),
+            residuals: residuals.clone(),
+            residual: [program.residual(), program.rates()],
+            slopes: program.slopes(),
+            entries,
+        };
+        equations.solve(space, memory)?;
+    }
+    let accelerations = accelerations(program);
+    accelerations.solve(space, memory)?;
+
+    // a = w(t + αh) to first order: the accelerations of the state moved there.
+    let saved: Vec<Vec<f64>> = layout.state().map(|slot| memory.model(slot).to_vec()).collect();
+    let state = |slot: usize| &saved[slot - layout.q.start];
+    let (shift_by, half) = (Interval::point(shift), Interval::point(0.5 * shift));
+    let (mut moved, mut term) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+    for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
+        space.scale(half, state(w), &mut term);
+        space.add(state(v), &term, &mut moved);
+        space.scale(shift_by, &moved, &mut term);
+        space.add(state(q), &term, memory.model_mut(q));
+        space.scale(shift_by, state(w), &mut term);
+        space.add(state(v), &term, memory.model_mut(v));
+    }
+    set_time(space, memory, layout.time, shift);
+    accelerations.solve(space, memory)?;
+    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|slot| memory.model(slot).to_vec()).collect();
+    for (slot, saved) in layout.state().zip(&saved) {
+        memory.model_mut(slot).copy_from_slice(saved);
+    }
+    for (slot, shifted) in layout.a.clone().zip(&shifted) {
+        memory.model_mut(slot).copy_from_slice(shifted);
+    }
+    set_time(space, memory, layout.time, 0.0);
+    Ok(())
+}
+
+/// ∂q/∂(independent coordinates), n × f, and P (see [`super::frame`]), n × m, at the start, and which coordinates
+/// are independent.
+pub(super) fn tangent(
+    simulator: &Simulator,
+    program: &EquationsProgram,
+    space: &ModelSpace,
+    memory: &mut ModelMemory,
+) -> Result<(Models, Models, Vec<usize>), Lost> {
+    let layout = &program.layout;
+    let (n, m) = (layout.q.len(), program.constraint.len());
+    let motion = &simulator.nominal[layout.q.start..layout.v.end];
+    let parameters = &simulator.nominal[layout.parameters.clone()];
+    let independent = choose_independent(simulator, parameters, motion, 0.0);
+    let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
+    if dependent.len() != m {
+        return Err(Lost::Undetermined);
+    }
+    memory.run(program.slopes());
+    let (mut mass, mut slopes) = (Models::zero(space, n + m, n + m), Models::zero(space, m, n));
+    for &(row, column, slot) in &program.motion_by[2] {
+        mass.at_mut(row, column).copy_from_slice(memory.model(slot));
+    }
+    for &(row, column, slot) in &program.constraint_by_position {
+        mass.at_mut(n + row, column).copy_from_slice(memory.model(slot));
+        mass.at_mut(column, n + row).copy_from_slice(memory.model(slot));
+        slopes.at_mut(row, column).copy_from_slice(memory.model(slot));
+    }
+    let mut tangent = Models::zero(space, n, independent.len());
+    independent.iter().enumerate().for_each(|(column, &row)| tangent.at_mut(row, column)[0] = 1.0);
+    let follow = inverse(space, &slopes.columns_at(space, &dependent))?;
+    let mut follow = follow.approximate_times(space, &slopes.columns_at(space, &independent));
+    follow.negate();
+    for (place, &row) in dependent.iter().enumerate() {
+        (0..independent.len()).for_each(|column| tangent.at_mut(row, column).copy_from_slice(follow.at(place, column)));
+    }
+    let push = inverse(space, &mass)?.part(space, 0..n, n..n + m);
+    Ok((tangent, push, independent))
+}
+
+fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, Lost> {
+    let mut inverse = matrix.inverse_at_centre(space).ok_or(Lost::Undetermined)?;
+    if inverse.refine_inverse_of(space, matrix) { Ok(inverse) } else { Err(Lost::Unproven) }
+}
+
+fn set_time(space: &ModelSpace, memory: &mut ModelMemory, slot: usize, time: f64) {
+    space.constant(Interval::point(time), memory.model_mut(slot));
+}
+
+/// M w + Φ_qᵀ λ − Q = 0 and Φ̈ = 0, whose derivative by w is Φ_q.
+fn accelerations(program: &EquationsProgram) -> Equations<'_> {
+    let layout = &program.layout;
+    let n = layout.q.len();
+    let [_, _, by_w, by_lambda] = &program.motion_by;
+    let mut entries = by_w.clone();
+    entries.extend(by_lambda.iter().map(|&(row, column, slot)| (row, n + column, slot)));
+    entries.extend(program.constraint_by_position.iter().map(|&(row, column, slot)| (n + row, column, slot)));
+    Equations {
+        unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
+        residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
+        residual: [program.residual(), program.rates()],
+        slopes: program.slopes(),
+        entries,
+    }
+}
+
+impl Equations<'_> {
+    /// Encloses the unknowns, from the approximation in the memory.
+    fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), Lost> {
+        if self.unknowns.len() != self.residuals.len() {
+            return Err(Lost::Undetermined);
+        }
+        if self.unknowns.is_empty() {
+            return Ok(());
+        }
+        self.set_radii(space, memory, None);
+        let mut inverse = self.matrix(space, memory).inverse_at_centre(space).ok_or(Lost::Unproven)?;
+        // Each correction at least makes one more order right, and doubles them where C follows.
+        for _ in 0..space.jets().monomials().order().max(1).ilog2() + 5 {
+            let matrix = self.matrix(space, memory);
+            if !inverse.refine_inverse_of(space, &matrix) {
+                return Err(Lost::Unproven);
+            }
+            let correction = inverse.approximate_times(space, &self.residual(space, memory));
+            for (place, &slot) in self.unknowns.iter().enumerate() {
+                let change = correction.at(place, 0);
+                memory.model_mut(slot).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
+            }
+        }
+        let sizes = inverse.bounds(space);
+        let missed = apply_bounds(&sizes, &self.residual(space, memory).bounds(space));
+        let spread = krawczyk::enclose(missed.clone(), |y| {
+            self.set_radii(space, memory, Some(y));
+            let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);
+            Image { missed: missed.clone(), contraction }
+        })?;
+        self.set_radii(space, memory, Some(&spread));
+        Ok(())
+    }
+
+    fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {
+        for (place, &slot) in self.unknowns.iter().enumerate() {
+            memory.model_mut(slot)[space.size() - 1] = radii.map_or(0.0, |radii| radii[place]);
+        }
+    }
+
+    fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+        self.residual.iter().for_each(|tape| memory.run(tape));
+        let mut residual = Models::zero(space, self.residuals.len(), 1);
+        for (row, &slot) in self.residuals.iter().enumerate() {
+            residual.at_mut(row, 0).copy_from_slice(memory.model(slot));
+        }
+        residual
+    }
+
+    fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
+        memory.run(self.slopes);
+        let mut matrix = Models::zero(space, self.residuals.len(), self.unknowns.len());
+        for &(row, column, slot) in &self.entries {
+            matrix.at_mut(row, column).copy_from_slice(memory.model(slot));
+        }
+        matrix
+    }
+}

@@ -1,0 +1,310 @@
+//! One step of HHT-I3, or of another scheme of its family, for a tile of samples.
+
+use symdiff::Tile;
+
+use super::newton::{Counters, Newton};
+use crate::compile::Program;
+
+/// A step that fails is divided into 2, 4, … up to 2 to the power of this many before it is given up.
+const MAX_HALVINGS: u32 = 10;
+
+/// A sample that could not go on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stuck {
+    /// Lane of the tile.
+    pub lane: usize,
+    /// Time of the step's end, s.
+    pub time: f64,
+    /// Equation (of n + m) with the largest scaled residual.
+    pub equation: usize,
+}
+
+/// A lane's local error in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LocalError {
+    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger.
+    pub size: f64,
+    /// The coordinate that has it.
+    pub coordinate: usize,
+    /// How much its acceleration changes within the step.
+    pub change: f64,
+}
+
+/// Samples in step: the states of a tile, advanced together.
+#[derive(Clone, Debug)]
+pub struct Stepper<'p> {
+    program: &'p Program,
+    tile: Tile,
+    newton: Newton,
+    /// Step size that a belongs to; not a number before the first step.
+    step_size: f64,
+    /// Step size that the tile's step-size stage was run for.
+    prepared_size: f64,
+    /// Whether a lane still runs.
+    alive: Vec<bool>,
+    /// Local errors, where they are asked for.
+    errors: Option<Vec<LocalError>>,
+}
+
+impl<'p> Stepper<'p> {
+    /// A tile in the states (and with the parameters) of `start`, whose first slots are laid out alike.
+    pub fn new(program: &'p Program, start: &Tile) -> Self {
+        let width = start.width();
+        let mut tile = Tile::new(width, program.slots(), program.constants());
+        let shared = program.layout.slots() * width;
+        tile.values_mut()[..shared].copy_from_slice(&start.values()[..shared]);
+        tile.run(program.sample());
+        Self {
+            program,
+            tile,
+            newton: Newton::new(width),
+            step_size: f64::NAN,
+            prepared_size: f64::NAN,
+            alive: vec![true; width],
+            errors: None,
+        }
+    }
+
+    /// The memory: states between steps.
+    pub fn tile(&self) -> &Tile {
+        &self.tile
+    }
+
+    /// The memory, to put back a state that was saved.
+    pub fn tile_mut(&mut self) -> &mut Tile {
+        &mut self.tile
+    }
+
+    /// The layout's slots of one lane.
+    pub(super) fn lane(&self, lane: usize) -> Vec<f64> {
+        (0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]).collect()
+    }
+
+    /// The same into memory that is there.
+    pub(super) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
+        into.clear();
+        into.extend((0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]));
+    }
+
+    /// Largest |1/pivot| of a lane's last factors, over what is trusted.
+    pub(super) fn pivot_strain(&self, lane: usize) -> f64 {
+        let value = |slot: usize| self.tile.lane(slot)[lane];
+        let watched = self.program.watched.iter();
+        let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.slot))));
+        used.flat_map(|watched| &watched.pivots)
+            .map(|pivot| self.tile.lane(pivot.slot)[lane].abs() / pivot.largest_inverse)
+            .fold(0.0, f64::max)
+    }
+
+    /// Number of coordinates, n.
+    pub fn coordinates(&self) -> usize {
+        self.program.layout.q.len()
+    }
+
+    /// Which lanes still run.
+    pub fn alive(&self) -> &[bool] {
+        &self.alive
+    }
+
+    /// Lanes that carry no sample of their own stop running.
+    pub fn retire(&mut self, lanes: std::ops::Range<usize>) {
+        self.alive[lanes].fill(false);
+    }
+
+    /// All lanes back to a state that was saved; its a belongs to steps of length h.
+    pub fn rewind(&mut self, saved: &[f64], h: f64) {
+        self.restore_lanes(saved, |_| true);
+        self.step_size = h;
+    }
+
+    /// What Newton's iteration took so far.
+    pub fn counters(&self) -> Counters {
+        self.newton.counters
+    }
+
+    /// One step of length h to time t₊. A lane that does not converge is stepped alone, with smaller steps; those that
+    /// cannot be helped are returned and no longer run.
+    pub fn step(&mut self, h: f64, end: f64) -> Vec<Stuck> {
+        let mut converged = self.try_step(h, end);
+        let mut stuck = Vec::new();
+        if converged != self.alive {
+            for lane in (0..converged.len()).filter(|&lane| self.alive[lane] && !converged[lane]).collect::<Vec<_>>() {
+                match self.rescue(lane, h, end) {
+                    Ok(()) => converged[lane] = true,
+                    Err(equation) => stuck.push(Stuck { lane, time: end, equation }),
+                }
+            }
+        }
+        self.alive = converged;
+        stuck
+    }
+
+    /// One step without rescue: which of the running lanes converged and advanced. Those that did not keep their state.
+    pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
+        let converged = self.solve(h, end);
+        self.measure_errors(h);
+        if converged != self.alive {
+            let state = self.save();
+            self.finish();
+            self.restore_lanes(&state, |lane| !converged[lane]);
+        } else {
+            self.finish();
+        }
+        converged
+    }
+
+    /// First half of a step: solves for its end. Which of the running lanes converged.
+    pub(super) fn solve(&mut self, h: f64, end: f64) -> Vec<bool> {
+        self.set_step_size(h);
+        self.tile.lane_mut(self.program.layout.time).fill(end);
+        self.tile.run(self.program.step());
+        let mut converged = self.alive.clone();
+        self.newton.solve(self.program, &mut self.tile, h, &mut converged);
+        converged
+    }
+
+    /// Second half: the state becomes the one at the step's end.
+    pub(super) fn finish(&mut self) {
+        self.tile.run(self.program.advance());
+    }
+
+    /// The states q, v, a, w, λ of all lanes.
+    pub fn save(&self) -> Vec<f64> {
+        let state = self.program.layout.state();
+        self.tile.values()[state.start * self.tile.width()..state.end * self.tile.width()].to_vec()
+    }
+
+    /// Puts saved states back into the chosen lanes.
+    pub fn restore_lanes(&mut self, saved: &[f64], chosen: impl Fn(usize) -> bool) {
+        let width = self.tile.width();
+        for (slot, values) in self.program.layout.state().zip(saved.chunks_exact(width)) {
+            for lane in (0..width).filter(|&lane| chosen(lane)) {
+                self.tile.lane_mut(slot)[lane] = values[lane];
+            }
+        }
+    }
+
+    /// Runs the step-size stage where h differs, and moves a ≈ w(t + Δh) to the new Δh, along the line through a and w.
+    pub fn set_step_size(&mut self, h: f64) {
+        let layout = &self.program.layout;
+        if self.step_size.is_finite() && self.step_size != h {
+            let ratio = h / self.step_size;
+            for (a, w) in layout.a.clone().zip(layout.w.clone()) {
+                for lane in 0..self.tile.width() {
+                    let exact = self.tile.lane(w)[lane];
+                    let algorithmic = &mut self.tile.lane_mut(a)[lane];
+                    *algorithmic = exact + ratio * (*algorithmic - exact);
+                }
+            }
+        }
+        self.step_size = h;
+        if self.prepared_size != h {
+            self.tile.lane_mut(layout.step).fill(h);
+            self.tile.run(self.program.step_size());
+            self.prepared_size = h;
+        }
+    }
+
+    /// One lane alone, the step divided ever finer. Returns the equation that resists.
+    fn rescue(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
+        let layout = &self.program.layout;
+        let mut alone = Tile::new(1, self.program.slots(), self.program.constants());
+        for slot in 0..layout.slots() {
+            alone.lane_mut(slot)[0] = self.tile.lane(slot)[lane];
+        }
+        let mut single = Stepper::new(self.program, &alone);
+        let start = single.save();
+        single.errors = self.errors.as_ref().map(|_| vec![LocalError::default()]);
+        for halvings in 1..=MAX_HALVINGS {
+            let parts = 1_u32 << halvings;
+            single.rewind(&start, h);
+            let part = h / f64::from(parts);
+            let mut error = 0.0;
+            let done = (1..=parts).all(|count| {
+                let converged = single.try_step(part, end - f64::from(parts - count) * part)[0];
+                error += single.local_errors().first().map_or(0.0, |error| error.size);
+                converged
+            });
+            if done {
+                for (error_of, last) in self.errors.iter_mut().zip(&single.errors) {
+                    error_of[lane] = LocalError { size: error, ..last[0] };
+                }
+                // Back to the schedule's step size, so that a fits it.
+                single.set_step_size(h);
+                for slot in layout.state() {
+                    self.tile.lane_mut(slot)[lane] = single.tile.lane(slot)[0];
+                }
+                self.newton.counters.iterations += single.newton.counters.iterations;
+                self.newton.counters.rank_revealing += single.newton.counters.rank_revealing;
+                return Ok(());
+            }
+        }
+        Err(single.worst_equation(0))
+    }
+
+    /// The equation with the largest residual at a lane's iterate, each against its scale.
+    pub(super) fn worst_equation(&mut self, lane: usize) -> usize {
+        self.tile.run(self.program.matrix());
+        let sizes = self.program.residual.iter().zip(&self.program.equilibration);
+        let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[lane] * scale).abs());
+        let sizes = sizes.map(|size| if size.is_nan() { f64::INFINITY } else { size });
+        sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(equation, _)| equation)
+    }
+
+    /// From now on every step's local error is known.
+    pub fn estimate_errors(&mut self) {
+        self.errors = Some(vec![LocalError::default(); self.tile.width()]);
+    }
+
+    /// Local errors of the lanes in the last step, where they are asked for.
+    pub fn local_errors(&self) -> &[LocalError] {
+        self.errors.as_deref().unwrap_or_default()
+    }
+
+    /// After the iteration: (β + Δ/2 − 1/6) h² (a₊ − a) of each lane, of which only the part that moves the mechanism counts.
+    /// The rest is along the constraints' normals, where positions have no error: a₊ − a is large there after every change of
+    /// h, since the scheme wants velocities with Φ_q v + Φ_t = C h², and would not fall with smaller steps.
+    fn measure_errors(&mut self, h: f64) {
+        let Some(errors) = &mut self.errors else { return };
+        self.tile.run(self.program.estimate());
+        let (layout, numbers) = (&self.program.layout, self.program.coefficients);
+        let gain = numbers.error_gain(h).abs();
+        for (lane, worst) in errors.iter_mut().enumerate() {
+            *worst = LocalError::default();
+            let value = |slot: usize| self.tile.lane(slot)[lane];
+            for (place, scale) in self.program.scale.iter().enumerate() {
+                let change = if self.newton.is_singular(lane) {
+                    // There are no factors.
+                    let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + place));
+                    numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a
+                } else {
+                    value(layout.correction.start + place)
+                };
+                let size = gain * change.abs() / scale.max(value(layout.q.start + place).abs());
+                // Written so that not a number wins and stays.
+                if !(size <= worst.size || worst.size.is_nan()) {
+                    *worst = LocalError { size, coordinate: place, change };
+                }
+            }
+        }
+    }
+
+    /// Values of the outputs now: output by output, lane by lane; not a number for lanes that no longer run.
+    pub fn observe(&mut self, into: &mut [f64]) {
+        self.tile.run(self.program.observe());
+        self.copy(self.program.outputs.iter().copied(), into);
+    }
+
+    /// Positions and velocities now: coordinate by coordinate, lane by lane; not a number for lanes that no longer run.
+    pub fn copy_motion(&self, into: &mut [f64]) {
+        let layout = &self.program.layout;
+        self.copy(layout.q.clone().chain(layout.v.clone()), into);
+    }
+
+    fn copy(&self, slots: impl Iterator<Item = usize>, into: &mut [f64]) {
+        for (row, slot) in into.chunks_exact_mut(self.tile.width()).zip(slots) {
+            row.copy_from_slice(self.tile.lane(slot));
+            row.iter_mut().zip(&self.alive).filter(|(_, alive)| !**alive).for_each(|(value, _)| *value = f64::NAN);
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! A consistent start: positions on the constraints, velocities, accelerations and multipliers that fit them.
+
+use symdiff::{Tape, Tile};
+
+use crate::assemble::System;
+use crate::compile::StartProgram;
+
+/// Corrections of a tile's start before a lane is given up.
+const MAX_CORRECTIONS: usize = 40;
+
+/// Damped corrections of the nominal start from one guess.
+const MAX_NOMINAL_CORRECTIONS: usize = 200;
+
+/// Guesses that are tried for the nominal start: the model's own, then ever wider around it.
+const GUESSES: usize = 60;
+
+/// Constraints hold when none gapes by more than this, relative to the smallest coordinate scale (at most 1).
+const GAP: f64 = 1e-9;
+
+/// Corrections (relative to the coordinates' scales) that end the iteration.
+const SETTLED: f64 = 1e-14;
+
+/// Corrections below this that no longer shrink are round-off.
+const STALLED: f64 = 1e-8;
+
+/// How far a constraint may gape for it to hold, given the coordinates' scales.
+pub(super) fn allowed_gap(scale: &[f64]) -> f64 {
+    GAP * scale.iter().copied().fold(1.0, f64::min)
+}
+
+/// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
+const FAR: f64 = 0.25;
+
+/// A start that cannot be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// Lane of the tile.
+    pub lane: usize,
+    /// Constraint that is fulfilled worst.
+    pub constraint: usize,
+    /// Its residual: m, rad, or m/s, rad/s for velocities.
+    pub amount: f64,
+    /// Whether positions are fine and velocities are not.
+    pub of_velocities: bool,
+}
+
+/// Start values of a tile of samples: a state for each lane.
+#[derive(Debug)]
+pub struct Assembly<'p> {
+    program: &'p StartProgram,
+    scale: Vec<f64>,
+    tile: Tile,
+}
+
+impl<'p> Assembly<'p> {
+    /// For tiles of this width at t = 0. `parameters` holds k values a lane, parameter by parameter.
+    pub fn new(
+        program: &'p StartProgram,
+        system: &System,
+        width: usize,
+        parameters: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let tile = Tile::new(width, program.slots(), program.constants());
+        let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
+        let mut assembly = Self { program, scale, tile };
+        assembly.set_parameters(parameters);
+        assembly
+    }
+
+    /// Other parameters.
+    pub(super) fn set_parameters(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+        for (parameter, slot) in self.program.layout.parameters.clone().enumerate() {
+            for lane in 0..self.tile.width() {
+                self.tile.lane_mut(slot)[lane] = parameters(parameter, lane);
+            }
+        }
+        self.tile.run(self.program.sample());
+    }
+
+    /// The same state in every lane.
+    pub(super) fn set_state(&mut self, state: &[f64]) {
+        for slot in self.program.layout.state() {
+            self.tile.lane_mut(slot).fill(state[slot]);
+        }
+    }
+
+    /// Positions for other parameters, from where they are.
+    pub(super) fn follow(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+        self.set_parameters(parameters);
+        self.tile.run(self.program.given());
+        self.correct_until_settled(self.program.position(), self.program.layout.q.start);
+    }
+
+    /// Lanes of which a coordinate is far from that of a state.
+    pub(super) fn far_from(&self, state: &[f64]) -> Vec<bool> {
+        let is_far = |lane: usize| {
+            let places = self.program.layout.q.clone().zip(&self.scale);
+            // Not a number is far.
+            !places.into_iter().all(|(slot, scale)| (self.tile.lane(slot)[lane] - state[slot]).abs() <= FAR * scale)
+        };
+        (0..self.tile.width()).map(is_far).collect()
+    }
+
+    /// Takes over some lanes of another.
+    pub(super) fn copy_lanes(&mut self, other: &Self, lanes: &[usize]) {
+        for slot in 0..self.program.slots() {
+            for &lane in lanes {
+                self.tile.lane_mut(slot)[lane] = other.tile.lane(slot)[lane];
+            }
+        }
+    }
+
+    /// The memory, to set what is to be assembled.
+    pub(super) fn tile_mut(&mut self) -> &mut Tile {
+        &mut self.tile
+    }
+
+    /// The assembled states, slot by slot as in the program's layout.
+    pub fn tile(&self) -> &Tile {
+        &self.tile
+    }
+
+    /// Assembles the one lane from the model's guess, or from ever wider guesses around it.
+    ///
+    /// # Errors
+    /// The smallest worst gap that was found.
+    pub fn assemble_nominal(&mut self) -> Result<(), Gap> {
+        let mut best: Option<Gap> = None;
+        for guess in 0..GUESSES {
+            self.tile.run(self.program.guess());
+            let spread = 3.0 * guess as f64 / GUESSES as f64;
+            for (place, slot) in self.program.layout.q.clone().enumerate() {
+                // Additive recurrence: evenly spread, the same on every machine.
+                let direction = 2.0 * ((guess * (2 * place + 1)) as f64 * 0.618_033_988_749_895).fract() - 1.0;
+                self.tile.lane_mut(slot)[0] += spread * self.scale[place] * direction;
+            }
+            self.tile.run(self.program.given());
+            match self.descend() {
+                Ok(()) => return self.complete().into_iter().next().map_or(Ok(()), Err),
+                Err(gap)
+                    if best
+                        .as_ref()
+                        .is_none_or(|best| gap.amount.abs() < best.amount.abs() || best.amount.is_nan()) =>
+                {
+                    best = Some(gap)
+                }
+                Err(_) => {}
+            }
+        }
+        // `GUESSES` is not zero.
+        Err(best.expect("at least one guess was tried"))
+    }
+
+    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the worst gap of each lane that cannot be
+    /// assembled, lane by lane.
+    pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<Gap> {
+        self.set_state(nominal);
+        self.assemble()
+    }
+
+    /// Assembles every lane from where it is; the worst gap of each that cannot be.
+    pub(super) fn assemble(&mut self) -> Vec<Gap> {
+        self.tile.run(self.program.given());
+        self.correct_until_settled(self.program.position(), self.program.layout.q.start);
+        self.complete()
+    }
+
+    /// Velocities, accelerations and multipliers for assembled positions; the gaps of lanes where there are none.
+    fn complete(&mut self) -> Vec<Gap> {
+        let program = self.program;
+        self.tile.run(program.position());
+        let mut gaps = self.gaps(&program.constraint, false);
+        for slot in program.layout.v.clone() {
+            self.tile.lane_mut(slot).fill(0.0);
+        }
+        self.tile.run(program.given());
+        // `given` sets positions too: to the values they have already.
+        self.correct_until_settled(program.velocity(), program.layout.v.start);
+        self.tile.run(program.velocity());
+        gaps.extend(self.gaps(&program.constraint_rate, true));
+        // Where positions gape, velocities mean nothing.
+        gaps.sort_by_key(|gap| (gap.lane, gap.of_velocities));
+        gaps.dedup_by_key(|gap| gap.lane);
+        for slot in program.layout.w.start..program.layout.lambda.end {
+            self.tile.lane_mut(slot).fill(0.0);
+        }
+        self.accelerate();
+        gaps
+    }
+
+    /// Accelerations and multipliers at the tile's positions, velocities and time.
+    fn accelerate(&mut self) {
+        self.correct_until_settled(self.program.acceleration(), self.program.layout.w.start);
+    }
+
+    /// a = w(t + shift) to first order: the accelerations of the state moved there.
+    pub fn shift_accelerations(&mut self, shift: f64) {
+        let layout = &self.program.layout;
+        let state: Vec<f64> =
+            self.tile.values()[layout.q.start * self.tile.width()..layout.lambda.end * self.tile.width()].to_vec();
+        for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
+            for lane in 0..self.tile.width() {
+                let (speed, acceleration) = (self.tile.lane(v)[lane], self.tile.lane(w)[lane]);
+                self.tile.lane_mut(q)[lane] += shift * (speed + 0.5 * shift * acceleration);
+                self.tile.lane_mut(v)[lane] += shift * acceleration;
+            }
+        }
+        self.tile.lane_mut(layout.time).fill(shift);
+        self.accelerate();
+        let width = self.tile.width();
+        let shifted: Vec<f64> = self.tile.values()[layout.w.start * width..layout.w.end * width].to_vec();
+        self.tile.values_mut()[layout.q.start * width..layout.lambda.end * width].copy_from_slice(&state);
+        self.tile.values_mut()[layout.a.start * width..layout.a.end * width].copy_from_slice(&shifted);
+        self.tile.lane_mut(layout.time).fill(0.0);
+    }
+
+    /// Damped Gauss–Newton of a single lane.
+    pub(super) fn descend(&mut self) -> Result<(), Gap> {
+        let program = self.program;
+        let q = program.layout.q.clone();
+        self.tile.run(program.position());
+        let mut size = self.constraint_norm();
+        let mut damping = 1.0_f64;
+        for _ in 0..MAX_NOMINAL_CORRECTIONS {
+            let before = self.tile.values()[q.clone()].to_vec();
+            let correction = self.tile.values()[program.layout.correction.start..][..q.len()].to_vec();
+            let largest = correction.iter().zip(&self.scale).map(|(c, s)| (c / s).abs()).fold(0.0, f64::max);
+            if !size.is_finite() || !largest.is_finite() {
+                break;
+            }
+            if largest < SETTLED {
+                break;
+            }
+            // No coordinate turns or moves by more than about its own scale at once.
+            damping = damping.min(1.0 / largest);
+            loop {
+                for ((slot, old), change) in q.clone().zip(&before).zip(&correction) {
+                    self.tile.lane_mut(slot)[0] = old + damping * change;
+                }
+                self.tile.run(program.position());
+                let new = self.constraint_norm();
+                if new < size || new <= f64::EPSILON || damping < 1e-6 {
+                    size = new;
+                    break;
+                }
+                damping *= 0.5;
+            }
+            damping = (2.0 * damping).min(1.0);
+        }
+        self.gaps(&program.constraint, false).into_iter().next().map_or(Ok(()), Err)
+    }
+
+    fn constraint_norm(&self) -> f64 {
+        self.program.constraint.iter().map(|&slot| self.tile.lane(slot)[0].powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Full corrections of the values from slot `start` on, until every lane has settled (or cannot).
+    pub(super) fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
+        let layout = &self.program.layout;
+        let width = self.tile.width();
+        let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
+        let mut pending = vec![true; width];
+        let mut last = vec![f64::INFINITY; width];
+        for _ in 0..MAX_CORRECTIONS {
+            self.tile.run(tape);
+            let mut size = vec![0.0_f64; width];
+            for place in 0..count {
+                for lane in (0..width).filter(|&lane| pending[lane]) {
+                    let correction = self.tile.lane(layout.correction.start + place)[lane];
+                    let value = &mut self.tile.lane_mut(start + place)[lane];
+                    *value += correction;
+                    let scale = self.scale.get(place).copied().unwrap_or(1.0).max(value.abs());
+                    size[lane] = size[lane].max((correction / scale).abs());
+                }
+            }
+            for ((pending, size), last) in pending.iter_mut().zip(&size).zip(&last) {
+                let round_off = *size <= STALLED && *size >= 0.5 * last;
+                *pending &= *size > SETTLED && !round_off;
+            }
+            last = size;
+            if !pending.contains(&true) {
+                return;
+            }
+        }
+    }
+
+    /// The worst gap of each lane with a constraint that is not fulfilled.
+    fn gaps(&self, slots: &[usize], of_velocities: bool) -> Vec<Gap> {
+        let allowed = allowed_gap(&self.scale);
+        let of_lane = |lane: usize| {
+            let gaps = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
+            let worst = gaps.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
+            // Not a number is a gap too.
+            let open = worst.filter(|(_, amount)| amount.is_nan() || amount.abs() > allowed);
+            open.map(|(constraint, amount)| Gap { lane, constraint, amount, of_velocities })
+        };
+        (0..self.tile.width()).filter_map(of_lane).collect()
+    }
+}

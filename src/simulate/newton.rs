@@ -1,0 +1,371 @@
+//! Newton's iteration of one step, all lanes of a tile in lockstep.
+//!
+//! The iteration starts from w and λ extrapolated; with what the lane's first corrections were last seen to leave, one is
+//! mostly enough. The matrix is factorised at the step's beginning and kept for the first corrections; where they do not
+//! suffice, it is factorised anew for each further one. Every decision is a lane's own or counts steps and iterations, so
+//! that a sample's numbers do not depend on which others share its tile.
+
+use symdiff::{Tile, Vectorise, vectorised};
+
+use super::initial::allowed_gap;
+use super::rank::solve_whatever_rank;
+use crate::compile::{Program, Watched};
+
+/// Corrections with the step's first factorisation before each gets its own.
+const FROZEN_CORRECTIONS: usize = 4;
+
+/// Corrections before the iteration is given up.
+const MAX_CORRECTIONS: usize = 12;
+
+/// Error of positions at which the iteration ends, relative to the coordinate's scale: the last correction in position
+/// units times the observed contraction.
+const TOLERANCE: f64 = 1e-11;
+
+/// The same for a first correction, whose contraction is only expected. What it leaves is noise in the response as a
+/// function of the parameters. Against a run that always takes two, the slider crank's Chebyshev bounds over 2 s change by
+/// 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
+const FIRST_TOLERANCE: f64 = 1e-14;
+
+/// Contraction that is assumed of a first correction where nothing is known about it.
+const FIRST_CONTRACTION: f64 = 0.1;
+
+/// A first correction is taken to contract no better than this times what was last seen of its lane, nor than the least.
+const CONTRACTION_SAFETY: f64 = 10.0;
+const LEAST_CONTRACTION: f64 = 1e-9;
+
+/// Every so many steps nothing is taken as known, so that it is seen again.
+const STEPS_BETWEEN_LOOKS: u64 = 16;
+
+/// Corrections below this (relative positions) are round-off, whatever their contraction.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// What the iteration did; counters of the whole life of the solver.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Corrections, summed over lanes.
+    pub iterations: u64,
+    /// Steps in which a lane needed the rank-revealing solve.
+    pub rank_revealing: u64,
+}
+
+/// The state of an iteration over the lanes of a tile.
+#[derive(Clone, Debug)]
+pub struct Newton {
+    pending: Vec<bool>,
+    singular: Vec<bool>,
+    last: Vec<f64>,
+    norm: Vec<f64>,
+    /// Contraction expected of each lane's first correction.
+    contraction: Vec<f64>,
+    /// w and λ when the step began.
+    start: Vec<f64>,
+    /// The same of the steps before, the last first, and how many of them there are.
+    before: [Vec<f64>; 2],
+    known: usize,
+    size_before: f64,
+    steps: u64,
+    /// Totals.
+    pub counters: Counters,
+}
+
+impl Newton {
+    /// For tiles of this width.
+    pub fn new(width: usize) -> Self {
+        Self {
+            pending: vec![false; width],
+            singular: vec![false; width],
+            last: vec![0.0; width],
+            norm: vec![0.0; width],
+            contraction: vec![FIRST_CONTRACTION; width],
+            start: Vec::new(),
+            before: [Vec::new(), Vec::new()],
+            known: 0,
+            size_before: f64::NAN,
+            steps: 0,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Whether a lane's last step was solved whatever its rank.
+    pub(super) fn is_singular(&self, lane: usize) -> bool {
+        self.singular[lane]
+    }
+
+    /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only those
+    /// that converged. The step's tape must have run.
+    pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, alive: &mut [bool]) {
+        self.pending.copy_from_slice(alive);
+        let width = tile.width();
+        self.start.clear();
+        self.start.extend_from_slice(&tile.values()[program.layout.w.start * width..program.layout.lambda.end * width]);
+        if h != self.size_before {
+            self.known = self.known.min(1);
+        }
+        self.predict(program, tile, self.known, h);
+        self.singular.fill(false);
+        if self.steps.is_multiple_of(STEPS_BETWEEN_LOOKS) {
+            self.contraction.fill(FIRST_CONTRACTION);
+        }
+        self.steps += 1;
+        self.iterate(program, tile, h);
+        if self.pending.contains(&true) {
+            // What did not converge starts again from its prediction, with the rank-revealing solve.
+            self.singular.iter_mut().zip(&self.pending).for_each(|(singular, pending)| *singular |= pending);
+            self.predict(program, tile, 0, h);
+            self.iterate(program, tile, h);
+        }
+        if alive.iter().zip(&self.singular).any(|(alive, singular)| *alive && *singular) {
+            self.reject_gaps(program, tile, h);
+        }
+        if self.pending.contains(&true) {
+            self.restore_multipliers(program, tile);
+        }
+        for ((alive, pending), singular) in alive.iter_mut().zip(&self.pending).zip(&self.singular) {
+            self.counters.rank_revealing += u64::from(*alive && *singular);
+            *alive &= !pending;
+        }
+        self.before.swap(0, 1);
+        std::mem::swap(&mut self.before[0], &mut self.start);
+        self.known = (self.known + 1).min(2);
+        self.size_before = h;
+    }
+
+    /// w₊ and λ₊ on the parabola (line, constant) through their values now and at the `known` steps before, where the
+    /// iteration is still to run; a redundant constraint's λ₊ from zero: what has no unique value must not have a memory
+    /// either.
+    fn predict(&mut self, program: &Program, tile: &mut Tile, known: usize, h: f64) {
+        let [last, second_last] = &self.before;
+        let (weights, last, second_last) = match known {
+            0 => ([1.0, 0.0, 0.0], &self.start, &self.start),
+            1 => ([1.0 + h / self.size_before, -h / self.size_before, 0.0], last, &self.start),
+            _ => ([3.0, -3.0, 1.0], last, second_last),
+        };
+        let values = [&self.start[..], last, second_last];
+        vectorised(Predict { program, tile, pending: &self.pending, weights, values });
+        for &slot in &program.redundant {
+            for (value, _) in tile.lane_mut(slot).iter_mut().zip(&self.pending).filter(|(_, pending)| **pending) {
+                *value = 0.0;
+            }
+        }
+    }
+
+    /// λ as it was when the step began, for pending lanes.
+    fn restore_multipliers(&self, program: &Program, tile: &mut Tile) {
+        let width = tile.width();
+        let saved = &self.start[program.layout.w.len() * width..];
+        for (slot, saved) in program.layout.lambda.clone().zip(saved.chunks_exact(width)) {
+            for ((value, saved), _) in
+                tile.lane_mut(slot).iter_mut().zip(saved).zip(&self.pending).filter(|(_, pending)| **pending)
+            {
+                *value = *saved;
+            }
+        }
+    }
+
+    fn iterate(&mut self, program: &Program, tile: &mut Tile, h: f64) {
+        let gain = program.coefficients.position_gain(h);
+        for count in 0..MAX_CORRECTIONS {
+            if count == 0 || count >= FROZEN_CORRECTIONS {
+                tile.run(program.factor());
+                vectorised(Watch { watched: &program.watched, tile, singular: &mut self.singular });
+            }
+            tile.run(program.correct());
+            if self.pending.iter().zip(&self.singular).any(|(pending, singular)| *pending && *singular) {
+                self.correct_singular(program, tile, gain, count);
+            }
+            vectorised(Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
+            self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
+            vectorised(Judge {
+                count,
+                norm: &self.norm,
+                last: &mut self.last,
+                contraction: &mut self.contraction,
+                pending: &mut self.pending,
+            });
+            if !self.pending.contains(&true) {
+                return;
+            }
+        }
+    }
+
+    /// Corrections from the matrix's numbers, for the lanes that need it. Where the first few do not suffice, a constraint
+    /// that holds to rounding is not corrected any more: beside a singular position that would move the mechanism by ε over
+    /// the distance to it, and anew by as much each time. `gain` is that of positions.
+    fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64, count: usize) {
+        tile.run(program.matrix());
+        let coordinates = program.scale.len();
+        for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
+            let value = |slot: usize| tile.lane(slot)[lane];
+            let entries: Vec<(usize, usize, f64)> =
+                program.matrix_entries.iter().map(|&(row, column, slot)| (row, column, value(slot))).collect();
+            let mut rounding = vec![0.0; program.residual.len()];
+            let slopes = entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates);
+            for &(row, column, slope) in slopes.filter(|_| count >= FROZEN_CORRECTIONS) {
+                let position = value(program.layout.q.start + column).abs() + program.scale[column];
+                rounding[row] += ROUND_OFF * slope.abs() * position / gain;
+            }
+            let right = program.residual.iter().zip(&rounding).map(|(&slot, rounding)| {
+                let residual = value(slot);
+                if residual.abs() <= *rounding { 0.0 } else { -residual }
+            });
+            let right: Vec<f64> = right.collect();
+            let solution = solve_whatever_rank(&entries, &right, &program.equilibration);
+            for (place, slot) in program.layout.correction.clone().enumerate() {
+                tile.lane_mut(slot)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
+            }
+        }
+    }
+
+    /// Lanes whose rank-revealing solve has settled without fulfilling the constraints have not converged: least squares
+    /// also settle where they cannot be fulfilled.
+    fn reject_gaps(&mut self, program: &Program, tile: &mut Tile, h: f64) {
+        tile.run(program.matrix());
+        let gain = program.coefficients.constraint_gain(h);
+        let allowed = allowed_gap(&program.scale);
+        for &slot in &program.residual[program.scale.len()..] {
+            for (lane, residual) in tile.lane(slot).iter().enumerate() {
+                let closed = (gain * residual).abs() <= allowed;
+                self.pending[lane] |= self.singular[lane] && !closed;
+            }
+        }
+    }
+}
+
+/// w₊ and λ₊ of pending lanes as weighted sums of values w, λ.
+struct Predict<'a> {
+    program: &'a Program,
+    tile: &'a mut Tile,
+    pending: &'a [bool],
+    weights: [f64; 3],
+    values: [&'a [f64]; 3],
+}
+
+impl Vectorise for Predict<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let layout = &self.program.layout;
+        let width = self.tile.width();
+        let ([a, b, c], [now, last, second_last]) = (self.weights, self.values);
+        let targets = layout.iterate.clone().chain(layout.lambda.clone());
+        for (place, slot) in targets.enumerate() {
+            let [now, last, second_last] = [now, last, second_last].map(|values| &values[place * width..][..width]);
+            let values = self.tile.lane_mut(slot);
+            for lane in 0..width {
+                let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);
+                values[lane] = if self.pending[lane] { predicted } else { values[lane] };
+            }
+        }
+    }
+}
+
+/// Lanes with a pivot that has become too small are solved by the rank-revealing solve.
+struct Watch<'a> {
+    watched: &'a [Watched],
+    tile: &'a Tile,
+    singular: &'a mut [bool],
+}
+
+impl Vectorise for Watch<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { watched, tile, singular } = self;
+        // Not a number is not trusted either.
+        let lost = |inverse: f64, largest: f64| inverse.is_nan() || inverse.abs() > largest;
+        for Watched { mode, pivots } in watched {
+            match mode {
+                None => pivots.iter().for_each(|pivot| {
+                    for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.slot)) {
+                        *singular |= lost(inverse, pivot.largest_inverse);
+                    }
+                }),
+                // Factors of lanes that do not use them are anything.
+                Some(mode) if tile.lane(mode.slot).iter().any(|&value| mode.holds(value)) => {
+                    for pivot in pivots {
+                        let lanes = singular.iter_mut().zip(tile.lane(pivot.slot)).zip(tile.lane(mode.slot));
+                        for ((singular, &inverse), &value) in lanes {
+                            *singular |= mode.holds(value) & lost(inverse, pivot.largest_inverse);
+                        }
+                    }
+                }
+                Some(_) => {}
+            }
+        }
+    }
+}
+
+/// Adds the correction to the iterate of pending lanes and measures it in relative positions.
+struct Apply<'a> {
+    program: &'a Program,
+    tile: &'a mut Tile,
+    gain: f64,
+    pending: &'a [bool],
+    norm: &'a mut [f64],
+}
+
+impl Vectorise for Apply<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { program, tile, gain, pending, norm } = self;
+        let layout = &program.layout;
+        let width = tile.width();
+        norm.fill(0.0);
+        let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);
+        let (known, iterates) = known.split_at_mut(layout.iterate.start * width);
+        let multipliers = &mut known[layout.lambda.start * width..];
+        let (of_accelerations, of_multipliers) = corrections.split_at(iterates.len());
+        let rows = iterates.chunks_exact_mut(width).zip(of_accelerations.chunks_exact(width));
+        for ((iterate, correction), scale) in rows.zip(&program.scale) {
+            add(pending, correction, iterate);
+            let weight = gain / scale;
+            for (norm, correction) in norm.iter_mut().zip(correction) {
+                let size = (weight * correction).abs();
+                // Written so that not a number wins and stays.
+                *norm = if size <= *norm || norm.is_nan() { *norm } else { size };
+            }
+        }
+        for (lambda, correction) in multipliers.chunks_exact_mut(width).zip(of_multipliers.chunks_exact(width)) {
+            add(pending, correction, lambda);
+        }
+    }
+}
+
+/// Adds to the chosen lanes.
+#[inline(always)]
+fn add(chosen: &[bool], change: &[f64], to: &mut [f64]) {
+    for ((to, change), chosen) in to.iter_mut().zip(change).zip(chosen) {
+        *to = if *chosen { *to + change } else { *to };
+    }
+}
+
+/// Which lanes are done.
+struct Judge<'a> {
+    count: usize,
+    norm: &'a [f64],
+    last: &'a mut [f64],
+    contraction: &'a mut [f64],
+    pending: &'a mut [bool],
+}
+
+impl Vectorise for Judge<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let lanes = self.pending.iter_mut().zip(self.last).zip(self.contraction).zip(self.norm);
+        for (((pending, last), expected), &norm) in lanes {
+            let contraction = if self.count == 0 { *expected } else { norm / *last };
+            let seen = (CONTRACTION_SAFETY * contraction).max(LEAST_CONTRACTION);
+            *expected = if self.count == 1 && *pending { seen } else { *expected };
+            let error = if contraction < 1.0 { norm * contraction / (1.0 - contraction) } else { f64::INFINITY };
+            *last = if *pending { norm } else { *last };
+            let tolerance = if self.count == 0 { FIRST_TOLERANCE } else { TOLERANCE };
+            *pending &= !(error <= tolerance || norm <= ROUND_OFF);
+        }
+    }
+}

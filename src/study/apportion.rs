@@ -1,0 +1,82 @@
+//! Which tolerance matters: each parameter's part in the spread of every output, row by row.
+
+use super::compose::Row;
+use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, VarianceShares, extremes};
+
+/// Degree of the polynomials whose variance is apportioned, by the number of parameters: the outputs', which follow from
+/// the coordinates' at any number of points. For more parameters the shape is the surrogate's own.
+const DEGREES: [usize; 3] = [24, 12, 8];
+
+/// How an output's spread in one row comes about.
+#[derive(Clone, Debug)]
+pub(super) struct Parts {
+    /// Each parameter's share of the variance, alone; with others too.
+    pub main: Vec<f64>,
+    pub total: Vec<f64>,
+    /// Width of the range if a parameter were at its nominal value.
+    pub width_without: Vec<f64>,
+}
+
+/// What apportioning needs that is the same in all rows.
+pub(super) struct Apportion {
+    /// ξ of the nominal parameters.
+    nominal: Vec<f64>,
+    fine: Option<(Surrogate, VarianceShares)>,
+    own: VarianceShares,
+    /// Whether any interval is wider than its rounding: else all that varies is rounding.
+    varies: bool,
+}
+
+impl Apportion {
+    /// For outputs that are composed from a surrogate over a box.
+    pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
+        let k = domain.dimension();
+        let fine = k.checked_sub(1).and_then(|place| DEGREES.get(place)).map(|&degree| {
+            let fine = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
+            let shares = VarianceShares::new(fine.basis());
+            (fine, shares)
+        });
+        let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
+        let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
+        Self { nominal, fine, own: VarianceShares::new(surrogate.basis()), varies }
+    }
+
+    /// The parts of every output's spread, whose ranges are known.
+    pub fn parts(&self, row: &Row, found: &[Extent]) -> Vec<Parts> {
+        let (surrogate, shares) = match &self.fine {
+            Some((fine, shares)) => (fine, shares),
+            None => (row.surrogate(), &self.own),
+        };
+        let coefficients = surrogate.coefficients(&row.evaluate(surrogate.samples()), &mut SurrogateWork::default());
+        let k = self.nominal.len();
+        let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, found, axis)).collect();
+        let of_output = |(output, coefficients): (usize, &[f64])| {
+            let (main, total) = match shares.shares(coefficients).filter(|_| self.varies) {
+                Some(shares) => (shares.main, shares.total),
+                // Nothing varies: nobody has a part in it.
+                None => (vec![0.0; k], vec![0.0; k]),
+            };
+            Parts { main, total, width_without: widths.iter().map(|widths| widths[output]).collect() }
+        };
+        coefficients.chunks_exact(surrogate.basis().len()).enumerate().map(of_output).collect()
+    }
+
+    /// Every output's width with one parameter at its nominal value. For many parameters, as far as the places of the extremes
+    /// tell, which is all there is to know of an output that rises or falls with each.
+    fn widths_without(&self, row: &Row, found: &[Extent], axis: usize) -> Vec<f64> {
+        if self.fine.is_some() {
+            let insert = |xi: &Vec<f64>| [&xi[..axis], &[self.nominal[axis]], &xi[axis..]].concat();
+            let evaluate = |points: &[Vec<f64>]| row.evaluate(&points.iter().map(insert).collect::<Vec<_>>());
+            let ranges = extremes(self.nominal.len() - 1, row.resolution(), evaluate);
+            return ranges.into_iter().map(|found| found.range.width()).collect();
+        }
+        let replaced = |place: &Vec<f64>| {
+            let mut place = place.clone();
+            place[axis] = self.nominal[axis];
+            place
+        };
+        let points: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().map(replaced)).collect();
+        let values = row.evaluate(&points);
+        values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
+    }
+}

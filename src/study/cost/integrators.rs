@@ -1,0 +1,90 @@
+//! The schemes side by side: the nominal trajectory, on one core, by each with each step.
+
+use super::CostError;
+use super::deviation::Known;
+use super::grid::steppings;
+use super::timing::best_of;
+use crate::assemble::System;
+use crate::compile::Scheme;
+use crate::model::{Description, Simulation, Stepping};
+use crate::results::{CostMethod, CostPoint};
+use crate::simulate::{Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
+use crate::study::{RunError, first_step, scheme as model_scheme};
+
+/// Spectral radii that generalised-α is tried with.
+const RADII: [f64; 3] = [0.5, 0.8, 0.9];
+
+/// Every scheme's settings, from coarse to fine; those that were done before an interruption.
+///
+/// # Errors
+/// Where a scheme cannot be compiled or started at all; steps that fail make a setting without a result.
+pub(super) fn trajectories(
+    model: &Description,
+    system: &System,
+    known: &Known,
+    progress: &dyn Fn(f64),
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Vec<CostPoint>, CostError> {
+    let mut schemes = vec![model_scheme(model), Scheme::TrapezoidalIndex2];
+    schemes.extend(RADII.map(|spectral_radius| Scheme::GeneralisedAlpha { spectral_radius }));
+    let steppings = steppings(&model.simulation);
+    let total = (schemes.len() * steppings.len()) as f64;
+    let mut points = Vec::new();
+    for scheme in schemes {
+        let simulator = Simulator::new(system.clone(), scheme, first_step(model)).map_err(RunError::from)?;
+        for &stepping in steppings.iter().take_while(|_| !interrupted()) {
+            let (run, seconds) = best_of(|| Course::run(&simulator, &model.simulation, stepping), |_, seconds| seconds)
+                .map_err(RunError::from)?;
+            points.push(CostPoint {
+                solves: 1,
+                steps: run.steps,
+                seconds,
+                deviation: known.of_courses(run.outputs.iter().map(Vec::as_slice)),
+                failure: run.failure,
+                ..CostPoint::without_result(CostMethod::Scheme(scheme), stepping)
+            });
+            progress(points.len() as f64 / total);
+        }
+    }
+    Ok(points)
+}
+
+/// The nominal sample's course.
+struct Course {
+    /// Each output's, up to where it stopped.
+    outputs: Vec<Vec<f64>>,
+    steps: usize,
+    failure: Option<String>,
+}
+
+impl Course {
+    fn run(simulator: &Simulator, simulation: &Simulation, stepping: Stepping) -> Result<Self, SimulationError> {
+        let nominal: Vec<f64> = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let (schedule, mut failure) = match stepping {
+            Stepping::Fixed(step) => (Schedule::fixed(simulation.duration, step, simulation.output_step), None),
+            Stepping::Tolerance(tolerance) => {
+                let pilots = std::slice::from_ref(&nominal);
+                let piloted =
+                    schedule_for_tolerance(simulator, pilots, simulation.duration, simulation.output_step, tolerance)?;
+                (piloted.schedule, piloted.failure.map(|failure| failure.to_string()))
+            }
+        };
+        let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
+        let mut stepper = Stepper::new(&simulator.program, &start);
+        let mut values = vec![0.0; simulator.program.outputs.len()];
+        let mut outputs = vec![Vec::with_capacity(schedule.rows); values.len()];
+        let mut steps = 0;
+        for row in 0..schedule.rows {
+            for (h, end) in schedule.steps_to(row) {
+                if let Some(stuck) = stepper.step(h, end).first() {
+                    failure = Some(format!("did not converge at t = {} s", stuck.time));
+                    return Ok(Self { outputs, steps, failure });
+                }
+                steps += 1;
+            }
+            stepper.observe(&mut values);
+            outputs.iter_mut().zip(&values).for_each(|(course, &value)| course.push(value));
+        }
+        Ok(Self { outputs, steps, failure })
+    }
+}

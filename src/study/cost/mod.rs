@@ -1,0 +1,189 @@
+//! What accuracy costs in time: a work-precision study of one model.
+//!
+//! `grid` says what is tried; `plan` which reference can be had, and `reference` computes it with its own error; every
+//! setting is run as `batch::run` runs a model, against the clock (`timing`), and `deviation` says how far its bounds are off.
+//! `integrators` does the same with other schemes on the nominal trajectory.
+
+mod deviation;
+mod grid;
+mod integrators;
+mod plan;
+mod reference;
+mod timing;
+
+use std::time::Instant;
+
+use super::RunError;
+use super::compose;
+use crate::model::{Description, MOST_SOLVES};
+use crate::results::{CostMethod, CostPoint, CostStudy, pareto};
+
+use grid::{Setting, settings, uncertain};
+use plan::Plan;
+use reference::Reference;
+use timing::{method, timed};
+
+/// How to study.
+pub struct CostOptions<'a> {
+    /// Error that is wanted, relative to each output's scale.
+    pub tolerance: f64,
+    /// s, about; the reference takes what it needs.
+    pub budget: f64,
+    /// Threads; all cores where absent.
+    pub threads: Option<usize>,
+    /// Told now and then which fraction is done.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Asked now and then whether to end; what was measured by then is kept.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Why there is no study.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum CostError {
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error("the reference did not come to its end: {0}")]
+    Reference(String),
+    #[error("{parameters} uncertain parameters: even a coarse reference takes {solves:.1e} simulations")]
+    TooMany { parameters: usize, solves: f64 },
+}
+
+/// Shares of the progress bar: the reference is done, the bounds are done.
+const REFERENCE_DONE: f64 = 0.3;
+const BOUNDS_DONE: f64 = 0.95;
+
+/// Studies a model: every setting of the grid that the budget allows, cheap ones first.
+///
+/// # Errors
+/// Where the model cannot be run at all, or the reference cannot be computed.
+pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, CostError> {
+    let begun = Instant::now();
+    let system = super::prepare(model)?.system;
+    let k = uncertain(model);
+    let composable = compose::fits(k, system.q.len());
+    let plan = Plan::within_budget(model, composable, options)?;
+    let reference = Reference::compute(model, &plan, options, &|done| (options.progress)(REFERENCE_DONE * done))?;
+
+    let at_rest = reference.known.at_rest().map(|output| format!("`{output}`: it has nothing to measure errors by"));
+    let mut left_out: Vec<String> = at_rest.collect();
+    let mut bounds = Vec::new();
+    if k > 0 {
+        if plan.scan.is_none() {
+            left_out.push("a dense scan to check the reference by".to_owned());
+        }
+        if !composable {
+            left_out.push("outputs composed from coordinates: the parameters or coordinates are too many".to_owned());
+        }
+        let settings = settings(&model.simulation, composable);
+        let skipped;
+        (bounds, skipped) = run_settings(model, &settings, &reference, options, begun);
+        left_out.extend(skipped.into_iter().map(|(method, count)| {
+            format!(
+                "{}: {count} of its settings, which the budget of {} s does not allow",
+                method.label(),
+                options.budget
+            )
+        }));
+    }
+    let progress = |done: f64| (options.progress)(BOUNDS_DONE + (1.0 - BOUNDS_DONE) * done);
+    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, options.interrupted)?;
+    if (options.interrupted)() {
+        left_out.push("what was not done when the study was interrupted".to_owned());
+    }
+    mark(&mut bounds, reference.told.bounds_error);
+    mark(&mut trajectories, reference.told.trajectory_error);
+    Ok(CostStudy {
+        model: model.name.clone(),
+        tolerance: options.tolerance,
+        reference: reference.told,
+        bounds,
+        trajectories,
+        left_out,
+    })
+}
+
+/// Runs settings by rising work as long as the budget lasts: what a method's last run took tells what its next will. The
+/// points are in the settings' order; also how many settings of which method were skipped.
+fn run_settings(
+    model: &Description,
+    settings: &[Setting],
+    reference: &Reference,
+    options: &CostOptions,
+    begun: Instant,
+) -> (Vec<CostPoint>, Vec<(CostMethod, usize)>) {
+    let k = uncertain(model);
+    let mut by_work: Vec<usize> = (0..settings.len()).collect();
+    by_work.sort_by(|&a, &b| settings[a].work(k).total_cmp(&settings[b].work(k)));
+    let total: f64 = settings.iter().map(|setting| setting.work(k)).sum();
+    let mut done = 0.0;
+    let mut rates: Vec<(CostMethod, f64)> = Vec::new();
+    let (mut points, mut skipped) = (vec![None; settings.len()], Vec::new());
+    for place in by_work {
+        if (options.interrupted)() {
+            break;
+        }
+        let setting = &settings[place];
+        let work = setting.work(k);
+        let progress = |fraction: f64| {
+            let share = (done + fraction * work) / total;
+            (options.progress)(REFERENCE_DONE + (BOUNDS_DONE - REFERENCE_DONE) * share);
+        };
+        let rate = entry(&mut rates, setting.method, 0.0);
+        let late = begun.elapsed().as_secs_f64() + *rate * work > options.budget;
+        if late || setting.solves(k) > MOST_SOLVES {
+            *entry(&mut skipped, setting.method, 0) += 1;
+        } else {
+            let point = point(model, setting, reference, options, &progress);
+            if point.seconds.is_finite() {
+                *rate = point.seconds / work;
+            }
+            // A run that was cut short measures nothing.
+            points[place] = Some(point).filter(|_| !(options.interrupted)());
+        }
+        done += work;
+    }
+    (points.into_iter().flatten().collect(), skipped)
+}
+
+/// A method's value in a list, put there if it is missing.
+fn entry<T: Copy>(list: &mut Vec<(CostMethod, T)>, method: CostMethod, missing: T) -> &mut T {
+    let place = list.iter().position(|(known, _)| *known == method).unwrap_or_else(|| {
+        list.push((method, missing));
+        list.len() - 1
+    });
+    &mut list[place].1
+}
+
+/// One setting's errors and price.
+fn point(
+    model: &Description,
+    setting: &Setting,
+    reference: &Reference,
+    options: &CostOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> CostPoint {
+    let order = (setting.method != CostMethod::Scan).then_some(setting.count);
+    let points = (setting.method == CostMethod::Scan).then_some(setting.count);
+    let point = CostPoint { order, points, ..CostPoint::without_result(setting.method, setting.stepping) };
+    match timed(model, setting, options, progress) {
+        Ok(((bounds, summary), seconds)) => {
+            let spent = method(&summary, setting);
+            let (solves, steps) = (spent.solves, spent.steps);
+            let deviation = reference.known.of_bounds(&bounds.outputs);
+            CostPoint { solves, steps, seconds, deviation, failure: summary.failure, ..point }
+        }
+        Err(error) => CostPoint { failure: Some(error.to_string()), ..point },
+    }
+}
+
+/// Says what is below the reference's own error, which stands for it then, and what is on the front.
+fn mark(points: &mut [CostPoint], own: f64) {
+    for point in points.iter_mut() {
+        point.limited = point.deviation.largest() < own;
+    }
+    let places: Vec<(f64, f64)> = points.iter().map(|point| point.place(own)).collect();
+    for place in pareto(&places) {
+        points[place].front = true;
+    }
+}

@@ -1,0 +1,74 @@
+//! Runs against the clock: short ones a few times, the best of them counting.
+
+use std::time::Instant;
+
+use super::CostOptions;
+use super::grid::Setting;
+use crate::model::Description;
+use crate::results::Bounds;
+use crate::results::{MethodSummary, Summary};
+use crate::study::{Options, RunError, run};
+
+/// Runs are repeated until they have taken so many seconds together …
+const LONG_ENOUGH: f64 = 0.15;
+
+/// … or there were so many of them.
+const OFTEN_ENOUGH: usize = 5;
+
+/// Something done at least once: its last result, and the shortest time, s, that `seconds` makes of a result and of the time
+/// it took.
+///
+/// # Errors
+/// The first that occurs.
+pub(super) fn best_of<T, E>(
+    mut work: impl FnMut() -> Result<T, E>,
+    seconds: impl Fn(&T, f64) -> f64,
+) -> Result<(T, f64), E> {
+    let begun = Instant::now();
+    let (mut best, mut repetitions) = (f64::INFINITY, 0);
+    loop {
+        let this = Instant::now();
+        let result = work()?;
+        best = best.min(seconds(&result, this.elapsed().as_secs_f64()));
+        repetitions += 1;
+        if repetitions == OFTEN_ENOUGH || begun.elapsed().as_secs_f64() > LONG_ENOUGH {
+            return Ok((result, best));
+        }
+    }
+}
+
+/// Runs a setting of a model.
+///
+/// # Errors
+/// Where nothing could be run at all.
+pub(super) fn bounds(
+    model: &Description,
+    setting: &Setting,
+    options: &CostOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<(Bounds, Summary), RunError> {
+    run(
+        &setting.applied(model),
+        Options { threads: options.threads, progress, interrupted: options.interrupted, ..Options::default() },
+    )
+}
+
+/// The same against the clock: seconds are those of the method alone, since compiling the model is the same for all.
+///
+/// # Errors
+/// As [`bounds`].
+pub(super) fn timed(
+    model: &Description,
+    setting: &Setting,
+    options: &CostOptions,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<((Bounds, Summary), f64), RunError> {
+    let seconds = |(_, summary): &(Bounds, Summary), all| method(summary, setting).seconds.unwrap_or(all);
+    best_of(|| bounds(model, setting, options, progress), seconds)
+}
+
+/// What the setting's method took; the nominal run stands before it.
+pub(super) fn method<'s>(summary: &'s Summary, setting: &Setting) -> &'s MethodSummary {
+    let name = setting.reported().name();
+    summary.methods.iter().find(|method| method.method == name).unwrap_or(&summary.methods[0])
+}

@@ -1,0 +1,156 @@
+//! What each effect costs: a model is compiled without it, and what is missing then is counted.
+
+use rayon::prelude::*;
+
+use super::formulation::{as_chosen, compiled};
+use super::{RunError, prepare_whole};
+use crate::model::{Description, load_str};
+use crate::results::{EffectCost, StepInstructions};
+use crate::simulate::Simulator;
+
+/// A model is compiled once more for each of its effects as long as that makes no more instructions than this.
+const MOST_INSTRUCTIONS: usize = 3_000_000;
+
+/// The mechanism in which effects are compared. Every number is certain, so what is counted depends on the motion.
+const MECHANISM: &str = "
+bodies:
+  arm: { mass: 2, inertia: 0.04, points: { pin: [-0.2, 0], tip: [0.2, 0], socket: [0.3, 2] } }
+  cart: { mass: 3, inertia: 0.1, points: { hook: [0.1, 0.1] } }
+  ball: { mass: 0.5, inertia: 0.002 }
+  pinion: { inertia: 0.01, coordinates: [angle] }
+  wheel: { inertia: 0.02, coordinates: [angle] }
+joints:
+  hinge: { revolute: [ground, arm.pin] }
+  rail: { prismatic: { between: [ground, cart], axis: x } }
+initial: { arm.angle: 0, cart.x: 1, ball.x: 0.5, ball.y: 2, ball.angle: 0, pinion.angle: 0, wheel.angle: 0 }
+outputs: { x: cart.x }
+simulation: { duration: 0.1, step: 1e-3, formulation: absolute }
+";
+
+/// One of every kind.
+const EXAMPLES: [(&str, &str); 16] = [
+    ("gravity", "{ acceleration: [0, -9.81] }"),
+    ("force", "{ on: ball, value: [20*sin(3*t), 0] }"),
+    ("torque", "{ on: hinge, value: 2 - 0.1*arm.angular_velocity }"),
+    ("spring_damper", "{ between: [arm.tip, ball], stiffness: 500, damping: 4, free_length: 1 }"),
+    ("torsional_spring_damper", "{ on: hinge, stiffness: 5, damping: 0.1, free_angle: 0.3 }"),
+    ("bushing", "{ between: [arm.tip, ball], stiffness: [1e4, 2e4, 0], damping: 20, torsional_stiffness: 30 }"),
+    ("joint_friction", "{ on: hinge, coefficient: 0.15, radius: 10 mm }"),
+    (
+        "stop",
+        "{ on: hinge, lower: -1.5, upper: 0.8, impact: { stiffness: 1e4, restitution: 0.5, impact_velocity: 2 } }",
+    ),
+    (
+        "contact",
+        "{ between: [ground, ball], plane: y, radius: 0.1, impact: { stiffness: 1e6, restitution: 0.8, impact_velocity: 3 }, \
+         friction: { coefficient: 0.3 } }",
+    ),
+    (
+        "clearance_joint",
+        "{ between: [arm.socket, ball], clearance: 0.1 mm, radius: 10 mm, impact: { stiffness: 1e9, dissipation: 0.5 } }",
+    ),
+    ("servo", "{ on: hinge, target: 0.5*sin(2*t), proportional: 200, derivative: 8, limit: 30 N*m }"),
+    ("drag", "{ on: ball, density: 1.2 kg/m^3, drag_coefficient: 0.47, area: 0.03 m^2, wind: [5, 0] }"),
+    ("cable", "{ between: [arm.tip, cart.hook], free_length: 0.8, stiffness: 1e4, damping: 10 }"),
+    ("backlash", "{ between: [pinion, wheel], ratio: -0.5, backlash: 0.2 deg, stiffness: 2e3, damping: 0.5 }"),
+    ("preload", "{ between: [arm.tip, cart.hook], value: 15 N }"),
+    (
+        "beam",
+        "{ between: [arm.tip, ball], length: 0.3, axial_stiffness: 1e6, bending_stiffness: 20 N*m^2, damping: 1e-4 }",
+    ),
+];
+
+/// What every effect of the language adds to a small mechanism of the plane, in the order of `mbint explain --effects`.
+///
+/// # Errors
+/// Never, but for a defect of the examples.
+pub fn language_costs() -> Result<Vec<(&'static str, EffectCost)>, RunError> {
+    let bare = prepare_whole(&example(None))?;
+    let costs = EXAMPLES.par_iter().map(|&(keyword, keys)| {
+        let with = prepare_whole(&example(Some((keyword, keys))))?;
+        Ok((keyword, difference(&with, &bare)))
+    });
+    costs.collect()
+}
+
+fn example(effect: Option<(&str, &str)>) -> Description {
+    let effects =
+        effect.map_or(String::new(), |(keyword, keys)| format!("effects: {{ it: {{ {keyword}: {keys} }} }}\n"));
+    load_str("effect_costs.yaml", &format!("{MECHANISM}{effects}"), &[])
+        .unwrap_or_else(|wrong| panic!("a test loads every example: {}", wrong.render(false)))
+}
+
+/// What each effect of a model adds, in file order. `None` where others cannot do without it (they use what it measures, or
+/// only it holds something), and for models with too many effects for their size.
+pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
+    let all = StepInstructions::of(&simulator.program, true);
+    let instructions = (all.step + all.factor + all.iteration).unsigned_abs() as usize;
+    let effects = 0..description.effects.len();
+    if instructions * effects.len() > MOST_INSTRUCTIONS {
+        return vec![None; effects.len()];
+    }
+    let cost = |effect: usize| {
+        let mut rest = as_chosen(description, simulator);
+        rest.effects.remove(effect);
+        let known = |rest: &Description, name: &str| rest.referent(name).is_some();
+        let outputs = std::mem::take(&mut rest.outputs);
+        rest.outputs =
+            outputs.into_iter().filter(|output| output.formula.names().all(|(name, _)| known(&rest, name))).collect();
+        Some(difference(simulator, &compiled(&rest).ok()?))
+    };
+    effects.into_par_iter().map(cost).collect()
+}
+
+fn difference(with: &Simulator, without: &Simulator) -> EffectCost {
+    let [acting, apart] = [true, false].map(|touching| {
+        StepInstructions::of(&with.program, touching).beyond(StepInstructions::of(&without.program, touching))
+    });
+    EffectCost { acting, apart: (acting != apart).then_some(apart) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::effect_keywords;
+
+    #[test]
+    fn every_effect_has_its_cost() {
+        let costs = language_costs().unwrap();
+        assert_eq!(costs.iter().map(|&(keyword, _)| keyword).collect::<Vec<_>>(), effect_keywords());
+        for (keyword, EffectCost { acting, apart }) in costs {
+            println!("{keyword}: {acting:?}, {apart:?}");
+            // The torque of a formula of t is one addition; a constant force is part of another constant or one more.
+            assert!(acting.step + acting.factor + acting.iteration > 0, "{keyword}: {acting:?}");
+            let sometimes = matches!(keyword, "stop" | "contact" | "clearance_joint" | "cable" | "backlash");
+            assert_eq!(apart.is_some(), sometimes, "{keyword}");
+            if let Some(apart) = apart {
+                assert!(
+                    apart.iteration <= acting.iteration / 3 && apart.factor <= acting.factor / 3,
+                    "{keyword}: {apart:?}"
+                );
+            }
+        }
+    }
+
+    /// An effect that is left out leaves nothing: no coordinate, no slot, no instruction.
+    #[test]
+    fn what_is_left_out_leaves_nothing() {
+        let bare = prepare_whole(&example(None)).unwrap();
+        let counts = |simulator: &Simulator| {
+            let p = &simulator.program;
+            let tapes =
+                [p.sample(), p.step_size(), p.step(), p.factor(), p.correct(), p.advance(), p.observe(), p.matrix()];
+            (tapes.map(symdiff::Tape::len), p.slots(), p.nonzeros)
+        };
+        for (keyword, keys) in EXAMPLES {
+            let with = example(Some((keyword, keys)));
+            let mut without = with.clone();
+            without.effects.clear();
+            let without = prepare_whole(&without).unwrap();
+            assert_eq!(counts(&without), counts(&bare), "{keyword}");
+            let with_it = prepare_whole(&with).unwrap();
+            assert_ne!(counts(&with_it), counts(&bare), "{keyword}");
+            assert_eq!(effect_costs(&with, &with_it), [Some(difference(&with_it, &bare))], "{keyword}");
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! A box in part of which the mechanism cannot be assembled, or does not move to the end: how much of it that is and where,
+//! and bounds of the rest.
+//!
+//! The box is cut into pieces, across the parameter that tells best what fails from what does not, as long as held-out
+//! samples of a piece fail. Each piece whose samples do not is bounded as if it were the whole; a row's bounds are those of the
+//! pieces that reached it together, and what share of the box these are is said with them.
+
+use std::fmt;
+
+use super::RunError;
+use super::adapt::{EMPTY, union};
+use super::islands::add;
+use super::run::{Ran, Study, Tried, summarised_errors};
+use crate::numerics::{BandError, ParameterBox, Range, spread, validation};
+use crate::results::{Band, Bounds, OutputBounds};
+use crate::results::{PieceSummary, Summary};
+use crate::simulate::SimulationError;
+
+/// Samples of the box that tell how much of it fails.
+const SURVEYED: usize = 1000;
+
+/// Most pieces that the box is cut into.
+const MOST_PIECES: usize = 32;
+
+/// A piece of this share of the box is not cut any more.
+const SMALLEST: f64 = 1.0 / 1024.0;
+
+/// A parameter whose failing samples lie off its middle by so much on average (of ξ) matters.
+const LEANS: f64 = 0.2;
+
+/// Samples spread over the box of which some cannot be assembled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survey {
+    /// The first sample that was met.
+    pub first: SimulationError,
+    /// All that were tried, and those that cannot be.
+    pub samples: usize,
+    #[allow(missing_docs)]
+    pub failing: usize,
+    /// Where these lie, parameter by parameter, where that says something.
+    pub places: Vec<Place>,
+}
+
+/// Where samples fail along one parameter.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Place {
+    pub parameter: String,
+    /// Least and largest value of samples that fail.
+    pub lower: f64,
+    pub upper: f64,
+    /// The end of the interval that most of them are near to, where they are from all of it.
+    pub towards: Option<f64>,
+}
+
+impl fmt::Display for Survey {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { first, samples, failing, places } = self;
+        write!(formatter, "{first}; so it is with {failing} of {samples} samples spread over the box")?;
+        let place = |Place { parameter, lower, upper, towards }: &Place| match towards {
+            Some(end) => format!("mostly towards {parameter} = {end}"),
+            None => format!("with {parameter} from {lower} to {upper}"),
+        };
+        let places: Vec<String> = places.iter().map(place).collect();
+        if places.is_empty() { Ok(()) } else { write!(formatter, ", {}", places.join(", ")) }
+    }
+}
+
+/// What is to be told of a run that found a sample that cannot be assembled.
+pub(super) fn explained(study: &Study, error: RunError) -> RunError {
+    match error {
+        RunError::Simulation(source @ SimulationError::Assembly { .. }) if study.domain.dimension() > 0 => {
+            RunError::Infeasible(Box::new(survey(study, source)))
+        }
+        other => other,
+    }
+}
+
+fn survey(study: &Study, first: SimulationError) -> Survey {
+    let domain = &study.domain;
+    let mut points = validation(domain.dimension());
+    points.extend(spread(domain.dimension(), SURVEYED));
+    let can = study.simulator.can_assemble(&domain.points(&points));
+    let failing: Vec<&Vec<f64>> = points.iter().zip(&can).filter(|(_, can)| !**can).map(|(xi, _)| xi).collect();
+    let place = |axis: usize| {
+        let along = failing.iter().map(|xi| xi[axis]);
+        let range = Range::of(&along.clone().collect::<Vec<f64>>());
+        let mean = along.sum::<f64>() / failing.len() as f64;
+        let all = range.width() > 1.9;
+        let towards = all.then(|| domain.value(axis, mean.signum()));
+        let [lower, upper] = [range.lower, range.upper].map(|xi| domain.value(axis, xi));
+        let parameter = study.simulator.system.parameters[axis].name.clone();
+        let says = !(all && mean.abs() < LEANS) && domain.half_width(axis) > 0.0;
+        says.then_some(Place { parameter, lower, upper, towards })
+    };
+    let places = (0..domain.dimension()).filter_map(place).collect();
+    Survey { first, samples: points.len(), failing: failing.len(), places }
+}
+
+/// A part of the box.
+struct Piece {
+    domain: ParameterBox,
+    /// Of the whole box.
+    share: f64,
+    found: Found,
+}
+
+/// What held-out samples say of a piece.
+enum Found {
+    /// All reach the end.
+    Whole,
+    /// Some do not; how much of the time is lost, and ξ of the ones that fail first.
+    Partly { lost: f64, failing: Vec<Vec<f64>> },
+    /// None does; all can be assembled.
+    Ending,
+    /// None can be assembled.
+    Nothing,
+}
+
+/// Bounds of the part of the box that is feasible.
+///
+/// # Errors
+/// Where no part is, and as for any run.
+pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
+    let pieces = cut(study)?;
+    let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| !matches!(piece.found, Found::Nothing)).collect();
+    let mut ran: Vec<(Ran, &Piece)> = Vec::new();
+    for (place, piece) in pieces.iter().enumerate() {
+        if (study.interrupted)() && !ran.is_empty() {
+            break;
+        }
+        let progress = |fraction: f64| (study.progress)((place as f64 + fraction) / pieces.len() as f64);
+        match study.over(&piece.domain, &progress).run() {
+            Ok(found) if found.whole > 0 => ran.push((found, piece)),
+            Ok(_) | Err(RunError::Simulation(SimulationError::Assembly { .. })) => (),
+            Err(error) => return Err(error),
+        }
+    }
+    match ran.is_empty() {
+        // There is nothing to be told but what the whole box' own run tells.
+        true => study.run().map(|ran| (ran.bounds, ran.summary)).map_err(|error| explained(study, error)),
+        false => Ok(together(study, ran)),
+    }
+}
+
+/// Cuts the box; pieces that reach the end are not cut any more.
+fn cut(study: &Study) -> Result<Vec<Piece>, RunError> {
+    let piece = |domain: ParameterBox, share: f64| -> Result<Piece, RunError> {
+        let found = trial(&study.over(&domain, &|_| ()))?;
+        Ok(Piece { domain, share, found })
+    };
+    let mut pieces = vec![piece(study.domain.clone(), 1.0)?];
+    while pieces.len() < MOST_PIECES && !(study.interrupted)() {
+        let gain = |piece: &Piece| match &piece.found {
+            Found::Partly { lost, .. } if piece.share > SMALLEST => piece.share * lost,
+            _ => 0.0,
+        };
+        let Some(worst) = (0..pieces.len()).max_by(|&a, &b| gain(&pieces[a]).total_cmp(&gain(&pieces[b]))) else {
+            break;
+        };
+        let Found::Partly { failing, .. } = &pieces[worst].found else { break };
+        let Some(axis) = axis_to_cut(&study.domain, &pieces[worst].domain, failing) else { break };
+        if gain(&pieces[worst]) == 0.0 {
+            break;
+        }
+        let whole = pieces.swap_remove(worst);
+        for half in whole.domain.halves(axis) {
+            pieces.push(piece(half, 0.5 * whole.share)?);
+        }
+    }
+    Ok(pieces)
+}
+
+/// The axis along which samples that fail lie farthest to one side, the wide before the narrow; none where nothing is uncertain.
+fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>]) -> Option<usize> {
+    let score = |axis: usize| {
+        let mean = failing.iter().map(|xi| xi[axis]).sum::<f64>() / failing.len().max(1) as f64;
+        (0.01 + mean.abs()) * piece.half_width(axis) / whole.half_width(axis)
+    };
+    let uncertain = (0..whole.dimension()).filter(|&axis| whole.half_width(axis) > 0.0);
+    uncertain.reduce(|a, b| if score(b) > score(a) { b } else { a })
+}
+
+/// Tries a piece's held-out samples.
+fn trial(study: &Study) -> Result<Found, RunError> {
+    let points = validation(study.domain.dimension());
+    let can = study.simulator.can_assemble(&study.domain.points(&points));
+    if !can.contains(&true) {
+        return Ok(Found::Nothing);
+    }
+    if can.contains(&false) {
+        let failing = points.into_iter().zip(can).filter(|(_, can)| !can).map(|(xi, _)| xi).collect();
+        return Ok(Found::Partly { lost: 1.0, failing });
+    }
+    let Tried { reached, stopped, any } = study.try_samples()?;
+    let rows = study.rows();
+    Ok(match rows.saturating_sub(reached) {
+        0 => Found::Whole,
+        _ if !any => Found::Ending,
+        lost => Found::Partly { lost: lost as f64 / rows as f64, failing: stopped },
+    })
+}
+
+/// Bounds of all pieces together.
+fn together(study: &Study, ran: Vec<(Ran, &Piece)>) -> (Bounds, Summary) {
+    let rows = ran.iter().map(|(ran, _)| ran.whole).max().unwrap_or(0);
+    let reach = |row: usize| ran.iter().filter(move |(ran, _)| row < ran.whole);
+    let covered: Vec<f64> = (0..rows).map(|row| reach(row).map(|(_, piece)| piece.share).sum()).collect();
+    // Who calls this has refused a model of which no piece runs.
+    let (longest, _) = ran.iter().max_by_key(|(ran, _)| ran.whole).expect("some piece ran");
+    let outputs = longest.bounds.outputs.iter().enumerate().map(|(output, first)| {
+        let band = |(place, first): (usize, &Band)| {
+            let of = |ran: &Ran| ran.bounds.outputs[output].bands.get(place).cloned();
+            let mut all = Band { method: first.method, lower: vec![], upper: vec![], error: BandError::default() };
+            for row in 0..rows {
+                let found = reach(row).map(|(ran, _)| match of(ran) {
+                    Some(band) => (Range { lower: band.lower[row], upper: band.upper[row] }, band.error.total[row]),
+                    None => (Range::UNKNOWN, f64::NAN),
+                });
+                let (range, error) = found.fold((EMPTY, 0.0), union);
+                all.lower.push(range.lower);
+                all.upper.push(range.upper);
+                all.error.total.push(error);
+                let unresolved = |(ran, _): &(Ran, &Piece)| of(ran).is_none_or(|band| band.error.unresolved[row]);
+                all.error.unresolved.push(reach(row).any(unresolved));
+            }
+            let errors = || ran.iter().filter_map(|(ran, _)| of(ran)).map(|band| band.error);
+            all.error.surrogate = crate::numerics::largest(errors().map(|error| error.surrogate));
+            all.error.time = crate::numerics::largest(errors().map(|error| error.time));
+            all
+        };
+        let bands = first.bands.iter().enumerate().map(band).collect();
+        OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
+    });
+    let outputs = outputs.collect();
+    let contributions = if ran.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() };
+    let bounds = Bounds { times: longest.bounds.times[..rows].to_vec(), outputs, contributions, covered };
+    let summary = summary(study, &ran, &bounds);
+    (bounds, summary)
+}
+
+/// What all pieces took.
+fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
+    let mut summary = ran[0].0.summary.clone();
+    for (ran, _) in &ran[1..] {
+        for method in &ran.summary.methods {
+            match summary.methods.iter_mut().find(|known| known.method == method.method) {
+                Some(known) => add(known, method),
+                None => summary.methods.push(method.clone()),
+            }
+        }
+    }
+    let piece = |(ran, piece): &(Ran, &Piece)| PieceSummary {
+        lower: piece.domain.lower.clone(),
+        upper: piece.domain.upper.clone(),
+        until: ran.bounds.times[ran.whole - 1],
+    };
+    summary.pieces = ran.iter().map(piece).collect();
+    summary.errors = summarised_errors(bounds);
+    if ran.len() > 1 {
+        summary.contributions.clear();
+    }
+    summary.failure = ran.iter().find_map(|(ran, _)| ran.summary.failure.clone().filter(|_| (study.interrupted)()));
+    summary
+}

@@ -1,0 +1,322 @@
+//! Islands of a model, which move on their own: each is a study of its own, with those of the parameters that reach it, and their results
+//! are put together in the model's order.
+//!
+//! Each has its own steps too: one that needs short ones costs the others nothing, and what a step does to one is no matter of
+//! another's. Parts of the box that are not feasible are parts of the whole box: where those are to be left out, there is one
+//! island.
+
+use symdiff::Formula;
+
+use super::run::{Ran, Study, contributions, summarised_errors};
+use super::{Options, RunError, feasible, formulation};
+use crate::numerics::{BandError, ParameterBox, Range};
+use crate::results::{Band, Bounds, Contribution, Method, OutputBounds};
+use crate::simulate::Simulator;
+
+use crate::assemble::{self, BuildError};
+use crate::model::{Description, Formulation, ParameterValue};
+use crate::reduce::{Choices, Island, Reduction, narrow};
+use crate::results::{IslandSummary, MethodSummary, ParameterSummary, Summary};
+
+/// An island ready to run.
+pub struct Prepared {
+    /// What it is.
+    pub island: Island,
+    /// Its programs.
+    pub simulator: Simulator,
+}
+
+impl Prepared {
+    /// Compiles. Parameters that the island names, but no equation of it depends on, are left to their nominal values.
+    ///
+    /// # Errors
+    /// Where it cannot be built or assembled.
+    pub fn new(mut island: Island) -> Result<Self, RunError> {
+        let simulator = formulation::compiled(&island.description)?;
+        let unused = simulator.system.unused_parameters();
+        if unused.is_empty() {
+            return Ok(Self { island, simulator });
+        }
+        let mut uncertain = 0..;
+        for parameter in &mut island.description.parameters {
+            let ParameterValue::Interval { nominal, .. } = parameter.value else { continue };
+            if uncertain.next().is_some_and(|number| unused.contains(&number)) {
+                parameter.value = ParameterValue::Formula(Formula::number(nominal));
+            }
+        }
+        let left: Vec<usize> = (0..island.parameters.len()).filter(|number| !unused.contains(number)).collect();
+        narrow(&mut island.description, &left);
+        island.parameters = left.into_iter().map(|number| island.parameters[number]).collect();
+        let simulator = formulation::compiled(&island.description)?;
+        Ok(Self { island, simulator })
+    }
+}
+
+/// Reduces a model to what has to be simulated, and compiles that.
+///
+/// # Errors
+/// Where an island cannot be built or assembled.
+pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
+    let mut reduction = Reduction::of(description, choices);
+    let prepared = std::mem::take(&mut reduction.islands).into_iter().map(|island| {
+        // Joints carry bodies in the model that asks for it, but perhaps not in every island.
+        let carried = description.simulation.formulation == Formulation::Joint;
+        let absolute = carried.then(|| island.clone());
+        match (Prepared::new(island), absolute) {
+            (Err(RunError::Build(BuildError::NotCarried { .. })), Some(mut island))
+                if assemble::build(description).is_ok() =>
+            {
+                island.description.simulation.formulation = Formulation::Absolute;
+                Prepared::new(island)
+            }
+            (prepared, _) => prepared,
+        }
+    });
+    let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
+    Ok((reduction, prepared))
+}
+
+/// Runs every island and puts their results together.
+///
+/// # Errors
+/// As for any run.
+pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
+    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
+    let (reduction, mut prepared) = prepare(description, choices)?;
+    share_budget(&mut prepared);
+    let count = prepared.len();
+    let report = |place: usize| move |fraction: f64| (options.progress)((place as f64 + fraction) / count as f64);
+    let reports: Vec<_> = (0..count).map(report).collect();
+    let mut islands = Vec::with_capacity(count);
+    let mut studies = Vec::with_capacity(count);
+    for (Prepared { island, simulator }, progress) in prepared.into_iter().zip(&reports) {
+        islands.push(island);
+        studies.push((simulator, progress));
+    }
+    // All that can be refused is, before the first is run.
+    let studies = islands.iter().zip(studies).map(|(island, (simulator, progress))| {
+        let mut study = Study::new(&island.description, simulator, options)?;
+        study.progress = progress;
+        Ok(study)
+    });
+    let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
+    let mut ran = Vec::with_capacity(count);
+    for (island, study) in islands.iter().zip(&studies) {
+        let (bounds, summary) = if options.skip_infeasible {
+            feasible::run(study)?
+        } else {
+            let Ran { bounds, summary, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
+            (bounds, summary)
+        };
+        ran.push(Done { island, bounds, summary });
+    }
+    Ok(Together::of(description, reduction.left_out).join(ran))
+}
+
+/// What may be spent is dealt out evenly to those that have something to spend it on.
+fn share_budget(prepared: &mut [Prepared]) {
+    let uncertain = prepared.iter().filter(|prepared| !prepared.island.parameters.is_empty()).count().max(1);
+    for prepared in prepared {
+        let budget = &mut prepared.island.description.bounds.budget;
+        budget.solves /= uncertain;
+        budget.seconds = budget.seconds.map(|seconds| seconds / uncertain as f64);
+    }
+}
+
+/// An island's results.
+struct Done<'a> {
+    island: &'a Island,
+    bounds: Bounds,
+    summary: Summary,
+}
+
+/// The whole model, for which islands' results are put together.
+struct Together<'a> {
+    description: &'a Description,
+    parameters: Vec<ParameterSummary>,
+    domain: ParameterBox,
+    left_out: Vec<String>,
+}
+
+impl<'a> Together<'a> {
+    fn of(description: &'a Description, left_out: Vec<String>) -> Self {
+        let interval = |parameter: &crate::model::Parameter| match parameter.value {
+            ParameterValue::Interval { nominal, lower, upper } => {
+                let (name, unit) = (parameter.name.clone(), parameter.unit.clone());
+                Some(ParameterSummary { name, unit, nominal, lower, upper })
+            }
+            ParameterValue::Formula(_) => None,
+        };
+        let parameters: Vec<ParameterSummary> = description.parameters.iter().filter_map(interval).collect();
+        let domain = ParameterBox {
+            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        };
+        Self { description, parameters, domain, left_out }
+    }
+
+    fn join(self, ran: Vec<Done>) -> (Bounds, Summary) {
+        let longest = ran.iter().map(|done| &done.bounds.times).max_by_key(|times| times.len());
+        let times = longest.cloned().unwrap_or_default();
+        let known = ran.iter().any(|done| !done.bounds.contributions.is_empty());
+        let count = self.description.outputs.len();
+        let mut outputs: Vec<Option<OutputBounds>> = vec![None; count];
+        let mut contributions = vec![Vec::new(); count];
+        for done in &ran {
+            for (place, (&output, bounds)) in done.island.outputs.iter().zip(&done.bounds.outputs).enumerate() {
+                let bounds = filled(bounds, times.len());
+                if known {
+                    contributions[output] = self.contributions(done, place, &bounds);
+                }
+                outputs[output] = Some(bounds);
+            }
+        }
+        let bounds = Bounds {
+            times,
+            outputs: outputs.into_iter().flatten().collect(),
+            contributions: if known { contributions } else { Vec::new() },
+            covered: ran
+                .iter()
+                .find_map(|done| Some(&done.bounds.covered).filter(|covered| !covered.is_empty()))
+                .cloned()
+                .unwrap_or_default(),
+        };
+        let summary = self.summary(ran, &bounds);
+        (bounds, summary)
+    }
+
+    /// Every parameter's part in an output; one that does not reach its island has none.
+    fn contributions(&self, done: &Done, place: usize, bounds: &OutputBounds) -> Vec<Contribution> {
+        let rows = bounds.nominal.len();
+        let unknown = || vec![f64::NAN; rows];
+        let of_island = done.bounds.contributions.get(place);
+        let band = bounds.bands.iter().find(|band| band.method == Method::Chebyshev);
+        let contribution = |(number, parameter): (usize, &ParameterSummary)| {
+            let name = parameter.name.clone();
+            match done.island.parameters.iter().position(|&own| own == number) {
+                Some(own) => match of_island.and_then(|contributions| contributions.get(own)) {
+                    Some(found) => Contribution {
+                        parameter: name,
+                        main: padded(&found.main, rows, f64::NAN),
+                        total: padded(&found.total, rows, f64::NAN),
+                        width_without: padded(&found.width_without, rows, f64::NAN),
+                    },
+                    None => {
+                        Contribution { parameter: name, main: unknown(), total: unknown(), width_without: unknown() }
+                    }
+                },
+                None => {
+                    let width = |row: usize| band.map_or(f64::NAN, |band| band.upper[row] - band.lower[row]);
+                    let width_without: Vec<f64> = (0..rows).map(width).collect();
+                    let nothing = |width: &f64| if width.is_nan() { f64::NAN } else { 0.0 };
+                    let none: Vec<f64> = width_without.iter().map(nothing).collect();
+                    Contribution { parameter: name, main: none.clone(), total: none, width_without }
+                }
+            }
+        };
+        self.parameters.iter().enumerate().map(contribution).collect()
+    }
+
+    /// Values of an island's parameters among those of all, where it has them.
+    fn spread<T: Clone>(&self, island: &Island, values: &[T], others: &[T]) -> Vec<T> {
+        let own = |number: usize| island.parameters.iter().position(|&own| own == number);
+        (0..self.parameters.len())
+            .map(|number| own(number).map_or(&others[number], |own| &values[own]).clone())
+            .collect()
+    }
+
+    fn summary(self, mut ran: Vec<Done>, bounds: &Bounds) -> Summary {
+        let zeros = vec![0; self.parameters.len()];
+        for done in &mut ran {
+            for method in &mut done.summary.methods {
+                method.order = method.order.as_ref().map(|order| self.spread(done.island, order, &zeros));
+            }
+            for piece in &mut done.summary.pieces {
+                piece.lower = self.spread(done.island, &piece.lower, &self.domain.lower);
+                piece.upper = self.spread(done.island, &piece.upper, &self.domain.upper);
+            }
+        }
+        let islands = if ran.len() > 1 { ran.iter().map(|done| self.island(done)).collect() } else { Vec::new() };
+        let mut parts = ran.into_iter().map(|done| done.summary);
+        // Where no part is needed, all of them are one island (`reduce`).
+        let mut summary = parts.next().expect("a model has an island");
+        let mut failures: Vec<String> = summary.failure.take().into_iter().collect();
+        for other in parts {
+            summary.coordinates += other.coordinates;
+            summary.constraints += other.constraints;
+            summary.degrees_of_freedom += other.degrees_of_freedom;
+            summary.redundant_constraints.extend(other.redundant_constraints);
+            summary.undetermined_outputs.extend(other.undetermined_outputs);
+            summary.singular_at_start.extend(other.singular_at_start);
+            summary.singular_configurations.extend(other.singular_configurations);
+            for method in other.methods {
+                match summary.methods.iter_mut().find(|known| known.method == method.method) {
+                    Some(known) => add(known, &method),
+                    None => summary.methods.push(method),
+                }
+            }
+            failures.extend(other.failure.filter(|failure| !failures.contains(failure)));
+        }
+        summary.singular_configurations.sort_by(|a, b| a.time.total_cmp(&b.time));
+        summary.failure = (!failures.is_empty()).then(|| failures.join("; "));
+        if !islands.is_empty() {
+            summary.errors = summarised_errors(bounds);
+            summary.contributions = contributions(bounds);
+        }
+        summary.parameters = self.parameters;
+        summary.not_simulated = self.left_out;
+        summary.islands = islands;
+        summary
+    }
+
+    fn island(&self, done: &Done) -> IslandSummary {
+        let Island { description, outputs, parameters } = done.island;
+        IslandSummary {
+            bodies: description.bodies.iter().skip(1).map(|body| body.name.clone()).collect(),
+            outputs: outputs.iter().map(|&output| self.description.outputs[output].name.clone()).collect(),
+            parameters: parameters.iter().map(|&number| self.parameters[number].name.clone()).collect(),
+            coordinates: done.summary.coordinates,
+            constraints: done.summary.constraints,
+            methods: done.summary.methods.clone(),
+        }
+    }
+}
+
+/// Takes in what another part of a run took.
+pub(super) fn add(known: &mut MethodSummary, other: &MethodSummary) {
+    known.solves += other.solves;
+    known.steps = known.steps.max(other.steps);
+    known.newton_iterations += other.newton_iterations;
+    known.rank_revealing_solves += other.rank_revealing_solves;
+    known.boxes = known.boxes.zip(other.boxes).map(|(a, b)| a + b);
+    known.seconds = known.seconds.zip(other.seconds).map(|(a, b)| a + b);
+    if let (Some(known), Some(other)) = (&mut known.order, &other.order) {
+        known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
+    }
+}
+
+fn padded<T: Clone>(values: &[T], rows: usize, with: T) -> Vec<T> {
+    let mut values = values.to_vec();
+    values.resize(rows, with);
+    values
+}
+
+/// An output's bounds over so many rows, unknown where its island did not come that far.
+fn filled(bounds: &OutputBounds, rows: usize) -> OutputBounds {
+    let band = |band: &Band| Band {
+        method: band.method,
+        lower: padded(&band.lower, rows, Range::UNKNOWN.lower),
+        upper: padded(&band.upper, rows, Range::UNKNOWN.upper),
+        error: BandError {
+            total: padded(&band.error.total, rows, f64::NAN),
+            unresolved: padded(&band.error.unresolved, rows, true),
+            ..band.error.clone()
+        },
+    };
+    OutputBounds {
+        nominal: padded(&bounds.nominal, rows, f64::NAN),
+        bands: bounds.bands.iter().map(band).collect(),
+        ..bounds.clone()
+    }
+}

@@ -1,0 +1,131 @@
+//! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
+//!
+//! `islands` takes a model apart into what moves on its own. A `study` of each makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
+//! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
+//! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
+//! `adapt` expands them as far as a tolerance asks for; `feasible` bounds the part of a box in which there is a motion. `cost` runs one model with many settings, to tell what accuracy costs.
+
+mod adapt;
+mod apportion;
+mod certain;
+mod certify;
+mod compose;
+mod cost;
+mod decisions;
+mod effect_costs;
+mod feasible;
+mod finding;
+mod formulation;
+mod islands;
+mod methods;
+mod probe;
+mod run;
+mod step_search;
+
+use crate::assemble::BuildError;
+use crate::compile::Scheme;
+use crate::model::{Description, Stepping};
+use crate::reduce::Reduction;
+use crate::results::Summary;
+use crate::results::{Bounds, Method};
+use crate::simulate::{SimulationError, Simulator};
+
+use islands::Prepared;
+
+pub use cost::{CostError, CostOptions, cost};
+pub use decisions::explain;
+pub use effect_costs::language_costs;
+pub use feasible::{Place, Survey};
+
+/// How to run.
+pub struct Options<'a> {
+    /// Instead of the methods that the model asks for.
+    pub methods: Option<Vec<Method>>,
+    /// Threads; all cores where absent.
+    pub threads: Option<usize>,
+    /// Whether the time steps' error is found by simulating every sample with halved steps too, instead of a few.
+    pub certify_time: bool,
+    /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
+    pub skip_infeasible: bool,
+    /// Told now and then which fraction is done.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Default for Options<'_> {
+    /// What the model asks for, on all cores.
+    fn default() -> Self {
+        Self {
+            methods: None,
+            threads: None,
+            certify_time: false,
+            skip_infeasible: false,
+            progress: &|_| (),
+            interrupted: &|| false,
+        }
+    }
+}
+
+/// Why nothing could be run at all.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum RunError {
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    #[error(
+        "`{method}` of {parameters} uncertain parameters needs {solves:.2e} simulations: say in the model how many it shall take"
+    )]
+    TooMany { method: &'static str, solves: f64, parameters: usize },
+    #[error("certified bounds are for at most two uncertain parameters, not {parameters}")]
+    TooManyToCertify { parameters: usize },
+    #[error(
+        "certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed"
+    )]
+    CertifiedSteps,
+    #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
+    Infeasible(Box<Survey>),
+    #[error("the threads could not be started: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
+/// the summary's `failure` says what happened.
+///
+/// # Errors
+/// Where the mechanism cannot be built, assembled or stepped at all.
+pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    pool.install(|| islands::run(description, &options))
+}
+
+/// A compiled model: of what `run` simulates, all in one.
+///
+/// # Errors
+/// As for [`run`].
+pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
+    Ok(Prepared::new(Reduction::joined(description))?.simulator)
+}
+
+/// A whole model compiled, with the parts that no output depends on, and nothing merged: for checking it.
+///
+/// # Errors
+/// As for [`run`].
+pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
+    formulation::compiled(description)
+}
+
+/// The model's scheme.
+fn scheme(description: &Description) -> Scheme {
+    Scheme::Hht { alpha: description.simulation.alpha }
+}
+
+/// Step size for what is computed before the first step.
+fn first_step(description: &Description) -> f64 {
+    match description.simulation.stepping {
+        Stepping::Fixed(step) => step,
+        Stepping::Tolerance(_) => 1e-2 * description.simulation.output_step,
+    }
+}

@@ -1,0 +1,10 @@
+//! Text → a tree in which every node knows its place, and the diagnostics that point there.
+
+pub(crate) mod diagnostic;
+mod render;
+pub(crate) mod source;
+pub(crate) mod suggest;
+pub(crate) mod yaml;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
+pub use source::{Place, Source, Sources, Span};
