@@ -3,7 +3,7 @@
 use symdiff::Formula;
 
 use super::beams;
-use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
+use super::description::{Body, Coordinate, FlexibleBeam, Inertia, Point, PointRef, Rotation};
 use super::file;
 use super::kinds::JointCoordinate;
 use super::motions::is_motion;
@@ -44,6 +44,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         reader.name(entry, "a body");
         if let Some(elements) = beams::elements(entry).filter(|_| entry.key != GROUND) {
             reader.model.bodies.extend(beams::nodes(&entry.key, elements).map(|name| empty(&name)));
+            reader.model.beams.push(FlexibleBeam { name: entry.key.clone(), elements });
             continue;
         }
         let mut body = empty(&entry.key);

@@ -1,10 +1,21 @@
 //! The typed model: what a file says, checked, with every name resolved and every number in SI units.
 
+mod body;
+mod robot;
+mod simulation;
+mod start;
+mod symbol;
+
 use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
-use super::effect_kinds::{EffectKind, Measure};
-use super::kinds::{JointCoordinate, JointKind};
+use super::effect_kinds::EffectKind;
+use super::kinds::JointKind;
+pub use body::{Body, Coordinate, FlexibleBeam, Inertia, Point, PointRef, Rotation};
+pub use robot::{RobotTree, TreeJoint, TreeLink};
+pub use simulation::{Formulation, Simulation, Stepping};
+pub use start::StartValue;
+pub use symbol::{EnergyKind, ReactionComponent, Referent};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -24,6 +35,8 @@ pub struct Description {
     pub parameters: Vec<Parameter>,
     /// `bodies[0]` is the ground: no coordinates, no mass, perhaps points.
     pub bodies: Vec<Body>,
+    /// Beams, of which the nodes are bodies and the elements effects.
+    pub beams: Vec<FlexibleBeam>,
     /// In file order.
     pub joints: Vec<Joint>,
     /// In file order.
@@ -40,55 +53,10 @@ pub struct Description {
     pub bounds: BoundsRequest,
 }
 
-/// The links and joints of a URDF, which the bodies and joints of the model were made of.
-#[derive(Clone, Debug)]
-pub struct RobotTree {
-    /// As the file calls it.
-    pub name: String,
-    /// Each behind its parent.
-    pub links: Vec<TreeLink>,
-}
-
-/// A link of a URDF.
-#[derive(Clone, Debug)]
-pub struct TreeLink {
-    /// Its name in formulas.
-    pub name: String,
-    /// Joints between it and the root.
-    pub depth: usize,
-    /// kg, where the file has one.
-    pub mass: Option<f64>,
-    /// Its frame; absent where the link is left out.
-    pub place: Option<PointRef>,
-    /// The joint that leads to it; absent for the root.
-    pub joint: Option<TreeJoint>,
-}
-
-/// A joint of a URDF.
-#[derive(Clone, Debug)]
-pub struct TreeJoint {
-    /// Its name in formulas.
-    pub name: String,
-    /// The file's word for it.
-    pub kind: &'static str,
-    /// In the child's frame, where the joint has one coordinate.
-    pub axis: Option<[f64; 3]>,
-    /// Smallest and largest position.
-    pub limits: Option<[f64; 2]>,
-    /// rad or m, of its position.
-    pub unit: &'static str,
-    /// N m s/rad or N s/m
-    pub damping: f64,
-    /// N m or N
-    pub friction: f64,
-    /// The joint that it follows.
-    pub mimics: Option<String>,
-}
-
 /// In how many dimensions a mechanism moves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Space {
-    /// Whether a body that says nothing else has six freedoms, and joints hold bodies in all of them. A planar
+    /// Whether a body has six degrees of freedom unless it declares its coordinates, and joints constrain all six. A planar
     /// mechanism has z = 0 everywhere and turns about z only.
     pub spatial: bool,
     /// For people: what leaves the plane, or that nothing does.
@@ -106,40 +74,6 @@ pub struct Parameter {
     pub value: ParameterValue,
 }
 
-impl Description {
-    /// Nothing yet, in the plane, for a second.
-    pub(crate) fn empty(name: String) -> Self {
-        Self {
-            name,
-            description: None,
-            space: Space { spatial: false, why: String::new() },
-            robot: None,
-            parameters: Vec::new(),
-            bodies: Vec::new(),
-            joints: Vec::new(),
-            effects: Vec::new(),
-            initial: Vec::new(),
-            guess: Vec::new(),
-            outputs: Vec::new(),
-            simulation: Simulation {
-                duration: 1.0,
-                stepping: Stepping::Fixed(1e-3),
-                alpha: -0.1,
-                output_step: 0.01,
-                formulation: Formulation::Auto,
-            },
-            bounds: BoundsRequest::default(),
-        }
-    }
-
-    /// The parameters that are known to lie in an interval, with their indices.
-    pub fn uncertain(&self) -> impl Iterator<Item = (usize, &Parameter)> {
-        let interval =
-            |(_, parameter): &(usize, &Parameter)| matches!(parameter.value, ParameterValue::Interval { .. });
-        self.parameters.iter().enumerate().filter(interval)
-    }
-}
-
 /// What is known of a parameter.
 #[derive(Clone, Debug)]
 pub enum ParameterValue {
@@ -147,129 +81,13 @@ pub enum ParameterValue {
     Formula(Formula),
     /// Somewhere in `[lower, upper]`, `lower ≤ nominal ≤ upper`.
     Interval {
-        #[allow(missing_docs)]
+        /// Value without deviation, SI.
         nominal: f64,
-        #[allow(missing_docs)]
+        /// Smallest value, SI.
         lower: f64,
-        #[allow(missing_docs)]
+        /// Largest value, SI.
         upper: f64,
     },
-}
-
-/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Coordinate {
-    /// Position of the frame's origin along the ground's x, m.
-    X,
-    /// Position of the frame's origin along the ground's y, m.
-    Y,
-    /// Position of the frame's origin along the ground's z, m.
-    Z,
-    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
-    Angle,
-    /// Euler parameter p0 (cosine of half the angle) to p3.
-    Euler(usize),
-}
-
-impl Coordinate {
-    /// The Euler parameters.
-    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
-
-    /// Whether it is a length rather than a part of the orientation.
-    pub fn is_length(self) -> bool {
-        matches!(self, Self::X | Self::Y | Self::Z)
-    }
-}
-
-/// A rotation from one frame to another.
-#[derive(Clone, Debug)]
-pub enum Rotation {
-    /// Turned about the fixed x, then y, then z, rad.
-    RollPitchYaw([Formula; 3]),
-    /// About an axis of any length but zero, by an angle in rad.
-    AxisAngle([Formula; 3], Formula),
-    /// Euler parameters p0 to p3, of any length but zero.
-    Quaternion([Formula; 4]),
-}
-
-/// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
-/// URDF. A body that only turns about z needs no more than zz.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)]
-pub struct Inertia {
-    pub xx: Formula,
-    pub yy: Formula,
-    pub zz: Formula,
-    pub xy: Formula,
-    pub xz: Formula,
-    pub yz: Formula,
-}
-
-impl Inertia {
-    /// The same about every axis.
-    pub fn scalar(value: &Formula) -> Self {
-        let zero = || Formula::number(0.0);
-        Self { xx: value.clone(), yy: value.clone(), zz: value.clone(), xy: zero(), xz: zero(), yz: zero() }
-    }
-}
-
-/// A rigid body.
-#[derive(Clone, Debug)]
-pub struct Body {
-    /// Its name.
-    pub name: String,
-    /// kg; absent only where no declared coordinate needs it (ground), and of a beam's node, which its elements make heavy.
-    pub mass: Option<Formula>,
-    /// Absent only where the body does not turn, and of a beam's node.
-    pub inertia: Option<Inertia>,
-    /// Centre of mass in the body's frame, m; by default the origin.
-    pub center_of_mass: Option<[Formula; 3]>,
-    /// The coordinates that the body has; the others are held. Empty for the ground.
-    pub coordinates: Vec<Coordinate>,
-    /// Values of coordinates that the body does not have (zero where not named).
-    pub held: Vec<(Coordinate, Formula)>,
-    /// Orientation of a body that does not turn, where it is more than an angle about z.
-    pub held_orientation: Option<Rotation>,
-    /// Named points in the body's frame, m.
-    pub points: Vec<Point>,
-}
-
-impl Body {
-    /// Whether its orientation is that of Euler parameters, and not an angle about z.
-    pub fn has_orientation(&self) -> bool {
-        self.held_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
-    }
-
-    /// Whether nothing of it is held, so that a joint alone may say where it is.
-    pub fn is_free(&self, spatial: bool) -> bool {
-        let has = |coordinate: &Coordinate| self.coordinates.contains(coordinate);
-        let freedoms: &[Coordinate] = if spatial {
-            &[Coordinate::X, Coordinate::Y, Coordinate::Z, Coordinate::Euler(0)]
-        } else {
-            &[Coordinate::X, Coordinate::Y, Coordinate::Angle]
-        };
-        freedoms.iter().all(has) && self.held.is_empty()
-    }
-}
-
-/// A named point of a body, and a frame there.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// Its name within the body.
-    pub name: String,
-    /// In the body's frame, m.
-    pub position: [Formula; 3],
-    /// From the frame at the point to the body's; absent where their axes are parallel.
-    pub rotation: Option<Rotation>,
-}
-
-/// A point of a body; the frame's origin where `point` is absent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointRef {
-    /// Index into [`Description::bodies`]; 0 is the ground.
-    pub body: usize,
-    /// Index into that body's points.
-    pub point: Option<usize>,
 }
 
 /// A named joint.
@@ -292,54 +110,13 @@ pub struct Effect {
 
 /// How often a quantity is differentiated by time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
 pub enum TimeOrder {
+    /// Not at all.
     Position,
+    /// Once.
     Velocity,
+    /// Twice.
     Acceleration,
-}
-
-/// A value at the start; formulas are of parameters.
-#[derive(Clone, Debug)]
-pub enum StartValue {
-    /// Of a coordinate.
-    Coordinate {
-        /// Body index, not the ground.
-        body: usize,
-        /// One that the body has.
-        coordinate: Coordinate,
-        /// Position or velocity.
-        order: TimeOrder,
-        #[allow(missing_docs)]
-        value: Formula,
-    },
-    /// Of a body's Euler parameters.
-    Orientation {
-        /// Body index.
-        body: usize,
-        #[allow(missing_docs)]
-        rotation: Rotation,
-    },
-    /// Of a body that has an orientation, rad/s.
-    AngularVelocity {
-        /// Body index.
-        body: usize,
-        #[allow(missing_docs)]
-        value: [Formula; 3],
-        /// Components in the body's frame instead of the ground's.
-        in_body: bool,
-    },
-    /// Of a joint's coordinate.
-    Joint {
-        /// Joint index.
-        joint: usize,
-        #[allow(missing_docs)]
-        coordinate: JointCoordinate,
-        /// Position or velocity.
-        order: TimeOrder,
-        #[allow(missing_docs)]
-        value: Formula,
-    },
 }
 
 /// Something observed.
@@ -353,133 +130,37 @@ pub struct Output {
     pub unit: String,
 }
 
-/// What a name in a formula stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Referent {
-    /// Index into [`Description::parameters`].
-    Parameter(usize),
-    /// `t`, s.
-    Time,
-    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
-    Coordinate {
-        #[allow(missing_docs)]
-        body: usize,
-        #[allow(missing_docs)]
-        coordinate: Coordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
-    AngularMotion {
-        #[allow(missing_docs)]
-        body: usize,
-        /// 0 to 2: x, y, z.
-        axis: usize,
-        /// Velocity or acceleration.
-        order: TimeOrder,
-        #[allow(missing_docs)]
-        in_body: bool,
-    },
-    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
-    RollPitchYaw {
-        #[allow(missing_docs)]
-        body: usize,
-        /// 0 to 2: roll, pitch, yaw.
-        angle: usize,
-    },
-    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
-    JointCoordinate {
-        #[allow(missing_docs)]
-        joint: usize,
-        #[allow(missing_docs)]
-        coordinate: JointCoordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
-    Point {
-        #[allow(missing_docs)]
-        body: usize,
-        #[allow(missing_docs)]
-        point: usize,
-        #[allow(missing_docs)]
-        coordinate: Coordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
-    Reaction {
-        #[allow(missing_docs)]
-        joint: usize,
-        #[allow(missing_docs)]
-        component: ReactionComponent,
-    },
-    /// `effect.length`, `effect.force`, …: what an effect measures.
-    Measure {
-        #[allow(missing_docs)]
-        effect: usize,
-        #[allow(missing_docs)]
-        measure: Measure,
-    },
-    /// `energy`, `kinetic_energy`, `potential_energy`, J.
-    Energy(EnergyKind),
-}
+impl Description {
+    /// Nothing yet, in the plane, for a second.
+    pub(crate) fn empty(name: String) -> Self {
+        Self {
+            name,
+            description: None,
+            space: Space { spatial: false, why: String::new() },
+            robot: None,
+            parameters: Vec::new(),
+            bodies: Vec::new(),
+            beams: Vec::new(),
+            joints: Vec::new(),
+            effects: Vec::new(),
+            initial: Vec::new(),
+            guess: Vec::new(),
+            outputs: Vec::new(),
+            simulation: Simulation {
+                duration: 1.0,
+                stepping: Stepping::Fixed(1e-3),
+                alpha: -0.1,
+                output_step: 0.01,
+                formulation: Formulation::Auto,
+            },
+            bounds: BoundsRequest::default(),
+        }
+    }
 
-/// Part of a joint's reaction on its second body, in the ground's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReactionComponent {
-    /// Magnitude of the force, N.
-    Force,
-    /// Along an axis (0 to 2: x, y, z), N.
-    ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z, in space the magnitude.
-    Torque,
-    /// About an axis (0 to 2: x, y, z) through the second point, N m.
-    TorqueAbout(usize),
-}
-
-/// Which energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum EnergyKind {
-    Total,
-    Kinetic,
-    Potential,
-}
-
-/// How time is stepped.
-#[derive(Clone, Debug)]
-pub struct Simulation {
-    /// s
-    pub duration: f64,
-    /// Fixed, or controlled.
-    pub stepping: Stepping,
-    /// HHT parameter α ∈ [−1/3, 0).
-    pub alpha: f64,
-    /// s between rows of output.
-    pub output_step: f64,
-    /// By which coordinates the motion is described.
-    pub formulation: Formulation,
-}
-
-/// By which coordinates a motion is described; the motion is the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Formulation {
-    /// Whichever takes fewer instructions.
-    #[default]
-    Auto,
-    /// Each body has its own, and joints constrain them.
-    Absolute,
-    /// Those of the joints, of which each carries a body; joints that close loops constrain them.
-    Joint,
-}
-
-/// How steps are chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stepping {
-    /// Every step this long, s.
-    Fixed(f64),
-    /// Steps' local position errors add up to no more than this over the run, relative to |q|, or to the model's size where that
-    /// is larger.
-    Tolerance(f64),
+    /// The parameters that are known to lie in an interval, with their indices.
+    pub fn uncertain(&self) -> impl Iterator<Item = (usize, &Parameter)> {
+        let interval =
+            |(_, parameter): &(usize, &Parameter)| matches!(parameter.value, ParameterValue::Interval { .. });
+        self.parameters.iter().enumerate().filter(interval)
+    }
 }
