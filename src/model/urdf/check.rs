@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use super::algebra;
 use super::format::{Absent, Attribute, ROBOT, Rule, Shape};
-use super::xml::{EXPAND, Element, NAMESPACE, Places, children};
+use super::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -44,7 +44,7 @@ impl Check<'_> {
     }
 
     fn version_of(&mut self, robot: Element) -> Version {
-        let Some(attribute) = robot.attribute_node("version") else { return (1, 0) };
+        let Some(attribute) = plain(robot, "version") else { return (1, 0) };
         let parts = attribute.value().trim().split_once('.');
         let version = parts.and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
         let span = self.places.value(attribute);
@@ -153,7 +153,7 @@ impl Check<'_> {
     /// The value to write for an attribute, if any.
     fn attribute(&mut self, element: Element, rule: &Attribute) -> Option<String> {
         let instead = || rule.instead.to_owned();
-        let Some(attribute) = element.attribute_node(rule.name) else {
+        let Some(attribute) = plain(element, rule.name) else {
             if rule.absent == Absent::Error {
                 let message = format!("`<{}>` needs `{}`", element.tag_name().name(), rule.name);
                 self.error(self.places.tag(element), message, None);
@@ -203,7 +203,7 @@ impl Check<'_> {
         if self.version < QUATERNIONS {
             let help = "write `version=\"1.1\"` in `<robot …>`, or give the rotation as `rpy`".to_owned();
             self.error(span, "`quat_xyzw` belongs to URDF 1.1, and this file is of an earlier version", help);
-        } else if origin.has_attribute("rpy") {
+        } else if plain(origin, "rpy").is_some() {
             self.error(span, "`rpy` and `quat_xyzw` exclude each other", None);
         } else if parts.iter().all(|part| *part == 0.0) {
             self.error(span, "a quaternion of zeros is no rotation", None);
@@ -215,12 +215,12 @@ impl Check<'_> {
 
     /// Whether limits are in order, with those that are absent.
     fn limits_hold(&mut self, limit: Element) -> bool {
-        let value = |name: &str| limit.attribute(name).and_then(|text| text.trim().parse::<f64>().ok());
+        let value = |name: &str| plain(limit, name).and_then(|found| found.value().trim().parse::<f64>().ok());
         let open = self.version >= OPEN_LIMITS;
         let end = |name, absent: f64| value(name).unwrap_or(if open { absent } else { 0.0 });
         let mut hold = true;
         if end("lower", f64::NEG_INFINITY) > end("upper", f64::INFINITY) {
-            let joint = limit.parent_element().and_then(|joint| joint.attribute("name")).unwrap_or_default();
+            let joint = limit.parent_element().and_then(|joint| plain(joint, "name")).map_or("", |name| name.value());
             let message = format!("the limits of joint `{}` are reversed", clip(joint));
             self.error(self.places.value_or_tag(limit, "lower"), message, None);
             hold = false;

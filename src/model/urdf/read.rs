@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 use urdf_rs::JointType;
 
 use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
-use super::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse};
+use super::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
 use super::{check, tree};
 use crate::model::names;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -143,7 +143,7 @@ impl Reader<'_> {
     fn origin(&self, within: Element, pose: &urdf_rs::Pose, prefix: &str) -> Origin {
         let element = child(within, "origin");
         let numbers = Numbers { places: self.places, element, prefix };
-        let turned = if element.is_some_and(|found| found.has_attribute("rpy")) { "rpy" } else { "quat_xyzw" };
+        let turned = if element.is_some_and(|found| plain(found, "rpy").is_some()) { "rpy" } else { "quat_xyzw" };
         let part = |attribute: &str, names: [&str; 3], values: [f64; 3], unit| {
             std::array::from_fn(|i| numbers.number(attribute, names[i], values[i], unit))
         };
@@ -196,7 +196,7 @@ impl Reader<'_> {
         name: String,
         links: &HashMap<&str, usize>,
     ) -> Option<Joint> {
-        if !element.has_attribute("type") {
+        if plain(element, "type").is_none() {
             let help = format!("the types are {}", suggest::list(&Kind::WORDS));
             self.error(self.places.tag(element), format!("joint `{name}` needs a `type`"), help);
         }
@@ -266,7 +266,7 @@ impl Reader<'_> {
         name: &str,
         links: &HashMap<&str, usize>,
     ) -> Option<usize> {
-        let Some(element) = child(joint, end).filter(|element| element.has_attribute("link")) else {
+        let Some(element) = child(joint, end).filter(|element| plain(*element, "link").is_some()) else {
             self.error(self.places.tag(joint), format!("joint `{name}` needs `<{end} link=\"…\"/>`"), None);
             return None;
         };
@@ -286,7 +286,7 @@ impl Reader<'_> {
         index: usize,
         joints: &HashMap<&str, usize>,
     ) -> Option<Mimic> {
-        if !element.has_attribute("joint") {
+        if plain(element, "joint").is_none() {
             self.error(self.places.tag(element), "`<mimic>` needs `joint`", None);
             return None;
         }

@@ -124,7 +124,7 @@ fn own_attributes_do_not_hide_the_file_s() {
 #[test]
 fn names_are_any_text() {
     let text = "<robot><link name='a &amp; &lt;b&gt; &quot;c&quot;'/></robot>";
-    assert_eq!(robot(text).links[0].name, "a____b____c_");
+    assert_eq!(robot(text).links[0].name, "a____b___c_");
 }
 
 #[test]

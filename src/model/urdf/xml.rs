@@ -94,8 +94,13 @@ impl Places {
 
     /// The value of an attribute; the start tag where the element does not have it.
     pub fn value_or_tag(self, element: Element, attribute: &str) -> Span {
-        element.attribute_node(attribute).map_or_else(|| self.tag(element), |attribute| self.value(attribute))
+        plain(element, attribute).map_or_else(|| self.tag(element), |attribute| self.value(attribute))
     }
+}
+
+/// The attribute of a name without prefix: with one, it is another program's.
+pub fn plain<'a, 'i>(element: Element<'a, 'i>, name: &str) -> Option<Attribute<'a, 'i>> {
+    element.attributes().find(|attribute| attribute.namespace().is_none() && attribute.name() == name)
 }
 
 /// The elements of a name within another, in its namespace: others' elements may have the same name.
