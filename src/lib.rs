@@ -7,6 +7,7 @@ pub mod cli;
 pub mod compile;
 pub mod export;
 pub mod model;
+pub mod multibody;
 pub mod numerics;
 pub mod reduce;
 pub mod results;
