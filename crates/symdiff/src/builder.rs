@@ -255,12 +255,12 @@ operators! {
 
 // What the mechanics calls on nodes without operators yet.
 macro_rules! delegated {
-    ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+    ($borrow:ident: $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
         impl Builder {
             $(
                 #[doc = concat!("[`Graph::", stringify!($name), "`].")]
                 pub fn $name(&self, $($argument: $kind),*) -> $result {
-                    self.with(|graph| graph.$name($($argument),*))
+                    self.graph.$borrow().$name($($argument),*)
                 }
             )*
         }
@@ -268,8 +268,8 @@ macro_rules! delegated {
 }
 
 delegated! {
+    borrow_mut:
     add(a: Expr, b: Expr) -> Expr;
-    as_constant(a: Expr) -> Option<f64>;
     assume(roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr>;
     binary(function: Binary, a: Expr, b: Expr) -> Expr;
     constant(value: f64) -> Expr;
@@ -277,14 +277,10 @@ delegated! {
     derivative(of: Expr, by: Expr) -> Expr;
     div(a: Expr, b: Expr) -> Expr;
     dot(a: &[Expr], b: &[Expr]) -> Expr;
-    evaluate(roots: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64>;
     integral(of: Expr, by: Expr) -> Option<Expr>;
-    is_zero(a: Expr) -> bool;
     jacobian(rows: &[Expr], by: &[Expr]) -> SparseMatrix;
-    len() -> usize;
     mul(a: Expr, b: Expr) -> Expr;
     neg(a: Expr) -> Expr;
-    node(a: Expr) -> Node;
     only_where(condition: Expr, value: Expr) -> Expr;
     powi(a: Expr, exponent: i32) -> Expr;
     scale(factor: f64, a: Expr) -> Expr;
@@ -293,8 +289,17 @@ delegated! {
     sqrt(a: Expr) -> Expr;
     sub(a: Expr, b: Expr) -> Expr;
     symbol(name: &str) -> Expr;
-    symbols_of(roots: &[Expr]) -> Vec<Expr>;
     unary(function: Unary, a: Expr) -> Expr;
+}
+
+delegated! {
+    borrow:
+    as_constant(a: Expr) -> Option<f64>;
+    evaluate(roots: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64>;
+    is_zero(a: Expr) -> bool;
+    len() -> usize;
+    node(a: Expr) -> Node;
+    symbols_of(roots: &[Expr]) -> Vec<Expr>;
 }
 
 impl Builder {
