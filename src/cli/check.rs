@@ -132,7 +132,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Of the whole model, whatever of it will be simulated.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let explanation = Explanation::new(&model.name, &study::prepare_whole(model)?);
+        let explanation = study::explain_whole(model)?;
         Ok(Self {
             model: explanation.model,
             coordinates: explanation.coordinates.len(),
