@@ -17,6 +17,6 @@ pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
 pub use summary::{
-    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary,
-    Summary,
+    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    SubsystemSummary, Summary,
 };

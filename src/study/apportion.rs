@@ -1,7 +1,7 @@
 //! Which tolerance matters: each parameter's part in the spread of every output, row by row.
 
 use super::compose::Row;
-use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, SobolDecomposition, extremes};
+use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate, SurrogateWork, extremes};
 
 /// Degree of the polynomials whose variance is apportioned, by the number of parameters: the outputs', which follow from
 /// the coordinates' at any number of points. For more parameters the shape is the surrogate's own.

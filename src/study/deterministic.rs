@@ -13,7 +13,11 @@ use crate::simulate::{Counters, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every method's bounds are the one course that there is.
-    pub(super) fn deterministic(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+    pub(super) fn deterministic(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<f64>,
+    ) -> Result<Results, SimulationError> {
         let progress = Progress { done: AtomicUsize::new(0), total: 3 * schedule.rows };
         let mut steps = StepSearch::new(schedule);
         loop {

@@ -34,8 +34,8 @@ use crate::simulate::{SimulationError, Simulator};
 use subsystems::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
-pub use explain::{explain, explain_whole};
 pub use effect_costs::language_costs;
+pub use explain::{explain, explain_whole};
 pub use feasible::{Place, Survey};
 
 /// How to run.
