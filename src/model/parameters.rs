@@ -1,16 +1,18 @@
 //! `parameters:` and the `--set` that replace them.
 
+use crate::grammar::Referent;
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
-use super::description::{Parameter, ParameterValue, Referent};
-use super::dimension::Kind;
+use super::description::{Parameter, ParameterValue};
+use crate::grammar::dimension::Kind;
 use super::file;
-use super::names::Context;
+use crate::grammar::names::Context;
 use super::overrides::Override;
-use super::quantity::{Unit, number_and_unit};
-use super::reader::{Corner, Reader, Written, evaluate};
+use crate::grammar::quantity::{Unit, number_and_unit};
+use crate::grammar::reader::{Corner, Written, evaluate};
+use crate::model::names::Reader;
 use super::urdf;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;

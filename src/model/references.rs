@@ -2,12 +2,13 @@
 
 use symdiff::Formula;
 
-use super::description::{Body, PointRef, Rotation, StartValue};
+use super::description::{Body, StartValue};
+use crate::grammar::{PointRef, Rotation, Turning};
 use super::effect_kinds::{
     Backlash, Beam, Cable, ClearanceJoint, Contact, Drag, EffectKind, JointFriction, Preload, Preloaded, Servo, Stop,
     Twisted,
 };
-use super::kinds::{JointKind, Turning};
+use super::kinds::JointKind;
 
 /// An index in a joint, an effect or a value at the start.
 #[derive(Debug)]

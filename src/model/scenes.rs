@@ -6,7 +6,8 @@
 use std::collections::HashSet;
 
 use super::file;
-use super::reader::{Fields, Reader};
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use super::urdf;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
