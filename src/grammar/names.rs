@@ -7,9 +7,7 @@ use super::motions::{
     ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
-use super::symbols::{
-    Coordinate, EnergyKind, Measure, ReactionComponent, Referent, SymbolTable, TimeOrder,
-};
+use super::symbols::{Coordinate, EnergyKind, Measure, ReactionComponent, Referent, SymbolTable, TimeOrder};
 use crate::syntax::suggest;
 
 /// The ground's name.
@@ -193,9 +191,7 @@ fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Refer
 pub fn allowed(name: &str, referent: Referent, context: Context) -> Result<Referent, NameError> {
     let refusal = match (context, referent) {
         (Context::Output, _) | (_, Referent::Parameter(_)) => None,
-        (Context::Constant, Referent::Time) => {
-            Some("only parameters can stand here: this value cannot change in time")
-        }
+        (Context::Constant, Referent::Time) => Some("only parameters can stand here: this value cannot change in time"),
         (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
         (_, Referent::Time) => None,
         (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
@@ -276,8 +272,7 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         return NameError { message, part, help: Some(parts) };
     }
     if table.joint(name).is_some() {
-        let help =
-            (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
+        let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
     let parameters = table.parameters();
@@ -336,8 +331,7 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
             if member == "angle" || member.starts_with("angular_") {
                 let message =
                     format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
-                let help =
-                    "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
+                let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
                 let part = after..after + member.len();
                 return NameError { message, part, help: Some(help.to_owned()) };
             }

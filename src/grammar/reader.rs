@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use symdiff::{Formula, Graph, Spline};
 
 use super::dimension::{self, Kind};
+use super::element::{Quantity, Requirement};
 use super::mapping::Grammar;
 use super::names::{self, Context, NameError};
 use super::quantity::{Dimension, Unit, number_and_unit};
@@ -82,6 +83,11 @@ pub struct Fields<'n> {
 }
 
 impl<'n> Fields<'n> {
+    /// A mapping of one key, whose value stands for all of it.
+    pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
+        Self { at, what, keys, entries: HashMap::from([(key, (node.span.clone(), node))]) }
+    }
+
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<&'n Node> {
         debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
@@ -145,7 +151,8 @@ impl<S: SymbolTable> Reader<'_, S> {
             };
             self.error(entry.key_span.clone(), message, help);
         }
-        let entries = entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
+        let entries =
+            entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
         Some(Fields { at, what, keys, entries })
     }
 
@@ -387,7 +394,8 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Referent::Reaction { joint, component: ReactionComponent::Force } = referent
             && let Some(left) = self.model.equated(joint)
         {
-            let name = |name: &str| self.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+            let name =
+                |name: &str| self.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
             let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
         }
@@ -429,6 +437,35 @@ impl<S: SymbolTable> Reader<'_, S> {
         };
         self.require(node, &formula, |_| true, "");
         Some(formula)
+    }
+
+    /// A formula or a number with its unit that is what it must be.
+    pub fn quantity(&mut self, node: &Node, quantity: &Quantity) -> Option<Formula> {
+        let formula = self.formula(node, quantity.context, quantity.dimension())?;
+        if let Some(Requirement { holds, message }) = quantity.requirement {
+            self.require(node, &formula, holds, message);
+        }
+        Some(formula)
+    }
+
+    /// Reports where the second of two keys is not larger than the first.
+    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
+        for corner in 0..self.corners.len() {
+            let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
+            if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
+                let label = &self.corners[corner].label;
+                let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
+                self.error(fields.key_span(high), message, None);
+                return;
+            }
+        }
+    }
+
+    /// Reports two keys of which only one may be there, at the first.
+    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
+        if fields.get(first).is_some() && fields.get(second).is_some() {
+            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
+        }
     }
 
     /// Like [`Self::formula`], with a requirement on its values: `must be positive`.

@@ -275,3 +275,14 @@ impl Measure {
         matches!(self, Self::Length | Self::Angle | Self::Gap | Self::Rate)
     }
 }
+
+/// An index in a joint, an effect or a value at the start.
+#[derive(Debug)]
+pub enum Reference<'a> {
+    /// Of a body.
+    Body(&'a mut usize),
+    /// Of a body, with one of its points.
+    Point(&'a mut PointRef),
+    /// Of a joint.
+    Joint(&'a mut usize),
+}

@@ -40,6 +40,22 @@ pub enum Axis {
     Z,
 }
 
+/// A number of the frame's axes each, or one for all.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum PerAxis {
+    All(Number),
+    Each([Number; 3]),
+}
+
+/// A number (in the plane, about z), or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum TorqueValue {
+    Scalar(Number),
+    Vector([Number; 3]),
+}
+
 grammar! {
     /// A rotation: one of `rpy`, `axis` with `angle`, and `quaternion`.
     Rotation is "a rotation" {

@@ -2,8 +2,8 @@
 
 use symdiff::Formula;
 
-use crate::grammar::{JointCoordinate, Measure, OnJoint, PointRef, Turning};
 use crate::grammar::quantity::Dimension;
+use crate::grammar::{JointCoordinate, Measure, OnJoint, PointRef, Turning};
 
 /// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
 /// velocities.

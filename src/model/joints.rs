@@ -5,8 +5,8 @@ use symdiff::Formula;
 
 use super::description::Joint;
 use super::file;
-use crate::grammar::mapping::Grammar;
 use super::kinds::JointKind;
+use crate::grammar::mapping::Grammar;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::{Fields, Written};

@@ -239,4 +239,3 @@ pub enum Profile {
         ramp: Formula,
     },
 }
-

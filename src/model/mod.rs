@@ -31,7 +31,8 @@ mod tests;
 mod urdf;
 
 pub use crate::grammar::{
-    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Referent, Rotation, TimeOrder, Turning,
+    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
+    Rotation, TimeOrder, Turning,
 };
 pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
@@ -41,4 +42,3 @@ pub use file::schema;
 pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;
-pub use references::Reference;

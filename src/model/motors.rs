@@ -24,7 +24,8 @@ const PROFILED: [&str; 3] = ["start", "duration", "ramp"];
 pub fn read(reader: &mut Reader, node: &Node, at: Span) -> Option<JointKind> {
     let fields = reader.fields::<file::Motor>(node, at)?;
     let on = reader.on_joint(&fields);
-    let [place, speed, _] = crate::grammar::motions::dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
+    let [place, speed, _] =
+        crate::grammar::motions::dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let motion = prescribed(reader, &fields, place, speed);
     let on = on?;
     Some(JointKind::Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? })

@@ -6,14 +6,14 @@ use std::collections::{HashMap, HashSet};
 use symdiff::Formula;
 
 use super::description::{Parameter, ParameterValue};
-use crate::grammar::dimension::Kind;
 use super::file;
-use crate::grammar::names::Context;
 use super::overrides::Override;
+use super::urdf;
+use crate::grammar::dimension::Kind;
+use crate::grammar::names::Context;
 use crate::grammar::quantity::{Unit, number_and_unit};
 use crate::grammar::reader::{Corner, Written, evaluate};
 use crate::model::names::Reader;
-use super::urdf;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;

@@ -1,13 +1,13 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
-use crate::grammar::{Coordinate, ReactionComponent, Referent, TimeOrder};
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
-use crate::grammar::dimension::Kind;
 use super::file;
+use crate::grammar::dimension::Kind;
 use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::{Fields, Written};
+use crate::grammar::{Coordinate, ReactionComponent, Referent, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
@@ -29,7 +29,11 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     if let Some(value) = turning_value(reader, entry, velocities) {
         return value;
     }
-    let referent = match reader.model.referent(name).ok_or_else(|| crate::grammar::names::unknown(&reader.model, name, Context::Equation)) {
+    let referent = match reader
+        .model
+        .referent(name)
+        .ok_or_else(|| crate::grammar::names::unknown(&reader.model, name, Context::Equation))
+    {
         Ok(referent) => referent,
         Err(error) => {
             let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;

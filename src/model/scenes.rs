@@ -6,9 +6,9 @@
 use std::collections::HashSet;
 
 use super::file;
+use super::urdf;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
-use super::urdf;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

@@ -3,9 +3,9 @@
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
 use super::description::Space;
+use crate::grammar::plane::{leaves_plane, leaves_plane_about, points_out, turns_out};
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
-use crate::grammar::plane::{leaves_plane, leaves_plane_about, points_out, turns_out};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Kinds of joints that only make sense in space.

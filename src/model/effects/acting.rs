@@ -4,11 +4,11 @@ use crate::grammar::JointCoordinate;
 use symdiff::{Binary, Formula};
 
 use super::{needed, or_zero, positive, positive_or};
-use crate::model::effect_kinds::{Backlash, Beam, Cable, Drag, Preload, Preloaded, Servo};
-use crate::model::file;
 use crate::grammar::motions::dimensions_of;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
+use crate::model::effect_kinds::{Backlash, Beam, Cable, Drag, Preload, Preloaded, Servo};
+use crate::model::file;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;

@@ -4,15 +4,15 @@ use crate::grammar::JointCoordinate;
 use symdiff::Formula;
 
 use super::{needed, or_zero, positive, positive_or};
+use crate::grammar::motions::dimensions_of;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
 use crate::model::effect_kinds::{
     ClearanceJoint, Contact, DryFriction, Impact, JointFriction, Loss, RestitutionLaw, Rubbing, Stop, Surface,
 };
 use crate::model::file;
 use crate::model::kinds::JointKind;
-use crate::grammar::motions::dimensions_of;
-use crate::grammar::names::Context;
-use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;

@@ -22,7 +22,7 @@ pub use run::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
-use crate::grammar::values::{Components, Direction, Number, Rotation};
+use crate::grammar::values::{Components, Direction, Number, PerAxis, Rotation, TorqueValue};
 
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {

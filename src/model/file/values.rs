@@ -65,14 +65,6 @@ pub enum InertiaFile {
     Full(Tensor),
 }
 
-/// A number of the frame's axes each, or one for all.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PerAxis {
-    All(Number),
-    Each([Number; 3]),
-}
-
 /// A number; three of a vector; or a rotation.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -80,14 +72,6 @@ pub enum StartFile {
     Number(Number),
     Vector([Number; 3]),
     Rotation(Rotation),
-}
-
-/// A number (in the plane, about z), or components.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum TorqueValue {
-    Scalar(Number),
-    Vector([Number; 3]),
 }
 
 #[derive(JsonSchema)]

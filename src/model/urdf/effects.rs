@@ -9,11 +9,11 @@ use symdiff::Formula;
 
 use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
+use crate::grammar::motions::dimensions_of;
 use crate::model::description::Effect;
 use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, Rubbing, Stop};
 use crate::model::effects;
 use crate::model::file;
-use crate::grammar::motions::dimensions_of;
 use crate::model::names::Reader;
 use crate::model::scenes::{self, LeftOut};
 use crate::syntax::source::Span;
