@@ -4,15 +4,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
-const FLOORS: [&str; 12] = [
+const FLOORS: [&str; 13] = [
     "syntax",
+    "grammar",
     "multibody",
+    "numerics",
     "model",
     "reduce",
     "assemble",
     "compile",
     "simulate",
-    "numerics",
     "results",
     "export",
     "study",
