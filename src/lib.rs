@@ -16,8 +16,11 @@ pub mod cli;
 pub mod compile;
 #[doc(hidden)]
 pub mod export;
+pub(crate) mod grammar;
 #[doc(hidden)]
 pub mod model;
+#[doc(hidden)]
+pub mod multibody;
 #[doc(hidden)]
 pub mod numerics;
 #[doc(hidden)]

@@ -4,18 +4,16 @@ mod body;
 mod robot;
 mod simulation;
 mod start;
-mod symbol;
 
 use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
 use super::effect_kinds::EffectKind;
 use super::kinds::JointKind;
-pub use body::{Body, Coordinate, FlexibleBeam, Inertia, Point, PointRef, Rotation};
+pub use body::{Body, FlexibleBeam, Inertia, Point};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, Simulation, Stepping};
 pub use start::StartValue;
-pub use symbol::{EnergyKind, ReactionComponent, Referent};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -106,17 +104,6 @@ pub struct Effect {
     pub name: String,
     /// What it does.
     pub kind: EffectKind,
-}
-
-/// How often a quantity is differentiated by time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum TimeOrder {
-    /// Not at all.
-    Position,
-    /// Once.
-    Velocity,
-    /// Twice.
-    Acceleration,
 }
 
 /// Something observed.

@@ -8,14 +8,16 @@ use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
-use super::description::{Parameter, ParameterValue, Referent};
-use super::dimension::Kind;
+use super::description::{Parameter, ParameterValue};
 use super::file;
-use super::names::Context;
 use super::overrides::Override;
-use super::quantity::Unit;
-use super::reader::{Reader, Written, evaluate};
 use super::urdf;
+use crate::grammar::Referent;
+use crate::grammar::dimension::Kind;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Unit;
+use crate::grammar::reader::{Written, evaluate};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;

@@ -7,7 +7,8 @@ mod draft;
 
 use self::draft::Draft;
 use super::file;
-use super::reader::{Fields, Reader};
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

@@ -2,41 +2,7 @@
 
 use symdiff::Formula;
 
-/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Coordinate {
-    /// Position of the frame's origin along the ground's x, m.
-    X,
-    /// Position of the frame's origin along the ground's y, m.
-    Y,
-    /// Position of the frame's origin along the ground's z, m.
-    Z,
-    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
-    Angle,
-    /// Euler parameter p0 (cosine of half the angle) to p3.
-    Euler(usize),
-}
-
-impl Coordinate {
-    /// The Euler parameters.
-    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
-
-    /// Whether it is a length rather than a part of the orientation.
-    pub fn is_length(self) -> bool {
-        matches!(self, Self::X | Self::Y | Self::Z)
-    }
-}
-
-/// A rotation from one frame to another.
-#[derive(Clone, Debug)]
-pub enum Rotation {
-    /// Turned about the fixed x, then y, then z, rad.
-    RollPitchYaw([Formula; 3]),
-    /// About an axis of any length but zero, by an angle in rad.
-    AxisAngle([Formula; 3], Formula),
-    /// Euler parameters p0 to p3, of any length but zero.
-    Quaternion([Formula; 4]),
-}
+use crate::grammar::{Coordinate, Rotation};
 
 /// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
 /// URDF. A body that only turns about z needs no more than zz.
@@ -121,13 +87,4 @@ pub struct Point {
     pub position: [Formula; 3],
     /// From the frame at the point to the body's; absent where their axes are parallel.
     pub rotation: Option<Rotation>,
-}
-
-/// A point of a body; the frame's origin where `point` is absent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointRef {
-    /// Index into [`Description::bodies`]; 0 is the ground.
-    pub body: usize,
-    /// Index into that body's points.
-    pub point: Option<usize>,
 }

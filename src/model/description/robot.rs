@@ -1,6 +1,6 @@
 //! The links and joints of a URDF, as the file has them.
 
-use super::PointRef;
+use crate::grammar::PointRef;
 
 /// The links and joints of a URDF, which the bodies and joints of the model were made of.
 #[derive(Clone, Debug)]

@@ -2,8 +2,7 @@
 
 use symdiff::Formula;
 
-use super::{Coordinate, Rotation, TimeOrder};
-use crate::model::kinds::JointCoordinate;
+use crate::grammar::{Coordinate, JointCoordinate, Rotation, TimeOrder};
 
 /// A value at the start; formulas are of parameters.
 #[derive(Clone, Debug)]

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
+use crate::grammar::reader::{Corner, evaluate};
 use crate::model::description::{Parameter, ParameterValue};
-use crate::model::reader::{Corner, Reader, evaluate};
+use crate::model::names::Reader;
 use crate::syntax::source::Span;
 
 /// Uncertain parameters up to which every corner is checked; beyond, one parameter at a time.

@@ -1,11 +1,13 @@
 //! How far a parameter may deviate: `tolerance`, `interval`, `plus` and `minus`.
 
 use super::{Draft, Spec};
-use crate::model::description::{ParameterValue, Referent};
-use crate::model::dimension::Kind;
-use crate::model::names::Context;
-use crate::model::quantity::number_and_unit;
-use crate::model::reader::{Reader, Written, evaluate};
+use crate::grammar::Referent;
+use crate::grammar::dimension::Kind;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::number_and_unit;
+use crate::grammar::reader::{Written, evaluate};
+use crate::model::description::ParameterValue;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 use crate::syntax::yaml::Node;

@@ -1,7 +1,7 @@
 //! The order in which parameters are evaluated.
 
 use super::Draft;
-use crate::model::reader::Reader;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 

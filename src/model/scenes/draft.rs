@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use super::{LeftOut, unknown};
-use crate::model::reader::{Fields, Reader};
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::model::urdf;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

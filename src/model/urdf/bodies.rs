@@ -8,8 +8,9 @@
 
 use super::algebra::{self, Value, Vector};
 use super::source::{Pose, Source, formula, formulas};
-use crate::model::description::{Body, Coordinate, Inertia};
-use crate::model::reader::Reader;
+use crate::grammar::Coordinate;
+use crate::model::description::{Body, Inertia};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².

@@ -7,8 +7,9 @@ use super::bodies::{Group, body};
 use super::joints::{joint, mimic};
 use super::robot::{Joint as UrdfJoint, Kind, Number};
 use super::source::{Built, Pose, Source, coordinate, point};
-use crate::model::description::{PointRef, RobotTree, TreeJoint, TreeLink};
-use crate::model::reader::Reader;
+use crate::grammar::PointRef;
+use crate::model::description::{RobotTree, TreeJoint, TreeLink};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.

@@ -5,9 +5,10 @@ use symdiff::Formula;
 use super::algebra::{self, Value};
 use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
-use crate::model::description::{Joint, PointRef};
-use crate::model::kinds::{JointKind, Turning};
-use crate::model::reader::Reader;
+use crate::grammar::{PointRef, Turning};
+use crate::model::description::Joint;
+use crate::model::kinds::JointKind;
+use crate::model::names::Reader;
 
 /// Adds a joint that moves, with the frame it is at on its parent.
 pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {

@@ -10,7 +10,7 @@ use urdf_rs::JointType;
 use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
 use super::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
 use super::{check, tree};
-use crate::model::names;
+use crate::grammar::names;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

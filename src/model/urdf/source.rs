@@ -6,9 +6,9 @@ use symdiff::Formula;
 
 use super::algebra::{self, Quaternion, Value, Vector};
 use super::robot::{Kind, Number, Robot};
-use crate::model::description::{Point, PointRef, Rotation};
-use crate::model::kinds::JointCoordinate;
-use crate::model::reader::Reader;
+use crate::grammar::{JointCoordinate, PointRef, Rotation};
+use crate::model::description::Point;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What is read of a URDF, and how numbers are looked at.

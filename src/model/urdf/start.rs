@@ -7,8 +7,9 @@ use symdiff::Formula;
 use super::algebra::{self, Value};
 use super::robot::{Kind, Number};
 use super::source::{Built, Pose, Source, coordinate, formula, formulas};
-use crate::model::description::{Coordinate, Output, Rotation, StartValue, TimeOrder};
-use crate::model::reader::Reader;
+use crate::grammar::{Coordinate, Rotation, TimeOrder};
+use crate::model::description::{Output, StartValue};
+use crate::model::names::Reader;
 
 /// The zero configuration, for what the model says nothing of.
 pub fn start(reader: &mut Reader, source: &Source, built: &Built) {
