@@ -3,12 +3,13 @@
 
 use symdiff::{Binary, Formula};
 
-use super::description::{Coordinate, Description, Effect, PointRef};
+use super::description::{Coordinate, Description, Effect};
 use super::effect_kinds::{Beam, EffectKind};
 use super::file;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::Reader;
+use crate::elements::PointRef;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Elements of a beam that does not say how many.

@@ -3,13 +3,13 @@
 use symdiff::Formula;
 
 use super::beams;
-use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
+use super::description::{Body, Coordinate, Inertia, Point, Rotation};
 use super::file;
-use super::kinds::JointCoordinate;
 use super::motions::is_motion;
 use super::names::{Context, GROUND};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
+use crate::elements::{JointCoordinate, PointRef};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};

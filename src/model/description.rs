@@ -4,7 +4,7 @@ use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
 use super::effect_kinds::{EffectKind, Measure};
-use super::kinds::{JointCoordinate, JointKind};
+use crate::elements::{JointCoordinate, JointKind, PointRef};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -263,15 +263,6 @@ pub struct Point {
     pub rotation: Option<Rotation>,
 }
 
-/// A point of a body; the frame's origin where `point` is absent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointRef {
-    /// Index into [`Description::bodies`]; 0 is the ground.
-    pub body: usize,
-    /// Index into that body's points.
-    pub point: Option<usize>,
-}
-
 /// A named joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
@@ -279,6 +270,15 @@ pub struct Joint {
     pub name: String,
     /// What it constrains.
     pub kind: JointKind,
+    /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
+    pub merged: bool,
+}
+
+impl Joint {
+    /// A joint whose bodies move as two.
+    pub fn new(name: String, kind: JointKind) -> Self {
+        Self { name, kind, merged: false }
+    }
 }
 
 /// A named effect.

@@ -2,9 +2,8 @@
 
 use symdiff::Formula;
 
-use super::description::PointRef;
-use super::kinds::{JointCoordinate, Turning};
 use super::quantity::Dimension;
+use crate::elements::{AngleOf, JointCoordinate, OnJoint, PointRef};
 
 /// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
 /// velocities.
@@ -108,14 +107,6 @@ pub enum EffectKind {
     Preload(Preload),
     /// A beam of the plane: a massless one, or an element of a flexible body.
     Beam(Beam),
-}
-
-/// A joint's coordinate that an effect acts on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub struct OnJoint {
-    pub joint: usize,
-    pub coordinate: JointCoordinate,
 }
 
 /// How dry friction depends on the speed of sliding.
@@ -302,7 +293,7 @@ pub struct Cable {
 #[derive(Clone, Debug)]
 pub struct Backlash {
     #[allow(missing_docs)]
-    pub between: [Turning; 2],
+    pub between: [AngleOf; 2],
     /// Angle of the second per angle of the first.
     pub ratio: Formula,
     /// rad
@@ -474,9 +465,9 @@ impl EffectKind {
             | Self::Servo(Servo { on, .. })
             | Self::Preload(Preload { on: Preloaded::Joint(on), .. }) => vec![*on],
             Self::Backlash(Backlash { between, .. }) => {
-                let joint = |turning: &Turning| match turning {
-                    Turning::Joint(joint) => Some(angle(*joint)),
-                    Turning::Body(_) => None,
+                let joint = |angle_of: &AngleOf| match angle_of {
+                    AngleOf::Joint(joint) => Some(angle(*joint)),
+                    AngleOf::Body(_) => None,
                 };
                 between.iter().filter_map(joint).collect()
             }

@@ -9,10 +9,10 @@ pub(super) use self::touching::impact;
 use super::description::Effect;
 use super::effect_kinds::{EffectKind, Twisted};
 use super::file;
-use super::kinds::JointCoordinate;
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
+use crate::elements::JointCoordinate;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Reads the effects. A formula may speak of what its own effect and those before it measure.

@@ -1,8 +1,8 @@
 //! Parts of motions that names can speak of: `body.vx`, `body.omega.z`, `joint.angle`.
 
 use super::description::{Coordinate, TimeOrder};
-use super::kinds::JointCoordinate;
 use super::quantity::Dimension;
+use crate::elements::JointCoordinate;
 
 /// A part of a motion: its name, what it is a part of, how often that is differentiated.
 pub type Motion<T> = (&'static str, T, TimeOrder);

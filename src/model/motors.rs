@@ -4,12 +4,12 @@ use std::convert::Infallible;
 
 use symdiff::{Formula, Graph};
 
-use super::effect_kinds::OnJoint;
 use super::file;
-use super::kinds::{JointCoordinate, JointKind, Prescribed, Profile};
 use super::names::Context;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
+use crate::elements::joints::{JointKind, Motor, Prescribed, Profile};
+use crate::elements::{JointCoordinate, OnJoint};
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
@@ -59,7 +59,7 @@ pub fn read(reader: &mut Reader, node: &Node, at: Span) -> Option<JointKind> {
     let [place, speed, _] = dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let motion = prescribed(reader, &fields, place, speed);
     let on = on?;
-    Some(JointKind::Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? })
+    Some(Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? }.into())
 }
 
 fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dimension) -> Option<Prescribed> {

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use super::description::{Coordinate, Description, EnergyKind, PointRef, ReactionComponent, Referent, TimeOrder};
+use super::description::{Coordinate, Description, EnergyKind, ReactionComponent, Referent, TimeOrder};
 use super::dimension::Kind;
-use super::kinds::JointCoordinate;
 use super::motions::{
     ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
+use crate::elements::{JointCoordinate, PointRef};
 use crate::syntax::suggest;
 
 /// The ground's name.

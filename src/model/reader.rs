@@ -11,7 +11,6 @@ use symdiff::{Formula, Graph, Spline};
 use super::description::{Description, ReactionComponent, Referent};
 use super::dimension::{self, Kind};
 use super::file::Grammar;
-use super::kinds::JointKind;
 use super::names::{self, Context};
 use super::quantity::{Dimension, Unit, number_and_unit};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -337,7 +336,7 @@ impl Reader<'_> {
     /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
     fn kind_of(&self, referent: Referent) -> Kind {
         if let Referent::Reaction { joint, component: ReactionComponent::Force } = referent
-            && let JointKind::Equation { left, .. } = &self.model.joints[joint].kind
+            && let Some([left, _]) = self.model.joints[joint].kind.equation()
         {
             let name =
                 |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));

@@ -25,7 +25,9 @@ use symdiff::{Binary, Expr, Graph};
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
-use crate::model::{JointCoordinate, Prescribed, Profile, TimeOrder};
+use crate::elements::JointCoordinate;
+use crate::elements::joints::{Prescribed, Profile};
+use crate::model::TimeOrder;
 
 use super::{Row, axis_in_ground};
 

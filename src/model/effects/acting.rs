@@ -3,10 +3,10 @@
 use symdiff::{Binary, Formula};
 
 use super::{needed, or_zero, positive, positive_or};
+use crate::elements::JointCoordinate;
 use crate::model::effect_kinds::{Backlash, Beam, Cable, Drag, Preload, Preloaded, Servo};
 use crate::model::file;
-use crate::model::joints::turning;
-use crate::model::kinds::JointCoordinate;
+use crate::model::joints::angles_of;
 use crate::model::motors::{dimensions_of, on_joint};
 use crate::model::names::Context;
 use crate::model::quantity::Dimension;
@@ -81,7 +81,7 @@ pub fn cable(reader: &mut Reader, node: &Node, at: Span) -> Option<Cable> {
 
 pub fn backlash(reader: &mut Reader, node: &Node, at: Span) -> Option<Backlash> {
     let fields = reader.fields::<file::Backlash>(node, at)?;
-    let between = reader.required(&fields, "between").and_then(|node| turning(reader, node));
+    let between = reader.required(&fields, "between").and_then(|node| angles_of(reader, node));
     let ratio = reader.required(&fields, "ratio").and_then(|node| {
         let holds = |value| value != 0.0;
         reader.formula_that(node, Context::Constant, Dimension::NUMBER, holds, "must not be zero")

@@ -8,11 +8,11 @@ use symdiff::Formula;
 
 use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
+use crate::elements::{JointCoordinate, OnJoint};
 use crate::model::description::Effect;
-use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, OnJoint, Rubbing, Stop};
+use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, Rubbing, Stop};
 use crate::model::effects;
 use crate::model::file;
-use crate::model::kinds::JointCoordinate;
 use crate::model::motors::dimensions_of;
 use crate::model::reader::Reader;
 use crate::model::scenes::{self, LeftOut};
