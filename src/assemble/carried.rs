@@ -12,7 +12,7 @@
 use symdiff::{Expr, Graph};
 
 use crate::elements::joints::Mobilizer;
-use crate::elements::{JointCoordinate, PointRef};
+use crate::grammar::{JointCoordinate, PointRef};
 
 use super::body::{ANGLE, Attitude, EULER, Turn};
 use super::error::BuildError;

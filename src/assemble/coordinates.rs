@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::elements::JointCoordinate;
+use crate::grammar::JointCoordinate;
 use crate::model::{Description, Referent, StartValue, TimeOrder};
 
 use super::body::ANGLE;

@@ -17,7 +17,7 @@ use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 use symdiff::{Expr, Formula, Graph};
 
 use crate::elements::joints::{Orientation, Separation};
-use crate::elements::{JointCoordinate, PointRef};
+use crate::grammar::{JointCoordinate, PointRef};
 
 use super::body::{ANGLE, Body, EULER, Turn};
 use super::error::BuildError;

@@ -21,7 +21,7 @@
 
 use symdiff::{Expr, Graph};
 
-use crate::elements::JointCoordinate;
+use crate::grammar::JointCoordinate;
 
 use super::body::{Body, EULER, Turn};
 use super::effects::Loads;

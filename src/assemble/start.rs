@@ -2,8 +2,8 @@
 
 use symdiff::{Expr, Formula, Graph};
 
-use crate::elements::JointCoordinate;
 use crate::elements::joints::{Placement, Separation};
+use crate::grammar::JointCoordinate;
 use crate::model::{Coordinate, StartValue, TimeOrder};
 
 use super::body::EULER;

@@ -6,8 +6,8 @@
 
 use std::collections::VecDeque;
 
-use crate::elements::PointRef;
 use crate::elements::joints::Mobilizer;
+use crate::grammar::PointRef;
 use crate::model::{Description, StartValue};
 
 /// A joint that carries a body.

@@ -2,8 +2,8 @@
 
 use symdiff::Formula;
 
-use super::quantity::Dimension;
-use crate::elements::{AngleOf, JointCoordinate, OnJoint, PointRef};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{JointCoordinate, Measure, OnJoint, PointRef, Turning};
 
 /// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
 /// velocities.
@@ -293,7 +293,7 @@ pub struct Cable {
 #[derive(Clone, Debug)]
 pub struct Backlash {
     #[allow(missing_docs)]
-    pub between: [AngleOf; 2],
+    pub between: [Turning; 2],
     /// Angle of the second per angle of the first.
     pub ratio: Formula,
     /// rad
@@ -343,51 +343,6 @@ pub struct Beam {
     pub damping: Formula,
     /// μ, kg/m; absent where it is massless. The bodies of an element with mass need none of their own.
     pub mass_per_length: Option<Formula>,
-}
-
-/// Something that an effect measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)] // the names say it
-pub enum Measure {
-    Length,
-    Angle,
-    Gap,
-    Rate,
-    Load,
-    Force,
-    Torque,
-    StartTorque,
-    Friction,
-}
-
-impl Measure {
-    /// What pushes a joint's coordinate.
-    pub fn of_effort(coordinate: JointCoordinate) -> Self {
-        match coordinate {
-            JointCoordinate::Angle => Self::Torque,
-            JointCoordinate::Displacement => Self::Force,
-        }
-    }
-
-    /// Its name, as in `spring.length`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Angle => "angle",
-            Self::Gap => "gap",
-            Self::Rate => "rate",
-            Self::Load => "load",
-            Self::Force => "force",
-            Self::Torque => "torque",
-            Self::StartTorque => "start_torque",
-            Self::Friction => "friction",
-        }
-    }
-
-    /// Whether it follows from positions and velocities alone, so that the effect's own formulas may speak of it.
-    pub fn is_motion(self) -> bool {
-        matches!(self, Self::Length | Self::Angle | Self::Gap | Self::Rate)
-    }
 }
 
 /// Whose angle a torsional spring twists.
@@ -465,9 +420,9 @@ impl EffectKind {
             | Self::Servo(Servo { on, .. })
             | Self::Preload(Preload { on: Preloaded::Joint(on), .. }) => vec![*on],
             Self::Backlash(Backlash { between, .. }) => {
-                let joint = |angle_of: &AngleOf| match angle_of {
-                    AngleOf::Joint(joint) => Some(angle(*joint)),
-                    AngleOf::Body(_) => None,
+                let joint = |turning: &Turning| match turning {
+                    Turning::Joint(joint) => Some(angle(*joint)),
+                    Turning::Body(_) => None,
                 };
                 between.iter().filter_map(joint).collect()
             }

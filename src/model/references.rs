@@ -2,34 +2,23 @@
 
 use symdiff::Formula;
 
-use super::description::{Body, Rotation, StartValue};
+use super::description::{Body, StartValue};
 use super::effect_kinds::{
     Backlash, Beam, Cable, ClearanceJoint, Contact, Drag, EffectKind, JointFriction, Preload, Preloaded, Servo, Stop,
     Twisted,
 };
 use crate::elements::joints::*;
-use crate::elements::{AngleOf, PointRef};
-
-/// An index in a joint, an effect or a value at the start.
-#[derive(Debug)]
-pub enum Reference<'a> {
-    /// Of a body.
-    Body(&'a mut usize),
-    /// Of a body, with one of its points.
-    Point(&'a mut PointRef),
-    /// Of a joint.
-    Joint(&'a mut usize),
-}
+use crate::grammar::{PointRef, Reference, Rotation, Turning};
 
 fn points(between: &mut [PointRef; 2]) -> Vec<Reference<'_>> {
     between.iter_mut().map(Reference::Point).collect()
 }
 
-fn angles(between: &mut [AngleOf; 2]) -> Vec<Reference<'_>> {
-    fn one(angle_of: &mut AngleOf) -> Reference<'_> {
+fn angles(between: &mut [Turning; 2]) -> Vec<Reference<'_>> {
+    fn one(angle_of: &mut Turning) -> Reference<'_> {
         match angle_of {
-            AngleOf::Body(body) => Reference::Body(body),
-            AngleOf::Joint(joint) => Reference::Joint(joint),
+            Turning::Body(body) => Reference::Body(body),
+            Turning::Joint(joint) => Reference::Joint(joint),
         }
     }
     between.iter_mut().map(one).collect()

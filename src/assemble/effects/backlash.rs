@@ -14,7 +14,7 @@ use symdiff::{Expr, Graph, Unary};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{AngleOf, Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder};
+use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder, Turning};
 
 use super::positive_part::PositivePart;
 use super::{Loads, Sheet};
@@ -67,20 +67,20 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -
 }
 
 /// An angle, or its rate.
-fn turned(g: &mut Graph, m: &Mechanism, angle_of: AngleOf, order: TimeOrder) -> Expr {
+fn turned(g: &mut Graph, m: &Mechanism, angle_of: Turning, order: TimeOrder) -> Expr {
     match angle_of {
-        AngleOf::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
-        AngleOf::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
+        Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
+        Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
     }
 }
 
-fn add_torque(g: &mut Graph, m: &Mechanism, loads: &mut Loads, on: AngleOf, torque: Expr) -> Result<(), BuildError> {
+fn add_torque(g: &mut Graph, m: &Mechanism, loads: &mut Loads, on: Turning, torque: Expr) -> Result<(), BuildError> {
     match on {
-        AngleOf::Body(body) => {
+        Turning::Body(body) => {
             let zero = g.constant(0.0);
             loads.add_torque_pair(g, 0, body, [zero, zero, torque]);
             Ok(())
         }
-        AngleOf::Joint(joint) => loads.add_joint_torque(g, m, joint, torque),
+        Turning::Joint(joint) => loads.add_joint_torque(g, m, joint, torque),
     }
 }

@@ -15,28 +15,28 @@ use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
-use crate::model::{AngleOf, JointCoordinate, TimeOrder};
+use crate::model::{JointCoordinate, TimeOrder, Turning};
 
 use super::{Row, axis_in_ground};
 
 pub fn rows(
     g: &mut Graph,
     m: &Mechanism,
-    between: [AngleOf; 2],
+    between: [Turning; 2],
     ratio: &Formula,
     offset: &Formula,
 ) -> Result<Vec<Row>, BuildError> {
     let (ratio, offset) = (m.formula(g, ratio, Context::Time)?, m.formula(g, offset, Context::Time)?);
     let [first, second] = between.map(|turning| match turning {
-        AngleOf::Body(body) => m.bodies[body].position[ANGLE],
-        AngleOf::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, TimeOrder::Position),
+        Turning::Body(body) => m.bodies[body].position[ANGLE],
+        Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, TimeOrder::Position),
     });
     let driven = g.mul(ratio, first);
     let difference = g.sub(second, driven);
     let value = g.sub(difference, offset);
     let axis = match between[1] {
-        AngleOf::Body(_) => space::along(g, 2),
-        AngleOf::Joint(joint) => axis_in_ground(g, m, joint, JointCoordinate::Angle)?,
+        Turning::Body(_) => space::along(g, 2),
+        Turning::Joint(joint) => axis_in_ground(g, m, joint, JointCoordinate::Angle)?,
     };
     Ok(vec![Row { name: "", value, force: space::zero(g), torque: space::neg(g, axis) }])
 }

@@ -25,8 +25,8 @@ use symdiff::{Binary, Expr, Graph};
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
-use crate::elements::JointCoordinate;
 use crate::elements::joints::{Prescribed, Profile};
+use crate::grammar::JointCoordinate;
 use crate::model::TimeOrder;
 
 use super::{Row, axis_in_ground};

@@ -1,6 +1,6 @@
 use crate::assemble::System;
 use crate::model::{
-    AngleOf, Backlash, Beam, Cable, Contact, DryFriction, EffectKind, Impact, Loss, Preload, Preloaded, Surface,
+    Backlash, Beam, Cable, Contact, DryFriction, EffectKind, Impact, Loss, Preload, Preloaded, Surface, Turning,
     Twisted,
 };
 
@@ -247,7 +247,7 @@ fn what_takes_nothing_has_its_potential() {
         transition: formula("0.01"),
     };
     let backlash = Backlash {
-        between: [AngleOf::Body(m.body_index("a")), AngleOf::Body(m.body_index("b"))],
+        between: [Turning::Body(m.body_index("a")), Turning::Body(m.body_index("b"))],
         ratio: formula("-1.7"),
         offset: formula("0.1"),
         backlash: formula("0.02"),

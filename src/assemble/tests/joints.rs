@@ -1,6 +1,6 @@
 use crate::assemble::{self, System};
 use crate::elements::joints::*;
-use crate::model::{AngleOf, JointKind};
+use crate::model::{JointKind, Turning};
 
 use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_all_close, assert_close, constraint_forces, output};
@@ -29,7 +29,7 @@ fn kinds(m: &Model) -> Vec<JointKind> {
         JointKind::PinInSlot(PinInSlot { between, axis: pair("1", "2") }),
         JointKind::Distance(Distance { between, length: formula("d") }),
         JointKind::Gear(Gear {
-            between: [AngleOf::Body(1), AngleOf::Body(2)],
+            between: [Turning::Body(1), Turning::Body(2)],
             ratio: formula("-2"),
             offset: formula("0.1"),
         }),

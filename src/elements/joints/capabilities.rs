@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use symdiff::Formula;
 
-use crate::elements::{JointCoordinate, OnJoint, PointRef};
+use crate::grammar::{JointCoordinate, OnJoint, PointRef};
 
 /// A joint, as the stages see it. What a kind does not say has the default: it has not that capability.
 pub trait Joint: Debug {

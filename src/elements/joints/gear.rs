@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use crate::elements::{AngleOf, JointCoordinate, OnJoint};
+use crate::grammar::{Turning, JointCoordinate, OnJoint};
 
 use super::Joint;
 
@@ -10,7 +10,7 @@ use super::Joint;
 #[derive(Clone, Debug)]
 pub struct Gear {
     /// The first and the second.
-    pub between: [AngleOf; 2],
+    pub between: [Turning; 2],
     /// Negative for an external pair.
     pub ratio: Formula,
     /// rad
@@ -20,8 +20,8 @@ pub struct Gear {
 impl Joint for Gear {
     fn coordinates(&self, _: usize) -> Vec<OnJoint> {
         let of_joint = |angle| match angle {
-            AngleOf::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
-            AngleOf::Body(_) => None,
+            Turning::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
+            Turning::Body(_) => None,
         };
         self.between.into_iter().filter_map(of_joint).collect()
     }

@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use crate::elements::{JointCoordinate, OnJoint};
+use crate::grammar::{JointCoordinate, OnJoint};
 
 use super::Joint;
 

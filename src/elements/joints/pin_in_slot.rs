@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use crate::elements::PointRef;
+use crate::grammar::PointRef;
 
 use super::{Joint, Orientation, Placement, Separation};
 

@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use crate::elements::{JointCoordinate, OnJoint, PointRef};
+use crate::grammar::{JointCoordinate, OnJoint, PointRef};
 
 use super::{Joint, Mobilizer, Orientation, Placement, Separation};
 

@@ -1,6 +1,6 @@
 //! Spherical joint: two points coincide.
 
-use crate::elements::PointRef;
+use crate::grammar::PointRef;
 
 use super::{Joint, Orientation, Placement, Separation};
 

@@ -8,6 +8,7 @@
 //!
 //! The others are frames at points of it, named after them.
 
+use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder, Turning};
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
@@ -15,11 +16,8 @@ use symdiff::Formula;
 use super::algebra::{self, Quaternion, Value, Vector};
 use super::robot::{Joint as UrdfJoint, Kind, Number, Robot};
 use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
-use crate::elements::{AngleOf, JointCoordinate, PointRef};
-use crate::model::description::{
-    Body, Coordinate, Inertia, Joint, Output, Point, RobotTree, Rotation, StartValue, TimeOrder, TreeJoint, TreeLink,
-};
-use crate::model::reader::Reader;
+use crate::model::description::{Body, Inertia, Joint, Output, Point, RobotTree, StartValue, TreeJoint, TreeLink};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
@@ -329,7 +327,7 @@ fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) {
     };
     let kind = if joint.kind.turns() && leader.kind.turns() && mimic.multiplier != 0.0 {
         JointKind::from(Gear {
-            between: [AngleOf::Joint(other), AngleOf::Joint(this)],
+            between: [Turning::Joint(other), Turning::Joint(this)],
             ratio: Formula::number(mimic.multiplier),
             offset: Formula::number(mimic.offset),
         })
