@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
 const FLOORS: [&str; 13] = [
-    "syntax", "grammar", "elements", "model", "reduce", "assemble", "compile", "simulate", "numerics", "results",
+    "syntax", "grammar", "numerics", "elements", "model", "reduce", "assemble", "compile", "simulate", "results",
     "export", "study", "cli",
 ];
 
