@@ -15,6 +15,8 @@ pub mod cli;
 #[doc(hidden)]
 pub mod compile;
 #[doc(hidden)]
+pub mod elements;
+#[doc(hidden)]
 pub mod export;
 pub(crate) mod grammar;
 #[doc(hidden)]
