@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::newton_matrix::ITERATION;
-use super::sparse_lu::{Factors, NoFactors, Numbers, PROBES, Pivoting, factorise};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::step::{Mode, Watched, WatchedPivot};
 
 /// Where numbers grow more than this in the elimination, pivots are chosen anew, fewer of them.
@@ -99,7 +99,7 @@ impl Choice<'_> {
                 "a constraint's row ends before its own multiplier"
             );
             regular.rows[row].push((row, value));
-            numbers.insert(place + offset, [-weight; PROBES]);
+            numbers.insert(place + offset, [-weight; PIVOT_SAMPLES]);
         }
         (regular, numbers)
     }

@@ -22,9 +22,9 @@ pub struct EquationsProgram {
     pub constraint: Vec<usize>,
     /// Slots of Φ̇ and of Φ̈, m each, after [`rates`](Self::rates).
     pub constraint_rates: [Vec<usize>; 2],
-    /// Derivatives of the motion's equations after [`slopes`](Self::slopes): by q, v, w and λ.
+    /// Derivatives of the motion's equations after [`jacobian`](Self::jacobian): by q, v, w and λ.
     pub motion_by: [Entries; 4],
-    /// Φ_q after [`slopes`](Self::slopes).
+    /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
     /// Slots of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
@@ -35,7 +35,7 @@ pub struct EquationsProgram {
 
 const RESIDUAL: usize = 0;
 const RATES: usize = 1;
-const SLOPES: usize = 2;
+const JACOBIAN: usize = 2;
 const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
 
@@ -66,8 +66,8 @@ impl EquationsProgram {
     }
 
     /// All first derivatives.
-    pub fn slopes(&self) -> &Tape {
-        &self.lowered.kernels[SLOPES]
+    pub fn jacobian(&self) -> &Tape {
+        &self.lowered.kernels[JACOBIAN]
     }
 
     /// The outputs.
@@ -107,7 +107,7 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
 
     let (n, m) = (system.q.len(), system.lambda.len());
     let slots = |kernel: usize| lowered.outputs[kernel].iter().map(|&slot| slot as usize);
-    let mut derivatives = slots(SLOPES);
+    let mut derivatives = slots(JACOBIAN);
     let mut entries = |matrix: &SparseMatrix| -> Entries {
         matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), slot)| (row, column, slot)).collect()
     };

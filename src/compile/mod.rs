@@ -13,6 +13,6 @@ mod step;
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use layout::Layout;
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
-pub use sparse_lu::{NoFactors, PROBES};
+pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
-pub use step::{Mode, Probe, Program, Watched, WatchedPivot, compile};
+pub use step::{Mode, PivotSample, Program, Watched, WatchedPivot, compile};

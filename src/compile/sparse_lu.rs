@@ -9,10 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use symdiff::{Expr, Graph, SparseMatrix, Stages};
 
 /// Number of states whose numbers guide the choice of pivots.
-pub const PROBES: usize = 4;
+pub const PIVOT_SAMPLES: usize = 4;
 
 /// An entry's value at each probe.
-pub type Numbers = [f64; PROBES];
+pub type Numbers = [f64; PIVOT_SAMPLES];
 
 /// A pivot is at least this large against the largest entry of its column, at every probe.
 const THRESHOLD: f64 = 0.1;
@@ -364,7 +364,7 @@ impl Active<'_> {
     /// |entry| over the largest of its column, at the worst probe.
     fn size_against_column(&self, row: usize, column: usize, singular: f64) -> f64 {
         let numbers = self.rows[row][&column].numbers;
-        (0..PROBES)
+        (0..PIVOT_SAMPLES)
             .map(|probe| {
                 let largest = self.columns[column]
                     .iter()
@@ -439,7 +439,7 @@ impl Active<'_> {
             Some(entry) => self.graph.sub(entry.value, product),
             None => self.graph.neg(product),
         };
-        let before = old.map_or([0.0; PROBES], |entry| entry.numbers);
+        let before = old.map_or([0.0; PIVOT_SAMPLES], |entry| entry.numbers);
         let numbers: Numbers = std::array::from_fn(|probe| before[probe] - ratio[probe] * above.numbers[probe]);
         self.largest = numbers.iter().fold(self.largest, |largest, number| largest.max(number.abs()));
         if self.graph.is_zero(value) {
@@ -530,7 +530,7 @@ mod tests {
             for (column, &value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
                 let expr = graph.constant(value);
                 matrix.rows[row].push((column, expr));
-                numbers.push([value; PROBES]);
+                numbers.push([value; PIVOT_SAMPLES]);
             }
         }
         let scale = vec![1.0; dense.len()];

@@ -24,7 +24,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
-use super::sparse_lu::{NoFactors, Numbers, PROBES, Pivoting, factorise};
+use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use crate::assemble::{StartCondition, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
@@ -44,8 +44,8 @@ pub struct StartProgram {
     pub constraint_rate: Vec<usize>,
     /// Slots of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
-    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::slopes`].
-    pub slope_entries: Vec<(usize, usize, usize)>,
+    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::jacobian`].
+    pub jacobian_entries: Vec<(usize, usize, usize)>,
     lowered: Lowered,
 }
 
@@ -54,7 +54,7 @@ const GUESS: usize = 1;
 const POSITION: usize = 2;
 const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
-const SLOPES: usize = 5;
+const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
 
 impl StartProgram {
@@ -104,8 +104,8 @@ impl StartProgram {
     }
 
     /// Φ_q.
-    pub fn slopes(&self) -> &Tape {
-        &self.lowered.kernels[SLOPES]
+    pub fn jacobian(&self) -> &Tape {
+        &self.lowered.kernels[JACOBIAN]
     }
 }
 
@@ -174,13 +174,13 @@ pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Res
     let tail = |kernel: usize, skip: usize| {
         lowered.outputs[kernel].iter().skip(skip).map(|&slot| slot as usize).collect::<Vec<_>>()
     };
-    let slope_entries =
-        slopes.entries().zip(tail(SLOPES, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
+    let jacobian_entries =
+        slopes.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
     Ok(StartProgram {
         constraint: tail(POSITION, n),
         constraint_rate: tail(VELOCITY, n),
         outputs: tail(OBSERVE, 0),
-        slope_entries,
+        jacobian_entries,
         layout,
         lowered,
     })
@@ -326,7 +326,7 @@ impl Builder<'_> {
 
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-        self.at_probe(&entries).into_iter().map(|value| [value; PROBES]).collect()
+        self.at_probe(&entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
     }
 
     /// Σ Φ_ki² / metric_ii: a constraint's own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.

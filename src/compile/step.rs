@@ -6,12 +6,12 @@ use super::elimination::{Choice, Elimination, Version, is_worth_it};
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::scheme::{Coefficients, Scheme};
-use super::sparse_lu::{NoFactors, Numbers, PROBES, Pivoting};
+use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting};
 use crate::assemble::System;
 
 /// A state that guides the choice of pivots: values of the layout's first slots (parameters to λ), at a step size.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Probe {
+pub struct PivotSample {
     /// Values of the slots below `layout.slots()`.
     pub values: Vec<f64>,
 }
@@ -157,7 +157,7 @@ pub fn compile(
     system: &System,
     scheme: Scheme,
     redundant: &[usize],
-    probes: &[Probe; PROBES],
+    probes: &[PivotSample; PIVOT_SAMPLES],
 ) -> Result<Program, NoFactors> {
     let (n, m) = (system.q.len(), system.lambda.len());
     let layout = Layout::new(system.parameters.len(), n, m);
@@ -275,7 +275,7 @@ fn mass_blocks(system: &System) -> Vec<usize> {
 }
 
 /// Values of the matrix's entries at each probe.
-fn probe_numbers(graph: &Graph, matrix: &SparseMatrix, inputs: &[Input], probes: &[Probe; PROBES]) -> Vec<Numbers> {
+fn probe_numbers(graph: &Graph, matrix: &SparseMatrix, inputs: &[Input], probes: &[PivotSample; PIVOT_SAMPLES]) -> Vec<Numbers> {
     let slot_of: rustc_hash::FxHashMap<Expr, usize> =
         inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
