@@ -118,7 +118,9 @@ impl Run<'_> {
 impl Enclosed {
     /// Whether smaller pieces of it may go further.
     fn piece_can_help(&self, parameters: usize) -> bool {
-        matches!(self.lost, Some((_, EnclosureError::Unproven))) && parameters > 0 && self.piece.lower != self.piece.upper
+        matches!(self.lost, Some((_, EnclosureError::Unproven)))
+            && parameters > 0
+            && self.piece.lower != self.piece.upper
     }
 }
 

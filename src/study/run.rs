@@ -14,7 +14,9 @@ use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, Expand,
 use crate::numerics::{BandError, ParameterBox, corners, probes, time_error, time_error_certified, validation};
 use crate::results::{Band, Bounds, Contribution, Method, OutputBounds};
 use crate::results::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, SingularSummary, Summary};
-use crate::simulate::{Observed, ToleranceSchedule, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
+use crate::simulate::{
+    Observed, Schedule, SimulationError, Simulator, Stop, ToleranceSchedule, schedule_for_tolerance,
+};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
 const PILOT_CORNERS: usize = 16;

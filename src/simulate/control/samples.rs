@@ -155,12 +155,13 @@ impl<'s> Control<'s> {
     fn error_ratios(&mut self, step: f64, end: f64) -> Vec<f64> {
         let converged = self.stepper.try_step(step, end);
         let lanes = self.stepper.alive().iter().zip(converged).zip(self.stepper.local_errors());
-        let ratio = |((running, converged), error): ((&bool, bool), &LocalError)| {
-            match self.controller.error_ratio(error.size, step) {
-                _ if !running => 0.0,
-                ratio if converged && !ratio.is_nan() => ratio,
-                _ => f64::INFINITY,
-            }
+        let ratio = |((running, converged), error): ((&bool, bool), &LocalError)| match self
+            .controller
+            .error_ratio(error.size, step)
+        {
+            _ if !running => 0.0,
+            ratio if converged && !ratio.is_nan() => ratio,
+            _ => f64::INFINITY,
         };
         lanes.map(ratio).collect()
     }
@@ -177,9 +178,7 @@ impl<'s> Control<'s> {
         let later = goal.max(time + LOOK_AHEAD * self.output_step);
         let error = match self.simulator.open_constraint(&self.stepper.lane(lane), later) {
             Some(open) => self.simulator.locked(open, time, parameters),
-            None if self.count == MOST_STEPS => {
-                SimulationError::TooManySteps { steps: self.count, step, time, cause }
-            }
+            None if self.count == MOST_STEPS => SimulationError::TooManySteps { steps: self.count, step, time, cause },
             None => SimulationError::StepTooSmall { step: self.h, time, cause, parameters },
         };
         failing.iter().for_each(|&lane| self.stepper.retire(lane..lane + 1));

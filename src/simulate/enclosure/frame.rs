@@ -24,7 +24,7 @@ use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::matrix::{Models, apply_bounds, larger};
-use super::{Gains, EnclosureError};
+use super::{EnclosureError, Gains};
 
 /// Independent coordinates are chosen anew when another moves this many times as much.
 const OUTRUN: f64 = 2.0;

@@ -52,4 +52,3 @@ pub fn jacobian_rows(system: &System, start: &StartProgram, state: &[f64]) -> Ve
     }
     rows
 }
-
