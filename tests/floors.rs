@@ -4,8 +4,22 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
-const FLOORS: [&str; 11] =
-    ["syntax", "model", "reduce", "assemble", "compile", "simulate", "numerics", "results", "export", "study", "cli"];
+const FLOORS: [&str; 14] = [
+    "syntax",
+    "grammar",
+    "multibody",
+    "numerics",
+    "elements",
+    "model",
+    "reduce",
+    "assemble",
+    "compile",
+    "simulate",
+    "results",
+    "export",
+    "study",
+    "cli",
+];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
