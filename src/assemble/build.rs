@@ -240,7 +240,7 @@ impl Constraints {
 }
 
 /// Unit of a row's Φ: m where its multiplier is a force, rad where it is a torque alone.
-fn residual_unit(g: &Graph, row: &Row) -> ResidualUnit {
+fn residual_unit(g: &Builder, row: &Row) -> ResidualUnit {
     let is_zero = |vector: &[Expr; 3]| vector.iter().all(|&component| g.is_zero(component));
     match (is_zero(&row.force), is_zero(&row.torque)) {
         (false, _) => ResidualUnit::Length,
