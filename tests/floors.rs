@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
-const FLOORS: [&str; 11] =
-    ["syntax", "numerics", "model", "reduce", "assemble", "compile", "simulate", "results", "export", "study", "cli"];
+const FLOORS: [&str; 11] = [
+    "syntax", "numerics", "methods", "model", "reduce", "assemble", "compile", "simulate", "results", "export",
+    "study", "cli",
+];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

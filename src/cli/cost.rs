@@ -9,7 +9,8 @@ use super::run::{results_of, set_once};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{prepare_folder, write_cost};
-use crate::model::{BoundsRequest, Description, Stepping};
+use crate::methods::BoundsRequest;
+use crate::model::{Description, Stepping};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 

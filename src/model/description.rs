@@ -2,9 +2,9 @@
 
 use symdiff::Formula;
 
-use super::bounds_request::BoundsRequest;
 use super::effect_kinds::{EffectKind, Measure};
 use super::kinds::{JointCoordinate, JointKind};
+use crate::methods::BoundsRequest;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///

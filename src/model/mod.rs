@@ -3,7 +3,6 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
-mod bounds_request;
 mod catalog;
 mod description;
 mod dimension;
@@ -35,7 +34,6 @@ mod tests;
 mod urdf;
 mod vectors;
 
-pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use effect_kinds::*;

@@ -1,6 +1,7 @@
 //! The whole way from text to description.
 
 use super::*;
+use crate::methods::Degree;
 use symdiff::Formula;
 
 const SLIDER_CRANK: &str = include_str!("../../models/slider_crank.yaml");

@@ -8,7 +8,8 @@ mod explanation;
 mod merge;
 mod summary;
 
-pub use bounds::{Band, Bounds, Contribution, Method, OutputBounds, foremost};
+pub use crate::methods::Method;
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, foremost};
 #[cfg(test)]
 pub(crate) use cost::tests as cost_tests;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};
@@ -17,6 +18,6 @@ pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
 pub use summary::{
-    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary, SubsystemSummary,
-    Summary,
+    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    SubsystemSummary, Summary,
 };

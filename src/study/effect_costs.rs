@@ -113,9 +113,8 @@ fn step_instructions(program: &Program, active: bool) -> StepInstructions {
 }
 
 fn difference(with: &Simulator, without: &Simulator) -> EffectCost {
-    let [acting, apart] = [true, false].map(|active| {
-        step_instructions(&with.program, active).beyond(step_instructions(&without.program, active))
-    });
+    let [acting, apart] = [true, false]
+        .map(|active| step_instructions(&with.program, active).beyond(step_instructions(&without.program, active)));
     EffectCost { acting, apart: (acting != apart).then_some(apart) }
 }
 

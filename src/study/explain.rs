@@ -1,9 +1,9 @@
 //! `mbint explain`: what a model is compiled to.
 
-use super::{RunError, prepare_whole};
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::subsystems::{Prepared, prepare};
+use super::{RunError, prepare_whole};
 use crate::compile::Program;
 use crate::model::Description;
 use crate::reduce::Choices;
@@ -86,8 +86,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
             .collect(),
         outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
         instructions: instruction_counts(program, true),
-        apart: Some(instruction_counts(program, false))
-            .filter(|apart| *apart != instruction_counts(program, true)),
+        apart: Some(instruction_counts(program, false)).filter(|apart| *apart != instruction_counts(program, true)),
         newton: NewtonMatrix {
             size: program.residual.len(),
             nonzeros,

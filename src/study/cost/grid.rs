@@ -1,8 +1,8 @@
 //! The settings that a study tries: methods, orders, points and steps.
 
-use crate::model::{
-    BoundsRequest, ChebyshevRequest, Description, Expand, RangeKind, ScanRequest, Simulation, Stepping, TaylorRequest,
-};
+use crate::methods::{BoundsRequest, Chebyshev, Expand, Scan, Taylor};
+use crate::model::{Description, Simulation, Stepping};
+use crate::numerics::RangeKind;
 use crate::results::CostMethod;
 use crate::results::Method;
 
@@ -83,7 +83,7 @@ impl Setting {
     pub(super) fn applied(&self, model: &Description) -> Description {
         let k = uncertain(model);
         let chebyshev = |expand, range| BoundsRequest {
-            chebyshev: Some(ChebyshevRequest { expand, range, ..ChebyshevRequest::of_order(self.count, k) }),
+            chebyshev: Some(Chebyshev { expand, range, ..Chebyshev::of_order(self.count, k) }),
             ..BoundsRequest::default()
         };
         let mut model = model.clone();
@@ -93,11 +93,11 @@ impl Setting {
             CostMethod::Tight => chebyshev(Expand::Output, RangeKind::Tight),
             CostMethod::Interval => chebyshev(Expand::Output, RangeKind::Interval),
             CostMethod::Taylor => BoundsRequest {
-                taylor: Some(TaylorRequest { order: self.count, ..TaylorRequest::default() }),
+                taylor: Some(Taylor { order: self.count, ..Taylor::default() }),
                 ..BoundsRequest::default()
             },
             CostMethod::Scan => {
-                BoundsRequest { scan: Some(ScanRequest::of_points(self.count, k)), ..BoundsRequest::default() }
+                BoundsRequest { scan: Some(Scan::of_points(self.count, k)), ..BoundsRequest::default() }
             }
             // One simulation, and no bounds.
             CostMethod::Scheme(_) => BoundsRequest::default(),
