@@ -34,6 +34,7 @@ impl Registered for Certified {
         dashes: Some([14.0, 3.0]),
         is_sampled: false,
         has_sensitivities: false,
+        curves: &[],
     };
 
     fn default_for(_: &Problem) -> Self {

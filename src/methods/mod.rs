@@ -21,7 +21,7 @@ pub use ensemble::{
     Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
     lines,
 };
-pub use registry::{About, BoundingMethod, Problem, Refusal, Registered};
+pub use registry::{About, BoundingMethod, CostCurve, Curve, Problem, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS};
 pub use result::{BandBuilder, Estimate, MethodResult, Sensitivity};
 pub use scan::Scan;

@@ -36,8 +36,60 @@ impl Refusal {
     }
 }
 
+/// What a curve of `mbint cost` varies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Varied {
+    /// The degree of a polynomial.
+    Order,
+    /// Points along each axis.
+    Points,
+}
+
+/// A variant of a method that `mbint cost` tries with several counts.
+#[derive(Clone, Copy, Debug)]
+pub struct CostCurve {
+    /// In files.
+    pub name: &'static str,
+    /// For people.
+    pub label: &'static str,
+    /// Red, green and blue.
+    pub color: [u8; 3],
+    /// What the counts are.
+    pub varied: Varied,
+    /// The counts that are tried.
+    pub counts: &'static [usize],
+    /// Whether outputs have to follow from expanded coordinates.
+    pub composes: bool,
+    /// Simulations that it takes with a count, of k parameters; products of a jet's coefficients count as such.
+    pub simulations: fn(usize, usize) -> f64,
+    /// Asks for it with a count, of k parameters.
+    pub ask: fn(&mut BoundsRequest, usize, usize),
+}
+
+/// A curve of the registry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Curve {
+    /// Its method.
+    pub method: Method,
+    /// Its place among the method's curves.
+    pub place: usize,
+}
+
+impl Curve {
+    /// All curves, method by method.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let of = |method: Method| (0..method.about().curves.len()).map(move |place| Self { method, place });
+        Method::ALL.into_iter().flat_map(of)
+    }
+
+    /// What it is.
+    pub fn about(self) -> &'static CostCurve {
+        &self.method.about().curves[self.place]
+    }
+}
+
 /// What people see of a method.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct About {
     /// In legends.
     pub label: &'static str,
@@ -56,6 +108,8 @@ pub struct About {
     pub is_sampled: bool,
     /// Whether it finds sensitivities.
     pub has_sensitivities: bool,
+    /// What `mbint cost` tries.
+    pub curves: &'static [CostCurve],
 }
 
 /// What the registry needs of a method.

@@ -3,7 +3,7 @@
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
-use super::registry::{About, BoundingMethod, Problem, Refusal, Registered};
+use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
 use super::request::MOST_SIMULATIONS;
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
@@ -40,6 +40,16 @@ impl Registered for Scan {
         dashes: Some([2.0, 6.5]),
         is_sampled: true,
         has_sensitivities: false,
+        curves: &[CostCurve {
+            name: "scan",
+            label: "Scan",
+            color: [130, 25, 80],
+            varied: Varied::Points,
+            counts: &[5, 10, 30],
+            composes: false,
+            simulations: |points, k| (points as f64).powi(k as i32),
+            ask: |request, points, k| request.scan = Some(Scan::of_points(points, k)),
+        }],
     };
 
     fn default_for(problem: &Problem) -> Self {

@@ -5,7 +5,7 @@ use symdiff::jet::JetSpace;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
-use super::registry::{About, BoundingMethod, Problem, Registered};
+use super::registry::{About, BoundingMethod, CostCurve, Problem, Registered, Varied};
 use super::request::Budget;
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
@@ -42,6 +42,17 @@ impl Registered for Taylor {
         dashes: Some([10.0, 7.0]),
         is_sampled: true,
         has_sensitivities: false,
+        curves: &[CostCurve {
+            name: "taylor",
+            label: "Taylor",
+            color: [240, 160, 20],
+            varied: Varied::Order,
+            counts: &[1, 2, 3],
+            composes: false,
+            // Pairs of monomials of at most this degree together: (2k + order) over order.
+            simulations: |order, k| (1..=order).fold(1.0, |pairs, i| pairs * (2 * k + i) as f64 / i as f64),
+            ask: |request, order, _| request.taylor = Some(Taylor { order, ..Taylor::default() }),
+        }],
     };
 
     fn default_for(_: &Problem) -> Self {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
-use super::registry::{About, BoundingMethod, Problem, Refusal, Registered};
+use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
 use super::request::MOST_SIMULATIONS;
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
@@ -82,6 +82,23 @@ impl Chebyshev {
         let degree = Degree::Fixed { order: vec![order; k], nodes: vec![order + 1; k] };
         Self { degree, expand: Expand::Coordinates, range: RangeKind::Tight }
     }
+
+    /// The same with the outputs expanded.
+    pub fn of_outputs(order: usize, k: usize, range: RangeKind) -> Self {
+        Self { expand: Expand::Output, range, ..Self::of_order(order, k) }
+    }
+}
+
+/// A curve of `mbint cost`.
+const fn curve(
+    name: &'static str,
+    label: &'static str,
+    color: [u8; 3],
+    composes: bool,
+    ask: fn(&mut BoundsRequest, usize, usize),
+) -> CostCurve {
+    let simulations = |order: usize, k: usize| ((order + 1) as f64).powi(k as i32);
+    CostCurve { name, label, color, varied: Varied::Order, counts: &[2, 3, 5, 8], composes, simulations, ask }
 }
 
 impl Registered for Chebyshev {
@@ -94,6 +111,17 @@ impl Registered for Chebyshev {
         dashes: None,
         is_sampled: true,
         has_sensitivities: true,
+        curves: &[
+            curve("chebyshev.coordinates", "Chebyshev, composed", [0, 114, 178], true, |request, order, k| {
+                request.chebyshev = Some(Self::of_order(order, k));
+            }),
+            curve("chebyshev.tight", "Chebyshev, tight", [86, 180, 233], false, |request, order, k| {
+                request.chebyshev = Some(Self::of_outputs(order, k, RangeKind::Tight));
+            }),
+            curve("chebyshev.interval", "Chebyshev, Σ|c|", [0, 158, 115], false, |request, order, k| {
+                request.chebyshev = Some(Self::of_outputs(order, k, RangeKind::Interval));
+            }),
+        ],
     };
 
     fn default_for(problem: &Problem) -> Self {

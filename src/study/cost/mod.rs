@@ -14,7 +14,7 @@ mod timing;
 use std::time::Instant;
 
 use super::RunError;
-use crate::methods::{MOST_SIMULATIONS, can_compose};
+use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
 use crate::model::Description;
 use crate::results::{CostMethod, CostPoint, CostStudy, pareto};
 
@@ -131,7 +131,7 @@ fn run_settings(
         };
         let rate = entry(&mut rates, setting.method, 0.0);
         let late = begun.elapsed().as_secs_f64() + *rate * work > options.budget;
-        if late || setting.solves(k) > MOST_SIMULATIONS {
+        if late || setting.simulations(k) > MOST_SIMULATIONS {
             *entry(&mut skipped, setting.method, 0) += 1;
         } else {
             let point = point(model, setting, reference, options, &progress);
@@ -163,8 +163,12 @@ fn point(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CostPoint {
-    let order = (setting.method != CostMethod::Scan).then_some(setting.count);
-    let points = (setting.method == CostMethod::Scan).then_some(setting.count);
+    let varied = match setting.method {
+        CostMethod::Bounds(curve) => Some(curve.about().varied),
+        CostMethod::Scheme(_) => None,
+    };
+    let order = (varied == Some(Varied::Order)).then_some(setting.count);
+    let points = (varied == Some(Varied::Points)).then_some(setting.count);
     let point = CostPoint { order, points, ..CostPoint::without_result(setting.method, setting.stepping) };
     match timed(model, setting, options, progress) {
         Ok(((bounds, summary), seconds)) => {
