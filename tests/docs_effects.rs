@@ -1,11 +1,11 @@
-//! What `docs/effects.md` shows is so: every example is assembled, every effect and picture is there, and what effects cost is
-//! about what is written.
+//! What `docs/guides/effects.md` shows is so: every example is assembled, every effect and picture is there, and what effects
+//! cost is about what is written.
 
 use std::path::Path;
 
 use mbint::{model, study};
 
-const PAGE: &str = include_str!("../docs/effects.md");
+const PAGE: &str = include_str!("../docs/guides/effects.md");
 
 /// The first block is the mechanism; each other replaces or adds sections, or is a model of its own.
 fn models() -> Vec<String> {

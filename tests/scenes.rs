@@ -542,10 +542,10 @@ scenes: { part: { parameters: { reach: { interval: [0.7, 1.2] } } }, whole: { pa
     assert!(covered("part,") < 0.9 && covered("whole,") == 1.0, "{table}");
 }
 
-/// `docs/scenes.md` shows models that are right.
+/// `docs/guides/scenes.md` shows models that are right.
 #[test]
 fn the_examples_are_right() {
-    let page = include_str!("../docs/scenes.md");
+    let page = include_str!("../docs/guides/scenes.md");
     let blocks: Vec<&str> =
         page.split("```").skip(1).step_by(2).filter_map(|block| block.strip_prefix("yaml\n")).collect();
     let model = include_str!("../models/door.yaml");

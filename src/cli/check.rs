@@ -9,7 +9,6 @@ use super::console::{BOLD, Console, count};
 use super::{Failure, Status, tree};
 use crate::model::{self, Description};
 use crate::reduce::{Choices, Reduction};
-use crate::results::Explanation;
 use crate::study::{self, RunError};
 
 /// What is known of a model; an element of the JSON output.
