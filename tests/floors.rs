@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
-const FLOORS: [&str; 11] = [
-    "syntax", "numerics", "methods", "model", "reduce", "assemble", "compile", "simulate", "results", "export",
+const FLOORS: [&str; 13] = [
+    "syntax", "grammar", "numerics", "methods", "model", "reduce", "assemble", "compile", "simulate", "results",
+    "export", "study", "cli",
+];
     "study", "cli",
 ];
 

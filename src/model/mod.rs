@@ -5,16 +5,12 @@
 
 mod catalog;
 mod description;
-mod dimension;
 mod effect_kinds;
 mod kinds;
-mod motions;
 mod names;
-mod quantity;
 mod references;
 
 mod file;
-mod reader;
 
 mod beams;
 mod bodies;
@@ -32,8 +28,15 @@ mod tables;
 #[cfg(test)]
 mod tests;
 mod urdf;
-mod vectors;
 
+<<<<<<< HEAD
+=======
+pub use crate::grammar::{
+    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
+    Rotation, TimeOrder, Turning,
+};
+pub use bounds_request::*;
+>>>>>>> study
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use effect_kinds::*;
@@ -41,4 +44,3 @@ pub use file::schema;
 pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;
-pub use references::Reference;
