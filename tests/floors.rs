@@ -8,8 +8,6 @@ const FLOORS: [&str; 13] = [
     "syntax", "grammar", "numerics", "methods", "model", "reduce", "assemble", "compile", "simulate", "results",
     "export", "study", "cli",
 ];
-    "study", "cli",
-];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

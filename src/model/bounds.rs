@@ -3,16 +3,11 @@
 use std::collections::HashMap;
 
 use super::file;
-<<<<<<< HEAD
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
-use crate::methods::{BoundsRequest, Budget, Chebyshev, Degree, Expand, MOST_SIMULATIONS, Scan, Taylor};
-use crate::numerics::RangeKind;
-=======
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
+use crate::methods::{BoundsRequest, Budget, Chebyshev, Degree, Expand, MOST_SIMULATIONS, Scan, Taylor};
 use crate::model::names::Reader;
->>>>>>> study
+use crate::numerics::RangeKind;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

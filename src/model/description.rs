@@ -2,16 +2,10 @@
 
 use symdiff::Formula;
 
-<<<<<<< HEAD
-use super::effect_kinds::{EffectKind, Measure};
-use super::kinds::{JointCoordinate, JointKind};
-use crate::methods::BoundsRequest;
-=======
-use super::bounds_request::BoundsRequest;
 use super::effect_kinds::EffectKind;
 use super::kinds::JointKind;
 use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
->>>>>>> study
+use crate::methods::BoundsRequest;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///

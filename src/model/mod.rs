@@ -29,14 +29,10 @@ mod tables;
 mod tests;
 mod urdf;
 
-<<<<<<< HEAD
-=======
 pub use crate::grammar::{
     Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
     Rotation, TimeOrder, Turning,
 };
-pub use bounds_request::*;
->>>>>>> study
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use effect_kinds::*;
