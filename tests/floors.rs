@@ -4,9 +4,22 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
-const FLOORS: [&str; 13] = [
-    "syntax", "grammar", "numerics", "methods", "model", "reduce", "assemble", "compile", "simulate", "results",
-    "export", "study", "cli",
+const FLOORS: [&str; 15] = [
+    "syntax",
+    "grammar",
+    "multibody",
+    "numerics",
+    "methods",
+    "elements",
+    "model",
+    "reduce",
+    "assemble",
+    "compile",
+    "simulate",
+    "results",
+    "export",
+    "study",
+    "cli",
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

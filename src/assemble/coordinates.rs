@@ -14,9 +14,10 @@
 
 use std::collections::BTreeSet;
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
-use crate::model::{Description, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning};
+use crate::grammar::JointCoordinate;
+use crate::model::{Description, Referent, StartValue, TimeOrder};
 
 use super::body::ANGLE;
 use super::error::BuildError;
@@ -38,20 +39,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
         }
     };
     for (index, joint) in description.joints.iter().enumerate() {
-        match &joint.kind {
-            JointKind::Screw { .. } => add(index, JointCoordinate::Angle),
-            JointKind::Motor { joint, coordinate, .. } => add(*joint, *coordinate),
-            JointKind::Gear { between, .. } => between.iter().for_each(|turning| {
-                if let Turning::Joint(joint) = turning {
-                    add(*joint, JointCoordinate::Angle);
-                }
-            }),
-            JointKind::Rack { pinion, rack, .. } => {
-                add(*pinion, JointCoordinate::Angle);
-                add(*rack, JointCoordinate::Displacement);
-            }
-            _ => {}
-        }
+        joint.kind.coordinates(index).into_iter().for_each(|on| add(on.joint, on.coordinate));
     }
     for effect in &description.effects {
         effect.kind.coordinates().into_iter().for_each(|on| add(on.joint, on.coordinate));
@@ -74,19 +62,15 @@ fn formulas(description: &Description) -> Vec<&Formula> {
 
 /// Formulas of constraints and effects.
 pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
-    let mut found: Vec<&Formula> = Vec::new();
-    for joint in &description.joints {
-        if let JointKind::Equation { left, right } = &joint.kind {
-            found.extend([left, right]);
-        }
-    }
+    let equations = description.joints.iter().filter_map(|joint| joint.kind.equation());
+    let mut found: Vec<&Formula> = equations.flatten().collect();
     found.extend(description.effects.iter().flat_map(|effect| effect.kind.formulas()));
     found
 }
 
 impl Mechanism<'_> {
     /// A joint's coordinate or its derivative. One that is not a coordinate of its own is an angle of the plane.
-    pub fn joint_coordinate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
+    pub fn joint_coordinate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
         if let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) {
             let list = match order {
                 TimeOrder::Position => &self.q,
@@ -108,7 +92,7 @@ impl Mechanism<'_> {
     }
 
     /// The rate of a joint's coordinate; one that is not a coordinate of its own follows from the bodies' velocities.
-    pub fn joint_rate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
+    pub fn joint_rate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
         let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
         let between = self.description.joints[joint].kind.between();
         let (Some(between), false) =
@@ -133,7 +117,7 @@ impl Mechanism<'_> {
     }
 
     /// The constraints that define a joint's own coordinates: name and Φ.
-    pub fn definitions(&self, g: &mut Graph, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
+    pub fn definitions(&self, g: &Builder, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
         let kind = &self.description.joints[joint].kind;
         let mut rows = Vec::new();
         if self.tree.uses(joint) {

@@ -1,15 +1,15 @@
 //! Whether a mechanism can be described in joint coordinates.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
-use crate::model::{EffectKind, JointFriction, JointKind, Referent, StartValue, Turning};
+use crate::model::{EffectKind, JointFriction, JointKind, Reference, Referent, StartValue};
 
 use super::coordinates::formulas_of_motion;
 use super::mechanism::{Context, Mechanism};
 
 impl Mechanism<'_> {
     /// What is in the way of joint coordinates; `None` where they do.
-    pub fn obstacle(&self, g: &mut Graph) -> Option<String> {
+    pub fn obstacle(&self, g: &Builder) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can carry a body".to_owned());
         }
@@ -20,9 +20,9 @@ impl Mechanism<'_> {
     }
 
     /// Friction by the load of a joint that carries.
-    fn loaded_friction(&self, g: &mut Graph) -> Option<String> {
+    fn loaded_friction(&self, g: &Builder) -> Option<String> {
         let d = self.description;
-        let mut loaded = |friction: &JointFriction| {
+        let loaded = |friction: &JointFriction| {
             let coefficient = self.formula(g, &friction.dry.coefficient, Context::Motion);
             self.tree.uses(friction.joint) && !coefficient.is_ok_and(|coefficient| g.is_zero(coefficient))
         };
@@ -70,12 +70,13 @@ impl Mechanism<'_> {
                 matches!(known, Some(Referent::JointCoordinate { .. } | Referent::Parameter(_) | Referent::Time))
             })
         };
-        let couples = |kind: &JointKind| match kind {
-            JointKind::Equation { left, right } => !(of_joints(left) && of_joints(right)),
-            JointKind::Gear { between, .. } => between.iter().any(|turning| matches!(turning, Turning::Body(_))),
-            _ => false,
+        let acts_on_bodies = |kind: &JointKind| {
+            let of_body = |index: Reference| matches!(index, Reference::Body(_));
+            kind.between().is_none()
+                && (kind.clone().references().into_iter().any(of_body)
+                    || !kind.equation().into_iter().flatten().all(of_joints))
         };
-        let coupling = d.joints.iter().find(|joint| couples(&joint.kind))?;
+        let coupling = d.joints.iter().find(|joint| acts_on_bodies(&joint.kind))?;
         let joint = reaction(d.outputs.iter().map(|output| &output.formula).collect())?;
         Some(format!(
             "an output is the reaction of joint `{joint}`, which carries a body, and what `{}` adds to it is not known",

@@ -14,9 +14,10 @@
 
 use std::collections::VecDeque;
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
-use crate::model::{Beam, Coordinate, EffectKind, JointCoordinate, JointKind, PointRef};
+use crate::elements::joints::{Orientation, Separation};
+use crate::model::{Beam, Coordinate, EffectKind, JointCoordinate, PointRef};
 
 use super::body;
 use super::error::BuildError;
@@ -62,15 +63,15 @@ impl Link {
 }
 
 /// Poses of all bodies.
-pub struct Placement {
+pub struct PlanarPoses {
     links: Vec<Vec<Link>>,
     given: Vec<[Option<f64>; FREEDOMS]>,
     poses: Vec<Option<[f64; FREEDOMS]>>,
 }
 
-impl Placement {
+impl PlanarPoses {
     /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(g: &mut Graph, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+    pub fn of(g: &Builder, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
         let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
             for (freedom, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
@@ -98,7 +99,7 @@ impl Placement {
     }
 
     /// A joint's coordinate.
-    pub fn joint(&self, g: &mut Graph, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
+    pub fn joint(&self, g: &Builder, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
         let kind = &m.description.joints[joint].kind;
         let Some(between) = kind.between() else { return 0.0 };
         let [first, second] = between.map(|point| self.pose(point.body));
@@ -216,23 +217,20 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
 }
 
 /// The joints of each body, and the elements of beams, straight.
-fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
+fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
     for joint in &m.description.joints {
-        let mut value = |formula| {
+        let value = |formula| {
             let expr = m.formula(g, formula, Context::Time)?;
             Ok(m.nominal(g, &[expr])[0])
         };
-        let (between, kind) = match &joint.kind {
-            JointKind::Revolute { between, .. } => (between, LinkKind::Pin),
-            JointKind::Fixed { between, angle, .. } => (between, LinkKind::Weld(value(angle)?)),
-            JointKind::Prismatic { between, angle, .. } => (between, LinkKind::Slide(value(angle)?)),
-            JointKind::PinInSlot { between, .. }
-            | JointKind::PointOnLine { between, .. }
-            | JointKind::PointOnPlane { between, .. } => (between, LinkKind::Loose(0.0)),
-            JointKind::Distance { between, length } => (between, LinkKind::Loose(value(length)?)),
-            // Couplings say nothing of places, and the others are of space.
-            _ => continue,
+        let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
+        let kind = match (placement.separation, placement.orientation) {
+            (Separation::Coincident, Orientation::Fixed(angle)) => LinkKind::Weld(value(angle)?),
+            (_, Orientation::Fixed(angle)) => LinkKind::Slide(value(angle)?),
+            (Separation::Coincident, _) => LinkKind::Pin,
+            (Separation::Unknown, _) => LinkKind::Loose(0.0),
+            (Separation::Distance(length), _) => LinkKind::Loose(value(length)?),
         };
         let [here, there] = between.map(|point| local(g, m, point));
         let link = Link { here, there, other: between[1].body, kind };
@@ -250,7 +248,7 @@ fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     Ok(links)
 }
 
-fn local(g: &mut Graph, m: &Mechanism, point: PointRef) -> [f64; 2] {
+fn local(g: &Builder, m: &Mechanism, point: PointRef) -> [f64; 2] {
     let expr = m.local(g, point);
     let values = m.nominal(g, &expr);
     [values[0], values[1]]

@@ -1,13 +1,15 @@
 //! What is known at the start, and the model's size.
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
-use crate::model::{Coordinate, JointCoordinate, JointKind, StartValue, TimeOrder};
+use crate::elements::joints::{Placement, Separation};
+use crate::grammar::JointCoordinate;
+use crate::model::{Coordinate, StartValue, TimeOrder};
 
 use super::body::EULER;
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism, Owner, freedom};
-use super::placement::Placement;
+use super::placement::PlanarPoses;
 use super::pose::Poses;
 use super::rotation;
 use super::system::Start;
@@ -24,9 +26,9 @@ pub struct CarrierAngle<'d> {
 
 impl Mechanism<'_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
-    /// where the joints put the bodies when they are walked from the ground ([`Placement`], [`Poses`]), with the nominal
+    /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the nominal
     /// parameters.
-    pub fn start(&self, g: &mut Graph) -> Result<Start, BuildError> {
+    pub fn start(&self, g: &Builder) -> Result<Start, BuildError> {
         let description = self.description;
         let position = self.values_at_start(g, &description.initial, TimeOrder::Position)?;
         let velocity = self.values_at_start(g, &description.initial, TimeOrder::Velocity)?;
@@ -40,11 +42,11 @@ impl Mechanism<'_> {
     }
 
     /// Where the joints put the coordinates.
-    fn placed(&self, g: &mut Graph, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
+    fn placed(&self, g: &Builder, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
         if self.is_spatial() {
             return Poses::of(g, self, known)?.coordinates(g);
         }
-        let placement = Placement::of(g, self, known)?;
+        let placement = PlanarPoses::of(g, self, known)?;
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(g, self, joint, coordinate),
@@ -54,7 +56,7 @@ impl Mechanism<'_> {
 
     fn values_at_start(
         &self,
-        g: &mut Graph,
+        g: &Builder,
         values: &[StartValue],
         wanted: TimeOrder,
     ) -> Result<Vec<Option<Expr>>, BuildError> {
@@ -128,7 +130,7 @@ impl Mechanism<'_> {
 
     /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
     /// and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, g: &mut Graph) -> Result<f64, BuildError> {
+    pub fn characteristic_length(&self, g: &Builder) -> Result<f64, BuildError> {
         let mut lengths: Vec<Expr> = Vec::new();
         for body in &self.bodies {
             lengths.extend(body.points.iter().flatten());
@@ -137,7 +139,7 @@ impl Mechanism<'_> {
             lengths.extend(&body.position[..3]);
         }
         for joint in &self.description.joints {
-            if let JointKind::Distance { length, .. } = &joint.kind {
+            if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
                 lengths.push(self.formula(g, length, Context::Time)?);
             }
         }

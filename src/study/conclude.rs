@@ -7,7 +7,7 @@ use crate::results::{
     Band, Bounds, Contribution, ContributionSummary, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
     SingularSummary, Summary,
 };
-use crate::simulate::SimulationError;
+use crate::simulate::{OpenConstraint, SimulationError};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
@@ -97,13 +97,12 @@ fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
         }
         StopCause::Locked { constraint, residual } => {
-            let constraint = study.simulator.system.constraints[constraint].name.clone();
-            let locked = SimulationError::Locked { time, constraint, amount: residual, parameters };
+            let locked = study.simulator.locked(OpenConstraint { constraint, residual }, time, parameters);
             format!("{locked}; results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {
             let equation = study.simulator.equation_name(equation);
-            let failed = SimulationError::Stuck { sample, time, equation, parameters };
+            let failed = SimulationError::NotConverged { sample, time, equation, parameters };
             format!(
                 "{failed}; bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step"
             )

@@ -12,8 +12,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range};
 use crate::simulate::{
-    Certifier, Closure, Counters, Enclosure, Fleet, JetRun, Lost, Observed, Points, Schedule, SimulationError,
-    Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Closure, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint, Points,
+    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -80,21 +80,21 @@ impl<'a> Motions<'a> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
         let sample = std::slice::from_ref(&self.domain.nominal);
-        let mut fleet = Fleet::start(self.simulator, sample, self.schedule.first_step())?.watching();
+        let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
         let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
-        let simulated = self.advance(&mut fleet, sample, sampling, &mut |rows, values| {
+        let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
                 for (output, &value) in values.iter().enumerate() {
                     bands.set(row, output, Range { lower: value, upper: value }, 0.0);
                 }
             }
         });
-        Ok((bands.finish(1, simulated), fleet.singular_passes()))
+        Ok((bands.finish(1, simulated), run.singular_passes()))
     }
 
     fn advance(
         &self,
-        fleet: &mut Fleet,
+        run: &mut EnsembleRun,
         samples: &[Vec<f64>],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
@@ -112,7 +112,7 @@ impl<'a> Motions<'a> {
         let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
         while next < self.schedule.rows && goes_on(&stop) && (finish || !self.is_interrupted()) {
             let rows = next..(next + rows_a_block).min(self.schedule.rows);
-            let stops = fleet.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
             stopped.extend(stops.iter().map(|stop| stop.sample));
             stop = stop.into_iter().chain(stops).min_by_key(|stop| (stop.row, stop.sample));
             reduce(rows.clone(), &values);
@@ -123,10 +123,10 @@ impl<'a> Motions<'a> {
             Some(stop) if until == Until::FirstStop => stop.row,
             _ => next,
         };
-        let stop = stop.map(|stop| Stop { open: fleet.stays_open(&stop, self.schedule), ..stop });
+        let stop = stop.map(|stop| Stop { open: run.open_constraint(&stop, self.schedule), ..stop });
         Simulated {
-            effort: effort(fleet.counters()),
-            worst_ratio: fleet.most_strained().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
+            effort: effort(run.counters()),
+            worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
             missing: self.schedule.rows - reached,
@@ -141,7 +141,7 @@ fn effort(counters: Counters) -> Effort {
 fn stopped_at(stop: &Stop) -> methods::Stop {
     let cause = match stop.open {
         _ if stop.singular => StopCause::SingularJet,
-        Some((constraint, residual)) => StopCause::Locked { constraint, residual },
+        Some(OpenConstraint { constraint, residual }) => StopCause::Locked { constraint, residual },
         None => StopCause::NotConverged { equation: stop.equation },
     };
     methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
@@ -188,8 +188,8 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        let mut fleet = Fleet::start(self.simulator, samples, self.schedule.first_step())?;
-        Ok(self.advance(&mut fleet, samples, sampling, reduce))
+        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
@@ -218,8 +218,8 @@ impl Ensemble for Motions<'_> {
     }
 
     fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<methods::Lost> {
-        let lost = |time: f64, lost: Lost| {
-            Some(methods::Lost { time, why: lost.to_string(), is_too_wide: lost == Lost::Unproven })
+        let lost = |time: f64, lost: EnclosureError| {
+            Some(methods::Lost { time, why: lost.to_string(), is_too_wide: lost == EnclosureError::Unproven })
         };
         let certifier = self.certifier.get_or_init(|| Certifier::new(self.simulator));
         let first_step = self.schedule.first_step();

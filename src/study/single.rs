@@ -11,7 +11,7 @@ use crate::methods::{
 use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, corners, probes, validation};
 use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{Piloted, Schedule, SimulationError, Simulator, SingularPass, schedule_for_tolerance};
+use crate::simulate::{Schedule, SimulationError, Simulator, SingularPass, ToleranceSchedule, schedule_for_tolerance};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
 const CONTROLLING_CORNERS: usize = 16;
@@ -174,11 +174,11 @@ impl<'a> Study<'a> {
                 let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
                 // The nominal sample may be of another part of the box.
                 let inside = |sample: &Vec<f64>| samples[0] != *sample || self.domain.contains(sample);
-                let going = (0..samples.len()).filter(|sample| !controlled.left_behind.contains(sample));
+                let going = (0..samples.len()).filter(|sample| !controlled.dropped.contains(sample));
                 Ok(Tried {
-                    reached: controlled.whole.min(controlled.schedule.rows),
+                    reached: controlled.complete_rows.min(controlled.schedule.rows),
                     any: going.into_iter().any(|sample| inside(&samples[sample])),
-                    stopped: controlled.left_behind.iter().map(|&sample| self.domain.xi(&samples[sample])).collect(),
+                    stopped: controlled.dropped.iter().map(|&sample| self.domain.xi(&samples[sample])).collect(),
                 })
             }
         }
@@ -205,7 +205,7 @@ impl<'a> Study<'a> {
         let mut round = 1;
         loop {
             let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let Piloted { schedule, failure, .. } =
+            let ToleranceSchedule { schedule, failure, .. } =
                 schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
             let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
             let results = self.methods(&schedule, Some(tolerance))?;
