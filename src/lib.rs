@@ -3,7 +3,8 @@
 mod api;
 
 pub use api::{Band, Error, Model, ModelBuilder, Output, Study, StudyResult, Value};
-pub use results::{Method, Summary};
+pub use methods::Method;
+pub use results::Summary;
 pub use syntax::Diagnostics;
 
 // The rooms of the house, in the order of the data flow. They are public for this package's own binary, tests and benches;
@@ -19,6 +20,8 @@ pub mod elements;
 #[doc(hidden)]
 pub mod export;
 pub(crate) mod grammar;
+#[doc(hidden)]
+pub mod methods;
 #[doc(hidden)]
 pub mod model;
 #[doc(hidden)]

@@ -1,6 +1,6 @@
 //! What can go wrong between a file and its bounds.
 
-use crate::export::ReportError;
+use crate::export::ExportError;
 use crate::model::UnknownScene;
 use crate::study::RunError;
 use crate::syntax::Diagnostics;
@@ -20,7 +20,7 @@ pub enum Error {
     Run(#[from] RunError),
     /// The files could not be written.
     #[error(transparent)]
-    Write(#[from] ReportError),
+    Write(#[from] ExportError),
 }
 
 impl From<Diagnostics> for Error {

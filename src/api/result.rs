@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::Error;
 use crate::export;
-use crate::results::{self, Bounds, Method, OutputBounds, Summary, foremost};
+use crate::methods::Method;
+use crate::results::{self, Bounds, OutputBounds, Summary, foremost};
 
 /// Bounds of every output over time, with their errors.
 #[derive(Clone, Debug)]

@@ -1,7 +1,8 @@
 //! A study: which methods bound a model, and how they run.
 
 use super::{Error, StudyResult};
-use crate::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest, Stepping, TaylorRequest};
+use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
+use crate::model::{Description, Stepping};
 use crate::study::{Options, run};
 
 /// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
@@ -32,7 +33,7 @@ impl<'a> Study<'a> {
     /// Chebyshev bounds with polynomials of a degree in each parameter: (order + 1)^k simulations of k parameters.
     #[must_use]
     pub fn chebyshev(mut self, order: usize) -> Self {
-        let request = ChebyshevRequest::of_order(order, self.parameters());
+        let request = Chebyshev::of_order(order, self.parameters());
         self.choose().chebyshev = Some(request);
         self
     }
@@ -40,14 +41,14 @@ impl<'a> Study<'a> {
     /// Taylor bounds of a total degree: one simulation, in polynomials of the parameters.
     #[must_use]
     pub fn taylor(mut self, order: usize) -> Self {
-        self.choose().taylor = Some(TaylorRequest { order, ..TaylorRequest::default() });
+        self.choose().taylor = Some(Taylor { order, ..Taylor::default() });
         self
     }
 
     /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too narrow.
     #[must_use]
     pub fn scan(mut self, points: usize) -> Self {
-        let request = ScanRequest::of_points(points, self.parameters());
+        let request = Scan::of_points(points, self.parameters());
         self.choose().scan = Some(request);
         self
     }
@@ -55,7 +56,7 @@ impl<'a> Study<'a> {
     /// Proven bounds of the discretised motion: one or two parameters, a fixed step.
     #[must_use]
     pub fn certified(mut self) -> Self {
-        self.choose().certified = true;
+        self.choose().certified = Some(Certified);
         self
     }
 
@@ -64,7 +65,7 @@ impl<'a> Study<'a> {
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         let bounds = self.choose();
         bounds.tolerance = Some(tolerance);
-        bounds.chebyshev = Some(ChebyshevRequest::ADAPTIVE);
+        bounds.chebyshev = Some(Chebyshev::ADAPTIVE);
         self
     }
 

@@ -7,9 +7,9 @@ mod start;
 
 use symdiff::Formula;
 
-use super::bounds_request::BoundsRequest;
 use super::effect_kinds::EffectKind;
 use crate::elements::JointKind;
+use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, Simulation, Stepping};
