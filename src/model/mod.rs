@@ -3,7 +3,6 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
-mod bounds_request;
 mod catalog;
 mod description;
 mod effect_kinds;
@@ -34,7 +33,6 @@ pub use crate::grammar::{
     Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
     Rotation, TimeOrder, Turning,
 };
-pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use effect_kinds::*;

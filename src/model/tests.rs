@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::elements::joints::*;
+use crate::methods::Degree;
 use symdiff::Formula;
 
 const SLIDER_CRANK: &str = include_str!("../../models/slider_crank.yaml");
