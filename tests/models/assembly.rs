@@ -2,7 +2,7 @@
 
 use mbint::study::{self, Options};
 
-use super::common::read;
+use crate::common::read;
 
 #[test]
 fn velocities_that_do_not_fit_are_reported() {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use mbint::results::{Bounds, OutputBounds};
 
-use super::common::{load_all, model_files, run};
+use crate::common::{load_all, model_files, run};
 
 /// Times that are shown of a run.
 const TIMES: usize = 10;
