@@ -1,4 +1,4 @@
-//! Initial velocities that do not fit say which joint they do not fit. (Positions that do not: `tests/faults/infeasible.rs`.)
+//! Initial velocities that do not fit say which joint they do not fit. (Positions that do not: `tests/program/faults/infeasible.rs`.)
 
 use mbint::study::{self, Options};
 
