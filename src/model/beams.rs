@@ -1,14 +1,15 @@
 //! `beam` among `bodies:`: a flexible body of the plane. It becomes bodies without mass, its nodes, and an element with mass
 //! between each two.
 
+use crate::grammar::{Coordinate, PointRef};
 use symdiff::{Binary, Formula};
 
-use super::description::{Coordinate, Description, Effect, PointRef};
+use super::description::{Description, Effect};
 use super::effect_kinds::{Beam, EffectKind};
 use super::file;
-use super::names::Context;
-use super::quantity::Dimension;
-use super::reader::Reader;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Value};
 
 /// Elements of a beam that does not say how many.
@@ -108,7 +109,7 @@ impl Description {
     }
 
     /// What of a beam has a name of its own.
-    pub(super) fn parts_of_beam(&self, beam: &str) -> Option<String> {
+    pub(super) fn named_parts_of_beam(&self, beam: &str) -> Option<String> {
         let elements = self.elements_of(beam)?;
         let inner = match elements {
             1 => String::new(),

@@ -1,17 +1,17 @@
 //! `bodies:`, and references to bodies and their points.
 
+use crate::grammar::{Coordinate, Rotation};
 use symdiff::Formula;
 
 use super::beams;
-use super::description::{Body, Coordinate, Inertia, Point, PointRef, Rotation};
+use super::description::{Body, Inertia, Point};
 use super::file;
-use super::kinds::JointCoordinate;
-use super::motions::is_motion;
-use super::names::{Context, GROUND};
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use crate::grammar::motions::is_motion;
+use crate::grammar::names::{Context, GROUND};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Names of coordinates, and what they stand for. The last leave the plane.
@@ -283,118 +283,4 @@ fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3], Option<Rot
     }
     let rotation = reader.rotation(node, fields.key_span("rotation"));
     Some((position?, Some(rotation?)))
-}
-
-impl Reader<'_> {
-    /// The body that is named.
-    pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
-        let scalar = self.scalar(node, "the name of a body")?;
-        let name = scalar.text.as_str();
-        if let Some(node) = self.model.bodies.iter().position(|body| body.name == name) {
-            return Some(node);
-        }
-        let (body, rest) = name.split_once('.').unwrap_or((name, ""));
-        let index = self.find_body(node, body)?;
-        if !rest.is_empty() {
-            let message = format!("`{}` is a point, but a body belongs here", clip(name));
-            self.error(node.span.clone(), message, format!("write `{body}`"));
-            return None;
-        }
-        Some(index)
-    }
-
-    /// The point that is named: `body.point`, or `body` for the origin of its frame.
-    pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
-        let scalar = self.scalar(node, "`body` or `body.point`")?;
-        let text = &scalar.text;
-        if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
-            return Some(place);
-        }
-        if let Some(body) = self.model.bodies.iter().position(|body| body.name == *text) {
-            return Some(PointRef { body, point: None });
-        }
-        let Some((name, point)) = scalar.text.split_once('.') else {
-            return Some(PointRef { body: self.find_body(node, &scalar.text)?, point: None });
-        };
-        let body = self.find_body(node, name)?;
-        let points: Vec<&str> = self.model.bodies[body].points.iter().map(|point| point.name.as_str()).collect();
-        if let Some(found) = points.iter().position(|known| *known == point) {
-            return Some(PointRef { body, point: Some(found) });
-        }
-        let help = if points.is_empty() {
-            Some(format!("`{name}` has no points; give it some with `points`, or write `{name}` for its origin"))
-        } else {
-            suggest::help(point, &format!("points of `{name}`"), points)
-        };
-        let place = scalar.place(&node.span, name.len() + 1..scalar.text.len());
-        self.error(place, format!("body `{name}` has no point `{}`", clip(point)), help);
-        None
-    }
-
-    fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
-        let bodies = || self.model.bodies.iter().map(|body| body.name.as_str());
-        if let Some(found) = bodies().position(|known| known == name) {
-            return Some(found);
-        }
-        let (message, help) = match self.model.parts_of_beam(name) {
-            Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
-            None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),
-        };
-        let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, 0..name.len()));
-        self.error(place, message, help);
-        None
-    }
-
-    /// Two points of different bodies.
-    pub fn between_points(&mut self, node: &Node) -> Option<[PointRef; 2]> {
-        let [first, second] = self.two(node, "a list of two points")?;
-        let (a, b) = (self.point_ref(first), self.point_ref(second));
-        let (a, b) = (a?, b?);
-        self.different(second, a.body, b.body).then_some([a, b])
-    }
-
-    /// The joint that is named, with this coordinate.
-    pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
-        let scalar = self.scalar(node, "the name of a joint")?;
-        let name = scalar.text.as_str();
-        let Some(found) = self.model.joints.iter().position(|joint| joint.name == name) else {
-            let help = suggest::help(name, "joints", self.model.joints.iter().map(|joint| joint.name.as_str()));
-            self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
-            return None;
-        };
-        if !self.model.has(found, coordinate) {
-            let (what, help) = match coordinate {
-                JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),
-                JointCoordinate::Displacement => {
-                    ("slides", "prismatic, cylindrical and screw joints slide along theirs")
-                }
-            };
-            self.error(node.span.clone(), format!("`{}` is no joint that {what}", clip(name)), help.to_owned());
-            return None;
-        }
-        Some(found)
-    }
-
-    /// Whether a node names a joint and no body.
-    pub fn names_joint(&self, node: &Node) -> bool {
-        let Some(scalar) = node.scalar() else { return false };
-        let is = |name: &String| *name == scalar.text;
-        self.model.joints.iter().any(|joint| is(&joint.name)) && !self.model.bodies.iter().any(|body| is(&body.name))
-    }
-
-    /// Two different bodies.
-    pub fn between_bodies(&mut self, node: &Node) -> Option<[usize; 2]> {
-        let [first, second] = self.two(node, "a list of two bodies")?;
-        let (a, b) = (self.body_ref(first), self.body_ref(second));
-        let (a, b) = (a?, b?);
-        self.different(second, a, b).then_some([a, b])
-    }
-
-    fn different(&mut self, node: &Node, a: usize, b: usize) -> bool {
-        if a == b {
-            let message = format!("both ends are on `{}`", self.model.bodies[a].name);
-            self.error(node.span.clone(), message, "name two different bodies".to_owned());
-        }
-        a != b
-    }
 }

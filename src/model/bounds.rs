@@ -6,8 +6,9 @@ use super::bounds_request::{
     BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, RangeKind, ScanRequest, TaylorRequest,
 };
 use super::file;
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

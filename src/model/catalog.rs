@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::file::{self, Grammar};
+use super::file;
+use crate::grammar::mapping::Grammar;
 
 /// A key of the grammar, for people.
 #[derive(Clone, Debug, Serialize)]

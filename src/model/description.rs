@@ -3,8 +3,9 @@
 use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
-use super::effect_kinds::{EffectKind, Measure};
-use super::kinds::{JointCoordinate, JointKind};
+use super::effect_kinds::EffectKind;
+use super::kinds::JointKind;
+use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -156,42 +157,6 @@ pub enum ParameterValue {
     },
 }
 
-/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Coordinate {
-    /// Position of the frame's origin along the ground's x, m.
-    X,
-    /// Position of the frame's origin along the ground's y, m.
-    Y,
-    /// Position of the frame's origin along the ground's z, m.
-    Z,
-    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
-    Angle,
-    /// Euler parameter p0 (cosine of half the angle) to p3.
-    Euler(usize),
-}
-
-impl Coordinate {
-    /// The Euler parameters.
-    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
-
-    /// Whether it is a length rather than a part of the orientation.
-    pub fn is_length(self) -> bool {
-        matches!(self, Self::X | Self::Y | Self::Z)
-    }
-}
-
-/// A rotation from one frame to another.
-#[derive(Clone, Debug)]
-pub enum Rotation {
-    /// Turned about the fixed x, then y, then z, rad.
-    RollPitchYaw([Formula; 3]),
-    /// About an axis of any length but zero, by an angle in rad.
-    AxisAngle([Formula; 3], Formula),
-    /// Euler parameters p0 to p3, of any length but zero.
-    Quaternion([Formula; 4]),
-}
-
 /// Elements of a body's inertia tensor about its centre of mass, along its frame's axes, kg m². I_xy = −∫ x y dm, as in
 /// URDF. A body that only turns about z needs no more than zz.
 #[derive(Clone, Debug)]
@@ -263,15 +228,6 @@ pub struct Point {
     pub rotation: Option<Rotation>,
 }
 
-/// A point of a body; the frame's origin where `point` is absent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PointRef {
-    /// Index into [`Description::bodies`]; 0 is the ground.
-    pub body: usize,
-    /// Index into that body's points.
-    pub point: Option<usize>,
-}
-
 /// A named joint.
 #[derive(Clone, Debug)]
 pub struct Joint {
@@ -288,15 +244,6 @@ pub struct Effect {
     pub name: String,
     /// What it does.
     pub kind: EffectKind,
-}
-
-/// How often a quantity is differentiated by time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
-pub enum TimeOrder {
-    Position,
-    Velocity,
-    Acceleration,
 }
 
 /// A value at the start; formulas are of parameters.
@@ -351,100 +298,6 @@ pub struct Output {
     pub formula: Formula,
     /// SI unit derived from the formula, for axes; empty where dimensionless or unknown.
     pub unit: String,
-}
-
-/// What a name in a formula stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Referent {
-    /// Index into [`Description::parameters`].
-    Parameter(usize),
-    /// `t`, s.
-    Time,
-    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
-    Coordinate {
-        #[allow(missing_docs)]
-        body: usize,
-        #[allow(missing_docs)]
-        coordinate: Coordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
-    AngularMotion {
-        #[allow(missing_docs)]
-        body: usize,
-        /// 0 to 2: x, y, z.
-        axis: usize,
-        /// Velocity or acceleration.
-        order: TimeOrder,
-        #[allow(missing_docs)]
-        in_body: bool,
-    },
-    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
-    RollPitchYaw {
-        #[allow(missing_docs)]
-        body: usize,
-        /// 0 to 2: roll, pitch, yaw.
-        angle: usize,
-    },
-    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
-    JointCoordinate {
-        #[allow(missing_docs)]
-        joint: usize,
-        #[allow(missing_docs)]
-        coordinate: JointCoordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
-    Point {
-        #[allow(missing_docs)]
-        body: usize,
-        #[allow(missing_docs)]
-        point: usize,
-        #[allow(missing_docs)]
-        coordinate: Coordinate,
-        #[allow(missing_docs)]
-        order: TimeOrder,
-    },
-    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
-    Reaction {
-        #[allow(missing_docs)]
-        joint: usize,
-        #[allow(missing_docs)]
-        component: ReactionComponent,
-    },
-    /// `effect.length`, `effect.force`, …: what an effect measures.
-    Measure {
-        #[allow(missing_docs)]
-        effect: usize,
-        #[allow(missing_docs)]
-        measure: Measure,
-    },
-    /// `energy`, `kinetic_energy`, `potential_energy`, J.
-    Energy(EnergyKind),
-}
-
-/// Part of a joint's reaction on its second body, in the ground's frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReactionComponent {
-    /// Magnitude of the force, N.
-    Force,
-    /// Along an axis (0 to 2: x, y, z), N.
-    ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z, in space the magnitude.
-    Torque,
-    /// About an axis (0 to 2: x, y, z) through the second point, N m.
-    TorqueAbout(usize),
-}
-
-/// Which energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum EnergyKind {
-    Total,
-    Kinetic,
-    Potential,
 }
 
 /// How time is stepped.

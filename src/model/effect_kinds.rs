@@ -2,9 +2,8 @@
 
 use symdiff::Formula;
 
-use super::description::PointRef;
-use super::kinds::{JointCoordinate, Turning};
-use super::quantity::Dimension;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{JointCoordinate, Measure, OnJoint, PointRef, Turning};
 
 /// What an effect does; formulas stand in `mechanics::effects`. Values may depend on parameters, t, positions and
 /// velocities.
@@ -108,14 +107,6 @@ pub enum EffectKind {
     Preload(Preload),
     /// A beam of the plane: a massless one, or an element of a flexible body.
     Beam(Beam),
-}
-
-/// A joint's coordinate that an effect acts on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub struct OnJoint {
-    pub joint: usize,
-    pub coordinate: JointCoordinate,
 }
 
 /// How dry friction depends on the speed of sliding.
@@ -352,51 +343,6 @@ pub struct Beam {
     pub damping: Formula,
     /// μ, kg/m; absent where it is massless. The bodies of an element with mass need none of their own.
     pub mass_per_length: Option<Formula>,
-}
-
-/// Something that an effect measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)] // the names say it
-pub enum Measure {
-    Length,
-    Angle,
-    Gap,
-    Rate,
-    Load,
-    Force,
-    Torque,
-    StartTorque,
-    Friction,
-}
-
-impl Measure {
-    /// What pushes a joint's coordinate.
-    pub fn of_effort(coordinate: JointCoordinate) -> Self {
-        match coordinate {
-            JointCoordinate::Angle => Self::Torque,
-            JointCoordinate::Displacement => Self::Force,
-        }
-    }
-
-    /// Its name, as in `spring.length`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Angle => "angle",
-            Self::Gap => "gap",
-            Self::Rate => "rate",
-            Self::Load => "load",
-            Self::Force => "force",
-            Self::Torque => "torque",
-            Self::StartTorque => "start_torque",
-            Self::Friction => "friction",
-        }
-    }
-
-    /// Whether it follows from positions and velocities alone, so that the effect's own formulas may speak of it.
-    pub fn is_motion(self) -> bool {
-        matches!(self, Self::Length | Self::Angle | Self::Gap | Self::Rate)
-    }
 }
 
 /// Whose angle a torsional spring twists.

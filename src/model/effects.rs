@@ -3,16 +3,17 @@
 mod acting;
 mod touching;
 
+use crate::grammar::JointCoordinate;
 use symdiff::Formula;
 
 pub(super) use self::touching::impact;
 use super::description::Effect;
 use super::effect_kinds::{EffectKind, Twisted};
 use super::file;
-use super::kinds::JointCoordinate;
-use super::names::Context;
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Reads the effects. A formula may speak of what its own effect and those before it measure.
@@ -162,7 +163,7 @@ fn torque(reader: &mut Reader, fields: &Fields) -> Option<EffectKind> {
     let from = fields.get("from").map_or(Some(0), |node| reader.body_ref(node));
     let value = reader.required(fields, "value").and_then(|node| match node.value {
         Value::Sequence(_) => {
-            if !reader.model.space.spatial && super::space::leaves_plane_about(node) {
+            if !reader.model.space.spatial && crate::grammar::plane::leaves_plane_about(node) {
                 reader.leaves_the_plane(node);
             }
             reader.three(node, Context::Effect, Dimension::TORQUE)

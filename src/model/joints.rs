@@ -1,13 +1,16 @@
 //! `joints:`.
 
+use crate::grammar::{JointCoordinate, PointRef, Referent};
 use symdiff::Formula;
 
-use super::description::{Joint, PointRef, Referent};
-use super::file::{self, Grammar};
-use super::kinds::{JointCoordinate, JointKind, Turning};
-use super::names::Context;
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader, Written};
+use super::description::Joint;
+use super::file;
+use super::kinds::JointKind;
+use crate::grammar::mapping::Grammar;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::{Fields, Written};
+use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Notes the names of the joints, so that outputs can refer to them.
@@ -159,7 +162,7 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         }
         "gear" => {
             let details = Details::read::<file::Gear>(reader, kind)?;
-            let between = details.between(reader).and_then(|node| turning(reader, node));
+            let between = details.between(reader).and_then(|node| reader.turning(node));
             let ratio = ratio(reader, &details, "ratio", Dimension::NUMBER);
             let offset = number(reader, &details, "offset", Dimension::ANGLE);
             Some(JointKind::Gear { between: between?, ratio: ratio?, offset: offset? })
@@ -231,29 +234,6 @@ fn pitch(reader: &mut Reader, details: &Details) -> Option<Formula> {
         return None;
     }
     Some(pitch)
-}
-
-/// Two bodies by their angles, or two joints by theirs.
-pub fn turning(reader: &mut Reader, node: &Node) -> Option<[Turning; 2]> {
-    let pair = reader.two(node, "a list of two bodies or joints")?;
-    if !pair.iter().any(|node| reader.names_joint(node)) {
-        let bodies = reader.between_bodies(node)?;
-        for (body, node) in bodies.into_iter().zip(pair) {
-            if reader.model.bodies[body].has_orientation() {
-                let name = reader.model.bodies[body].name.clone();
-                let help =
-                    "name two joints, or give the body the coordinate `angle` instead of `orientation`".to_owned();
-                reader.error(node.span.clone(), format!("`{name}` turns about more than z, so it has no angle"), help);
-            }
-        }
-        return Some(bodies.map(Turning::Body));
-    }
-    let [first, second] = pair.map(|node| reader.joint_ref(node, JointCoordinate::Angle));
-    let (first, second) = (first?, second?);
-    if first == second {
-        reader.error(pair[1].span.clone(), "a joint is not geared with itself", None);
-    }
-    Some([Turning::Joint(first), Turning::Joint(second)])
 }
 
 /// `left = right`.

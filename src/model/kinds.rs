@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use super::description::PointRef;
+use crate::grammar::{JointCoordinate, PointRef, Turning};
 
 /// What a joint constrains; equations stand in `mechanics::joints`.
 ///
@@ -238,22 +238,4 @@ pub enum Profile {
         /// Part of the duration that each acceleration takes, at most ½.
         ramp: Formula,
     },
-}
-
-/// A coordinate of a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum JointCoordinate {
-    /// Angle of the second frame against the first about the joint's axis, rad, never wrapped.
-    Angle,
-    /// Of the second point from the first along the joint's axis, m.
-    Displacement,
-}
-
-/// Something with an angle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turning {
-    /// The angle of a body about z.
-    Body(usize),
-    /// The angle of a joint.
-    Joint(usize),
 }

@@ -8,10 +8,10 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::file;
 use super::overrides::Override;
-use super::reader::Reader;
 use super::scenes::{Scenes, Variant};
 use super::urdf::{self, Urdf};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -204,6 +204,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
     Reader {
         diagnostics,
         model,
+        own: None,
         kinds: Vec::new(),
         corners: Vec::new(),
         varies: Vec::new(),
@@ -293,7 +294,7 @@ fn describe(
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
-    if robot.is_none() && body_entries.iter().all(|entry| entry.key == super::names::GROUND) {
+    if robot.is_none() && body_entries.iter().all(|entry| entry.key == crate::grammar::names::GROUND) {
         let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
         reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
     }

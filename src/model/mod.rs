@@ -6,16 +6,12 @@
 mod bounds_request;
 mod catalog;
 mod description;
-mod dimension;
 mod effect_kinds;
 mod kinds;
-mod motions;
 mod names;
-mod quantity;
 mod references;
 
 mod file;
-mod reader;
 
 mod beams;
 mod bodies;
@@ -33,8 +29,11 @@ mod tables;
 #[cfg(test)]
 mod tests;
 mod urdf;
-mod vectors;
 
+pub use crate::grammar::{
+    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
+    Rotation, TimeOrder, Turning,
+};
 pub use bounds_request::*;
 pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
@@ -43,4 +42,3 @@ pub use file::schema;
 pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;
-pub use references::Reference;

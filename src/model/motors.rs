@@ -1,15 +1,16 @@
 //! What acts on a joint's coordinate: which one it is, and motors that prescribe it.
 
+use crate::grammar::JointCoordinate;
 use std::convert::Infallible;
 
 use symdiff::{Formula, Graph};
 
-use super::effect_kinds::OnJoint;
 use super::file;
-use super::kinds::{JointCoordinate, JointKind, Prescribed, Profile};
-use super::names::Context;
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader};
+use super::kinds::{JointKind, Prescribed, Profile};
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
@@ -19,44 +20,12 @@ const RAMP: f64 = 0.25;
 /// Keys of moves and run-ups.
 const PROFILED: [&str; 3] = ["start", "duration", "ramp"];
 
-/// The joint of `on`, and its coordinate.
-pub fn on_joint(reader: &mut Reader, fields: &Fields) -> Option<OnJoint> {
-    let coordinate = fields.get("coordinate").map(|node| {
-        let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];
-        reader.choice(node, &names)
-    });
-    let node = reader.required(fields, "on");
-    let coordinate = match coordinate {
-        Some(coordinate) => coordinate?,
-        None => {
-            let slides = node.and_then(Node::scalar).is_some_and(|name| {
-                let joint = reader.model.joints.iter().position(|joint| joint.name == name.text);
-                joint.is_some_and(|joint| {
-                    let kind = &reader.model.joints[joint].kind;
-                    kind.axis_of(JointCoordinate::Angle).is_none()
-                        && kind.axis_of(JointCoordinate::Displacement).is_some()
-                })
-            });
-            if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle }
-        }
-    };
-    let joint = reader.joint_ref(node?, coordinate)?;
-    Some(OnJoint { joint, coordinate })
-}
-
-/// Of a joint's coordinate, of its rate, and of what pushes it.
-pub fn dimensions_of(coordinate: JointCoordinate) -> [Dimension; 3] {
-    match coordinate {
-        JointCoordinate::Angle => [Dimension::ANGLE, Dimension::ANGULAR_VELOCITY, Dimension::TORQUE],
-        JointCoordinate::Displacement => [Dimension::LENGTH, Dimension::VELOCITY, Dimension::FORCE],
-    }
-}
-
 /// A motor.
 pub fn read(reader: &mut Reader, node: &Node, at: Span) -> Option<JointKind> {
     let fields = reader.fields::<file::Motor>(node, at)?;
-    let on = on_joint(reader, &fields);
-    let [place, speed, _] = dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
+    let on = reader.on_joint(&fields);
+    let [place, speed, _] =
+        crate::grammar::motions::dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let motion = prescribed(reader, &fields, place, speed);
     let on = on?;
     Some(JointKind::Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? })

@@ -1,17 +1,19 @@
 //! `parameters:` and the `--set` that replace them.
 
+use crate::grammar::Referent;
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
-use super::description::{Parameter, ParameterValue, Referent};
-use super::dimension::Kind;
+use super::description::{Parameter, ParameterValue};
 use super::file;
-use super::names::Context;
 use super::overrides::Override;
-use super::quantity::{Unit, number_and_unit};
-use super::reader::{Corner, Reader, Written, evaluate};
 use super::urdf;
+use crate::grammar::dimension::Kind;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::{Unit, number_and_unit};
+use crate::grammar::reader::{Corner, Written, evaluate};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;

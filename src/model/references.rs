@@ -2,23 +2,13 @@
 
 use symdiff::Formula;
 
-use super::description::{Body, PointRef, Rotation, StartValue};
+use super::description::{Body, StartValue};
 use super::effect_kinds::{
     Backlash, Beam, Cable, ClearanceJoint, Contact, Drag, EffectKind, JointFriction, Preload, Preloaded, Servo, Stop,
     Twisted,
 };
-use super::kinds::{JointKind, Turning};
-
-/// An index in a joint, an effect or a value at the start.
-#[derive(Debug)]
-pub enum Reference<'a> {
-    /// Of a body.
-    Body(&'a mut usize),
-    /// Of a body, with one of its points.
-    Point(&'a mut PointRef),
-    /// Of a joint.
-    Joint(&'a mut usize),
-}
+use super::kinds::JointKind;
+use crate::grammar::{PointRef, Reference, Rotation, Turning};
 
 fn points(between: &mut [PointRef; 2]) -> Vec<Reference<'_>> {
     between.iter_mut().map(Reference::Point).collect()

@@ -1,14 +1,14 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
-use super::description::{
-    Coordinate, Formulation, Output, ReactionComponent, Referent, Simulation, StartValue, Stepping, TimeOrder,
-};
-use super::dimension::Kind;
+use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::file;
-use super::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
-use super::names::{Context, GROUND};
-use super::quantity::Dimension;
-use super::reader::{Fields, Reader, Written};
+use crate::grammar::dimension::Kind;
+use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use crate::grammar::names::{Context, GROUND};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::{Fields, Written};
+use crate::grammar::{Coordinate, ReactionComponent, Referent, TimeOrder};
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};
@@ -29,7 +29,11 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     if let Some(value) = turning_value(reader, entry, velocities) {
         return value;
     }
-    let referent = match reader.model.referent(name).ok_or_else(|| reader.model.unknown(name, Context::Equation)) {
+    let referent = match reader
+        .model
+        .referent(name)
+        .ok_or_else(|| crate::grammar::names::unknown(&reader.model, name, Context::Equation))
+    {
         Ok(referent) => referent,
         Err(error) => {
             let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
@@ -158,7 +162,7 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
 impl Reader<'_> {
     /// An output may be called like what it shows (`energy: energy`), but needs a plain name for files.
     fn name_of_output(&mut self, entry: &Entry) {
-        if !super::names::is_reserved(&entry.key) {
+        if !crate::grammar::names::is_reserved(&entry.key) {
             self.name(entry, "an output");
         }
     }

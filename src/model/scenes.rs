@@ -6,8 +6,9 @@
 use std::collections::HashSet;
 
 use super::file;
-use super::reader::{Fields, Reader};
 use super::urdf;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

@@ -3,7 +3,9 @@
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
 use super::description::Space;
-use super::reader::{Fields, Reader};
+use crate::grammar::plane::{leaves_plane, leaves_plane_about, points_out, turns_out};
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Kinds of joints that only make sense in space.
@@ -36,13 +38,6 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
         Some(why) => Space { spatial: true, why },
         None => planar(),
     }
-}
-
-/// Whether a list of components has a third that is not just 0.
-pub fn leaves_plane(node: &Node) -> bool {
-    let Value::Sequence(items) = &node.value else { return false };
-    let zero = |node: &Node| node.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
-    items.get(2).is_some_and(|third| !zero(third))
 }
 
 fn mapping(node: &Node) -> &[Entry] {
@@ -89,26 +84,6 @@ fn joint_leaves(joint: &Node) -> Option<String> {
     let axis = get(&kind.value, "axis").or_else(|| get(&kind.value, "normal"))?;
     let leaves = if kind.key == "revolute" { turns_out(axis) } else { points_out(axis) };
     leaves.then(|| "the axis".to_owned())
-}
-
-/// Whether a torque has components that turn out of the plane.
-pub fn leaves_plane_about(torque: &Node) -> bool {
-    let Value::Sequence(items) = &torque.value else { return false };
-    let zero = |node: &Node| node.scalar().is_some_and(|scalar| scalar.text.parse() == Ok(0.0));
-    !items.iter().take(2).all(zero)
-}
-
-/// Whether moving along the direction leaves the plane.
-pub fn points_out(direction: &Node) -> bool {
-    is(direction, "z") || leaves_plane(direction)
-}
-
-/// Whether turning about the axis leaves the plane.
-pub fn turns_out(axis: &Node) -> bool {
-    match &axis.value {
-        Value::Sequence(items) => !items.iter().take(2).all(|item| is(item, "0")),
-        _ => !is(axis, "z"),
-    }
 }
 
 fn effect_leaves(effect: &Node) -> Option<String> {

@@ -8,6 +8,7 @@ use std::path::Path;
 const ROOMS: [&str; 15] = [
     "syntax",
     "grammar",
+    "numerics",
     "multibody",
     "elements",
     "model",
@@ -15,7 +16,6 @@ const ROOMS: [&str; 15] = [
     "assemble",
     "compile",
     "simulate",
-    "numerics",
     "results",
     "methods",
     "study",
@@ -29,8 +29,8 @@ const LONGEST: usize = 400;
 /// Files that are longer still; the list only ever gets shorter.
 const LONG: &[&str] = &[];
 
-/// Circles that are there still, by their modules; the list only ever gets shorter.
-const CIRCLES: &[&[&str]] = &[];
+/// Modules that are in circles still; the list only ever gets shorter.
+const CIRCLING: &[&str] = &[];
 
 /// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.
 type Module = Vec<String>;
@@ -191,7 +191,8 @@ fn circles(package: &Package) -> Vec<Vec<String>> {
 #[test]
 fn files_form_no_circles() {
     let found: Vec<_> = ["src", "crates/symdiff/src"].iter().flat_map(|folder| circles(&Package::of(folder))).collect();
-    assert_eq!(found, CIRCLES, "circles that came, or that can be taken off the list");
+    let new: Vec<_> = found.iter().filter(|circle| !circle.iter().all(|module| CIRCLING.contains(&module.as_str()))).collect();
+    assert!(new.is_empty(), "{new:#?}");
 }
 
 #[test]
@@ -212,6 +213,6 @@ fn no_file_is_long() {
             }
         }
     }
-    long.sort();
-    assert_eq!(long, LONG, "files of more than {LONGEST} lines that came, or that can be taken off the list");
+    long.retain(|file| !LONG.contains(&file.as_str()));
+    assert!(long.is_empty(), "more than {LONGEST} lines: {long:#?}");
 }

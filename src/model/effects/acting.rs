@@ -1,16 +1,15 @@
 //! Effects that act on bodies and joints: drives, resistance, cables, gears with play.
 
+use crate::grammar::JointCoordinate;
 use symdiff::{Binary, Formula};
 
 use super::{needed, or_zero, positive, positive_or};
+use crate::grammar::motions::dimensions_of;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
 use crate::model::effect_kinds::{Backlash, Beam, Cable, Drag, Preload, Preloaded, Servo};
 use crate::model::file;
-use crate::model::joints::turning;
-use crate::model::kinds::JointCoordinate;
-use crate::model::motors::{dimensions_of, on_joint};
-use crate::model::names::Context;
-use crate::model::quantity::Dimension;
-use crate::model::reader::Reader;
+use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
@@ -22,7 +21,7 @@ const BEARING: f64 = 1e-2;
 
 pub fn servo(reader: &mut Reader, node: &Node, at: Span) -> Option<Servo> {
     let fields = reader.fields::<file::Servo>(node, at)?;
-    let on = on_joint(reader, &fields);
+    let on = reader.on_joint(&fields);
     let [place, speed, effort] = dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let target = needed(reader, &fields, "target", Context::Time, place);
     let proportional = needed(reader, &fields, "proportional", Context::Effect, effort.per(place));
@@ -81,7 +80,7 @@ pub fn cable(reader: &mut Reader, node: &Node, at: Span) -> Option<Cable> {
 
 pub fn backlash(reader: &mut Reader, node: &Node, at: Span) -> Option<Backlash> {
     let fields = reader.fields::<file::Backlash>(node, at)?;
-    let between = reader.required(&fields, "between").and_then(|node| turning(reader, node));
+    let between = reader.required(&fields, "between").and_then(|node| reader.turning(node));
     let ratio = reader.required(&fields, "ratio").and_then(|node| {
         let holds = |value| value != 0.0;
         reader.formula_that(node, Context::Constant, Dimension::NUMBER, holds, "must not be zero")
@@ -120,7 +119,7 @@ pub fn preload(reader: &mut Reader, node: &Node, at: Span) -> Option<Preload> {
     if fields.get("between").is_some() {
         reader.error(fields.key_span("between"), "`on` and `between` exclude each other", None);
     }
-    let on = on_joint(reader, &fields)?;
+    let on = reader.on_joint(&fields)?;
     let [_, _, effort] = dimensions_of(on.coordinate);
     let value = needed(reader, &fields, "value", Context::Effect, effort)?;
     Some(Preload { on: Preloaded::Joint(on), value })

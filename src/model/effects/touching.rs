@@ -1,17 +1,19 @@
 //! Effects of bodies that touch: friction, stops, contacts.
 
+use crate::grammar::JointCoordinate;
 use symdiff::Formula;
 
 use super::{needed, or_zero, positive, positive_or};
+use crate::grammar::motions::dimensions_of;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
 use crate::model::effect_kinds::{
     ClearanceJoint, Contact, DryFriction, Impact, JointFriction, Loss, RestitutionLaw, Rubbing, Stop, Surface,
 };
 use crate::model::file;
-use crate::model::kinds::{JointCoordinate, JointKind};
-use crate::model::motors::{dimensions_of, on_joint};
-use crate::model::names::Context;
-use crate::model::quantity::Dimension;
-use crate::model::reader::{Fields, Reader};
+use crate::model::kinds::JointKind;
+use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
@@ -122,7 +124,7 @@ fn dry_friction(
 
 pub fn stop(reader: &mut Reader, node: &Node, at: Span) -> Option<Stop> {
     let fields = reader.fields::<file::Stop>(node, at)?;
-    let on = on_joint(reader, &fields);
+    let on = reader.on_joint(&fields);
     let [place, speed, effort] = dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let end = |reader: &mut Reader, key: &str| match fields.get(key) {
         Some(node) => reader.formula(node, Context::Constant, place).map(Some),

@@ -48,18 +48,6 @@ grammar! {
         rotation: Option<Rotation>,
     }
 
-    /// A rotation: one of `rpy`, `axis` with `angle`, and `quaternion`.
-    Rotation is "a rotation" {
-        /// Roll, pitch and yaw: about the fixed x, then y, then z, rad.
-        rpy: Option<[Number; 3]>,
-        /// The axis of a rotation by `angle`.
-        axis: Option<Direction>,
-        /// rad
-        angle: Option<Number>,
-        /// Euler parameters p0 (cosine of half the angle) to p3, of any length.
-        quaternion: Option<[Number; 4]>,
-    }
-
     /// Elements of the inertia tensor; xy is the integral of -x*y, as in URDF.
     Tensor is "an inertia tensor" {
         /// kg*m^2

@@ -7,35 +7,6 @@
 use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
-/// A mapping of the file whose keys are fixed.
-pub trait Grammar {
-    /// What the mapping is, for messages: `a body`.
-    const WHAT: &'static str;
-    /// Its keys, in the order in which they are suggested.
-    const KEYS: &'static [&'static str];
-}
-
-macro_rules! grammar {
-    ($(
-        $(#[doc = $doc:literal])*
-        $name:ident is $what:literal $(with $extension:literal = $value:literal)* {
-            $($(#[doc = $field_doc:literal])* $field:ident: $type:ty,)*
-        }
-    )*) => {$(
-        $(#[doc = $doc])*
-        #[derive(JsonSchema)]
-        #[schemars(deny_unknown_fields $(, extend($extension = $value))*)]
-        pub struct $name {
-            $($(#[doc = $field_doc])* $field: $type,)*
-        }
-
-        impl Grammar for $name {
-            const WHAT: &'static str = $what;
-            const KEYS: &'static [&'static str] = &[$(stringify!($field)),*];
-        }
-    )*};
-}
-
 mod bodies;
 mod effects;
 mod joints;
@@ -49,6 +20,9 @@ pub use joints::*;
 pub use model::*;
 pub use run::*;
 use values::*;
+
+use crate::grammar::mapping::grammar;
+use crate::grammar::values::{Components, Direction, Number, PerAxis, Rotation, TorqueValue};
 
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
@@ -88,6 +62,7 @@ mod tests {
     use schemars::JsonSchema;
 
     use super::*;
+    use crate::grammar::mapping::Grammar;
 
     fn same_keys<G: Grammar + JsonSchema>() {
         let schema = schemars::schema_for!(G);

@@ -5,40 +5,6 @@ use schemars::JsonSchema;
 
 use super::*;
 
-/// A number, a formula, or a number with its unit.
-#[derive(JsonSchema)]
-#[schemars(untagged)]
-pub enum Number {
-    /// A number in SI units.
-    Plain(f64),
-    /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
-    Text(String),
-}
-
-/// Components along x and y, and in space along z, which is 0 where it is left out.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Components {
-    Planar([Number; 2]),
-    Spatial([Number; 3]),
-}
-
-/// Direction: `x`, `y`, `z` or components.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Direction {
-    Named(Axis),
-    Components(Components),
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Axis {
-    X,
-    Y,
-    Z,
-}
-
 #[derive(JsonSchema)]
 #[schemars(rename_all = "lowercase", inline)]
 pub enum CoordinateName {
@@ -99,14 +65,6 @@ pub enum InertiaFile {
     Full(Tensor),
 }
 
-/// A number of the frame's axes each, or one for all.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PerAxis {
-    All(Number),
-    Each([Number; 3]),
-}
-
 /// A number; three of a vector; or a rotation.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -114,14 +72,6 @@ pub enum StartFile {
     Number(Number),
     Vector([Number; 3]),
     Rotation(Rotation),
-}
-
-/// A number (in the plane, about z), or components.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum TorqueValue {
-    Scalar(Number),
-    Vector([Number; 3]),
 }
 
 #[derive(JsonSchema)]

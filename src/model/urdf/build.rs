@@ -8,18 +8,16 @@
 //!
 //! The others are frames at points of it, named after them.
 
+use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder, Turning};
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
 use super::algebra::{self, Quaternion, Value, Vector};
 use super::robot::{Joint as UrdfJoint, Kind, Number, Robot};
-use crate::model::description::{
-    Body, Coordinate, Inertia, Joint, Output, Point, PointRef, RobotTree, Rotation, StartValue, TimeOrder, TreeJoint,
-    TreeLink,
-};
-use crate::model::kinds::{JointCoordinate, JointKind, Turning};
-use crate::model::reader::Reader;
+use crate::model::description::{Body, Inertia, Joint, Output, Point, RobotTree, StartValue, TreeJoint, TreeLink};
+use crate::model::kinds::JointKind;
+use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².

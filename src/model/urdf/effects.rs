@@ -4,17 +4,17 @@
 //! Damping is −d v, Coulomb friction −f tanh(v/v₀), each between the joint's two bodies, v the joint's velocity. They are
 //! called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
 
+use crate::grammar::{JointCoordinate, OnJoint};
 use symdiff::Formula;
 
 use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
+use crate::grammar::motions::dimensions_of;
 use crate::model::description::Effect;
-use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, OnJoint, Rubbing, Stop};
+use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, Rubbing, Stop};
 use crate::model::effects;
 use crate::model::file;
-use crate::model::kinds::JointCoordinate;
-use crate::model::motors::dimensions_of;
-use crate::model::reader::Reader;
+use crate::model::names::Reader;
 use crate::model::scenes::{self, LeftOut};
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;

@@ -6,7 +6,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
 use super::tree;
-use crate::model::names;
+use crate::grammar::names;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::robot::{Number, Robot};
+use crate::model::names::Reader;
 use crate::model::overrides::Override;
-use crate::model::reader::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};

@@ -8,12 +8,12 @@ use std::path::PathBuf;
 
 use symdiff::{Formula, Graph, Spline};
 
-use super::description::{Description, ReactionComponent, Referent};
 use super::dimension::{self, Kind};
-use super::file::Grammar;
-use super::kinds::JointKind;
-use super::names::{self, Context};
+use super::element::{Quantity, Requirement};
+use super::mapping::Grammar;
+use super::names::{self, Context, NameError};
 use super::quantity::{Dimension, Unit, number_and_unit};
+use super::symbols::{Measure, ReactionComponent, Referent, SymbolTable};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -22,11 +22,14 @@ use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 /// Operations in one formula.
 const MAX_TERMS: usize = 10_000;
 
-/// A description in the making.
-pub struct Reader<'d> {
+/// What is read so far of a model of symbols `S`, and what is known of its names.
+pub struct Reader<'d, S> {
+    /// Errors and warnings so far.
     pub diagnostics: &'d mut Diagnostics,
     /// Names first, then what they stand for.
-    pub model: Description,
+    pub model: S,
+    /// The effect that is being read, with what it measures: its own formulas may refer to that.
+    pub own: Option<(String, Vec<(Measure, Dimension)>)>,
     /// Dimension of each parameter.
     pub kinds: Vec<Kind>,
     /// Parameter values at which requirements are checked.
@@ -75,24 +78,29 @@ pub struct Fields<'n> {
     /// Where to say that something is missing.
     pub at: Span,
     what: &'static str,
-    keys: &'static [&'static str],
-    entries: HashMap<&'n str, &'n Entry>,
+    keys: Vec<&'static str>,
+    entries: HashMap<&'n str, (Span, &'n Node)>,
 }
 
 impl<'n> Fields<'n> {
+    /// A mapping of one key, whose value stands for all of it.
+    pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
+        Self { at, what, keys, entries: HashMap::from([(key, (node.span.clone(), node))]) }
+    }
+
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<&'n Node> {
         debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
-        self.entries.get(key).map(|entry| &entry.value)
+        self.entries.get(key).map(|(_, node)| *node)
     }
 
     /// The place of a key.
     pub fn key_span(&self, key: &str) -> Span {
-        self.entries.get(key).map_or_else(|| self.at.clone(), |entry| entry.key_span.clone())
+        self.entries.get(key).map_or_else(|| self.at.clone(), |(span, _)| span.clone())
     }
 }
 
-impl Reader<'_> {
+impl<S: SymbolTable> Reader<'_, S> {
     /// Reports an error.
     pub fn error(&mut self, span: Span, message: impl Into<String>, help: impl Into<Option<String>>) {
         self.diagnostics.push(Diagnostic::error(span, message).help(help));
@@ -113,27 +121,39 @@ impl Reader<'_> {
 
     /// A mapping with the keys of `G`; `at` is where to say that one is missing.
     pub fn fields<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<Fields<'n>> {
+        self.mapping(G::WHAT, G::KEYS.to_vec(), node, at)
+    }
+
+    /// A mapping with these keys; `at` is where to say that one is missing.
+    pub fn mapping<'n>(
+        &mut self,
+        what: &'static str,
+        keys: Vec<&'static str>,
+        node: &'n Node,
+        at: Span,
+    ) -> Option<Fields<'n>> {
         let entries: &[Entry] = match &node.value {
             Value::Mapping(entries) => entries,
             Value::Scalar(scalar) if scalar.is_null() => &[],
             _ => {
-                let message = format!("{} is a mapping, but here is {}", G::WHAT, node.kind());
-                let help = format!("its keys are {}", suggest::list(G::KEYS));
+                let message = format!("{what} is a mapping, but here is {}", node.kind());
+                let help = format!("its keys are {}", suggest::list(&keys));
                 self.error(node.span.clone(), message, help);
                 return None;
             }
         };
-        for entry in entries.iter().filter(|entry| !G::KEYS.contains(&entry.key.as_str())) {
-            let message = format!("{} has no `{}`", G::WHAT, clip(&entry.key));
+        for entry in entries.iter().filter(|entry| !keys.contains(&entry.key.as_str())) {
+            let message = format!("{what} has no `{}`", clip(&entry.key));
             let help = if entry.key.contains(':') {
                 Some("a space belongs behind the `:`".to_owned())
             } else {
-                suggest::help(&entry.key, "keys", G::KEYS.iter().copied())
+                suggest::help(&entry.key, "keys", keys.iter().copied())
             };
             self.error(entry.key_span.clone(), message, help);
         }
-        let entries = entries.iter().map(|entry| (entry.key.as_str(), entry)).collect();
-        Some(Fields { at, what: G::WHAT, keys: G::KEYS, entries })
+        let entries =
+            entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
+        Some(Fields { at, what, keys, entries })
     }
 
     /// The value of a key that must be there.
@@ -147,29 +167,34 @@ impl Reader<'_> {
 
     /// The only entry of a mapping that chooses a kind: `{ torque: … }`.
     pub fn only<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<&'n Entry> {
-        let kinds = || suggest::list(G::KEYS);
+        self.kind_of_entry(G::WHAT, G::KEYS, node, at)
+    }
+
+    /// The only entry of a mapping that chooses one of these kinds.
+    pub fn kind_of_entry<'n>(&mut self, what: &str, known: &[&str], node: &'n Node, at: Span) -> Option<&'n Entry> {
+        let kinds = || suggest::list(known);
         match &node.value {
             Value::Mapping(entries) => match entries.as_slice() {
-                [entry] if G::KEYS.contains(&entry.key.as_str()) => Some(entry),
+                [entry] if known.contains(&entry.key.as_str()) => Some(entry),
                 [entry] => {
-                    let message = format!("`{}` is not a kind of {}", clip(&entry.key), bare(G::WHAT));
-                    let help = suggest::help(&entry.key, "kinds", G::KEYS.iter().copied());
+                    let message = format!("`{}` is not a kind of {}", clip(&entry.key), bare(what));
+                    let help = suggest::help(&entry.key, "kinds", known.iter().copied());
                     self.error(entry.key_span.clone(), message, help);
                     None
                 }
                 [] => {
-                    self.error(at, format!("{} needs a kind", G::WHAT), format!("the kinds are {}", kinds()));
+                    self.error(at, format!("{} needs a kind", what), format!("the kinds are {}", kinds()));
                     None
                 }
                 [_, second, ..] => {
-                    let message = format!("{} has one kind, but `{}` is a second key", G::WHAT, clip(&second.key));
+                    let message = format!("{} has one kind, but `{}` is a second key", what, clip(&second.key));
                     let help = format!("write `name: {{ kind: … }}`, with one of {}", kinds());
                     self.error(second.key_span.clone(), message, help);
                     None
                 }
             },
             _ => {
-                let message = format!("{} is a mapping of its kind, but here is {}", G::WHAT, node.kind());
+                let message = format!("{} is a mapping of its kind, but here is {}", what, node.kind());
                 let help = format!("write `{{ kind: … }}`; the kinds are {}", kinds());
                 self.error(if node.is_null() { at } else { node.span.clone() }, message, help);
                 None
@@ -295,7 +320,7 @@ impl Reader<'_> {
     pub fn check_names(&mut self, node: &Node, formula: &Formula, offset: usize, context: Context) -> bool {
         let mut all_known = true;
         for (name, span) in formula.names() {
-            match self.model.resolve(name, context) {
+            match self.resolve(name, context) {
                 Ok(Referent::Parameter(index)) => {
                     if let Some(used) = self.used.get_mut(index) {
                         *used = true;
@@ -315,10 +340,40 @@ impl Reader<'_> {
         all_known
     }
 
+    /// What a name stands for; the effect that is being read has the number that it will have.
+    pub fn referent(&self, name: &str) -> Option<Referent> {
+        names::referent(&self.model, name).or_else(|| self.own_measure(name)?.ok())
+    }
+
+    /// What a name stands for where it may stand for that.
+    fn resolve(&self, name: &str, context: Context) -> Result<Referent, NameError> {
+        match names::referent(&self.model, name) {
+            Some(referent) => names::allowed(name, referent, context),
+            None => match self.own_measure(name) {
+                Some(own) => own.and_then(|referent| names::allowed(name, referent, context)),
+                None => Err(names::unknown(&self.model, name, context)),
+            },
+        }
+    }
+
+    /// What the effect that is being read measures; nothing where the name is of something else.
+    fn own_measure(&self, name: &str) -> Option<Result<Referent, NameError>> {
+        let (own, measures) = self.own.as_ref()?;
+        let member = name.strip_prefix(own.as_str())?.strip_prefix('.')?;
+        if self.model.body(own).is_some() || self.model.joint(own).is_some() {
+            return None;
+        }
+        let found = measures.iter().find(|(measure, _)| measure.name() == member);
+        Some(match found {
+            Some(&(measure, _)) => Ok(Referent::Measure { effect: self.model.effects(), measure }),
+            None => Err(names::no_measure(own, member, measures)),
+        })
+    }
+
     /// The formula's dimension; what does not go together in it is reported.
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
-        let name = |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent));
+        let name = |name: &str| self.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent));
         let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;
@@ -337,15 +392,18 @@ impl Reader<'_> {
     /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
     fn kind_of(&self, referent: Referent) -> Kind {
         if let Referent::Reaction { joint, component: ReactionComponent::Force } = referent
-            && let JointKind::Equation { left, .. } = &self.model.joints[joint].kind
+            && let Some(left) = self.model.equated(joint)
         {
             let name =
-                |name: &str| self.model.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+                |name: &str| self.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
             let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
         }
         if let Referent::Measure { effect, measure } = referent {
-            let measures = self.model.effects[effect].kind.measures();
+            let measures = match &self.own {
+                Some((_, own)) if effect == self.model.effects() => own.clone(),
+                _ => self.model.measures(effect),
+            };
             let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
             return dimension.map_or(Kind::Any, Kind::motion);
         }
@@ -379,6 +437,35 @@ impl Reader<'_> {
         };
         self.require(node, &formula, |_| true, "");
         Some(formula)
+    }
+
+    /// A formula or a number with its unit that is what it must be.
+    pub fn quantity(&mut self, node: &Node, quantity: &Quantity) -> Option<Formula> {
+        let formula = self.formula(node, quantity.context, quantity.dimension())?;
+        if let Some(Requirement { holds, message }) = quantity.requirement {
+            self.require(node, &formula, holds, message);
+        }
+        Some(formula)
+    }
+
+    /// Reports where the second of two keys is not larger than the first.
+    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
+        for corner in 0..self.corners.len() {
+            let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
+            if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
+                let label = &self.corners[corner].label;
+                let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
+                self.error(fields.key_span(high), message, None);
+                return;
+            }
+        }
+    }
+
+    /// Reports two keys of which only one may be there, at the first.
+    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
+        if fields.get(first).is_some() && fields.get(second).is_some() {
+            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
+        }
     }
 
     /// Like [`Self::formula`], with a requirement on its values: `must be positive`.
@@ -430,7 +517,7 @@ impl Reader<'_> {
     /// The formula's value at a corner; `None` where it is made of more than parameters.
     pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
         let corner = self.corners.get(corner)?;
-        evaluate(formula, |name| match self.model.referent(name) {
+        evaluate(formula, |name| match self.referent(name) {
             Some(Referent::Parameter(index)) => corner.values.get(index).copied(),
             _ => None,
         })
@@ -438,7 +525,7 @@ impl Reader<'_> {
 
     /// Whether an uncertain parameter stands behind a name of the formula.
     pub fn is_uncertain(&self, formula: &Formula) -> bool {
-        formula.names().any(|(name, _)| match self.model.referent(name) {
+        formula.names().any(|(name, _)| match self.referent(name) {
             Some(Referent::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
             _ => false,
         })

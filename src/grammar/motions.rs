@@ -1,8 +1,7 @@
 //! Parts of motions that names can speak of: `body.vx`, `body.omega.z`, `joint.angle`.
 
-use super::description::{Coordinate, TimeOrder};
-use super::kinds::JointCoordinate;
 use super::quantity::Dimension;
+use super::symbols::{Coordinate, JointCoordinate, TimeOrder};
 
 /// A part of a motion: its name, what it is a part of, how often that is differentiated.
 pub type Motion<T> = (&'static str, T, TimeOrder);
@@ -85,5 +84,13 @@ pub fn motion_dimension(coordinate: Coordinate, order: TimeOrder) -> Dimension {
         (_, TimeOrder::Position) => Dimension::LENGTH,
         (_, TimeOrder::Velocity) => Dimension::VELOCITY,
         (_, TimeOrder::Acceleration) => Dimension::ACCELERATION,
+    }
+}
+
+/// Of a joint's coordinate, of its rate, and of what pushes it.
+pub fn dimensions_of(coordinate: JointCoordinate) -> [Dimension; 3] {
+    match coordinate {
+        JointCoordinate::Angle => [Dimension::ANGLE, Dimension::ANGULAR_VELOCITY, Dimension::TORQUE],
+        JointCoordinate::Displacement => [Dimension::LENGTH, Dimension::VELOCITY, Dimension::FORCE],
     }
 }

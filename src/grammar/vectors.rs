@@ -2,20 +2,20 @@
 
 use symdiff::Formula;
 
-use super::description::Rotation;
-use super::file;
 use super::names::Context;
+use super::plane;
 use super::quantity::Dimension;
 use super::reader::{Reader, Written};
-use super::space;
+use super::symbols::{Rotation, SymbolTable};
+use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Node, Value};
 
-impl Reader<'_> {
+impl<S: SymbolTable> Reader<'_, S> {
     /// Components of a dimension: two, in the plane z = 0, or three.
     pub fn components(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<[Formula; 3]> {
         let items = self.two_or_three(node, "a list of two or three numbers")?;
-        if !self.model.space.spatial && space::leaves_plane(node) {
+        if !self.model.is_spatial() && plane::leaves_plane(node) {
             self.leaves_the_plane(&items[2]);
         }
         let mut read = items.iter().map(|item| self.formula(item, context, wanted)).collect::<Vec<_>>().into_iter();
@@ -62,7 +62,7 @@ impl Reader<'_> {
 
     /// A direction along which something moves: in the plane, where the mechanism is planar.
     pub fn direction(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        if !self.model.space.spatial && space::points_out(node) {
+        if !self.model.is_spatial() && plane::points_out(node) {
             self.leaves_the_plane(node);
         }
         self.axis(node)
@@ -70,7 +70,7 @@ impl Reader<'_> {
 
     /// An axis about which something turns: z, where the mechanism is planar.
     pub fn turning_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        if !self.model.space.spatial && space::turns_out(node) {
+        if !self.model.is_spatial() && plane::turns_out(node) {
             self.leaves_the_plane(node);
         }
         self.axis(node)
@@ -111,7 +111,7 @@ impl Reader<'_> {
 
     /// A rotation of parameters; `at` is where to say that something is missing.
     pub fn rotation(&mut self, node: &Node, at: Span) -> Option<Rotation> {
-        let fields = self.fields::<file::Rotation>(node, at)?;
+        let fields = self.fields::<values::Rotation>(node, at)?;
         let given: Vec<&str> =
             ["rpy", "axis", "quaternion"].into_iter().filter(|key| fields.get(key).is_some()).collect();
         let [kind] = given.as_slice() else {

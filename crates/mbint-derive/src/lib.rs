@@ -1,0 +1,40 @@
+//! Derives what `mbint` needs of an element from its struct: reader, schema, documentation, and what it refers to.
+//!
+//! ```text
+//! /// A drive that controls a joint's coordinate.                     description
+//! #[derive(Element)]
+//! #[element(keyword = "servo", what = "a servo", equation = "…", source = "…", example = "{ … }", checked)]
+//! pub struct Servo {
+//!     #[group] on: OnJoint,                                          keys that stand beside the others
+//!     /// What the coordinate should be.                             description of the key
+//!     #[quantity(unit = "m or rad", time)] target: Formula,          required
+//!     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)] derivative: Formula,
+//!     #[quantity(unit = "N or N*m", positive, constant)] limit: Option<Formula>,
+//! }
+//! ```
+//!
+//! `equation` may be repeated; `short = "key"` lets a list stand for the mapping with that key alone. A struct without `keyword` is a
+//! mapping within an element where it says `what`, and else a group of keys. `checked` calls the struct's
+//! `grammar::Checked`. Of a key: `default = …`, `default_with("in words", expression of earlier keys)`, `constant` or `time` for
+//! what its formula may depend on, `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`.
+
+mod attributes;
+mod choice;
+mod element;
+
+use proc_macro::TokenStream;
+use syn::{DeriveInput, parse_macro_input};
+
+/// Derives `grammar::Group`, and `grammar::Element` or `grammar::Value`.
+#[proc_macro_derive(Element, attributes(element, quantity, key, group))]
+pub fn element(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    element::derive(&input).unwrap_or_else(|error| error.to_compile_error()).into()
+}
+
+/// Derives `grammar::Value` for an enum of words: the variants in snake case, each with its documentation.
+#[proc_macro_derive(Choice)]
+pub fn choice(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    choice::derive(&input).unwrap_or_else(|error| error.to_compile_error()).into()
+}

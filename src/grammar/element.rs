@@ -1,0 +1,294 @@
+//! What an element of the language is: a struct whose fields are its keys.
+//!
+//! `#[derive(Element)]` (crate `mbint-derive`) makes all of this from the struct: the reader, the schema, the documentation, the
+//! formulas and references within, and whether it leaves the plane.
+
+use schemars::{Schema, SchemaGenerator};
+use serde::Serialize;
+use symdiff::Formula;
+
+use super::names::Context;
+use super::quantity::{Dimension, Unit};
+use super::reader::{Fields, Reader};
+use super::symbols::{Reference, SymbolTable};
+use crate::syntax::diagnostic::Diagnostics;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{self, Node};
+
+/// Keys of one mapping that are read together.
+pub trait Group: Sized {
+    /// Names of the keys, in the order in which they are suggested.
+    fn key_names() -> Vec<&'static str>;
+
+    /// The keys with all that is known of them.
+    fn keys(generator: &mut SchemaGenerator) -> Vec<Key>;
+
+    /// Reads the keys; `units` is the place of the unit that holds in those that have several. `None` where an error was reported.
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, units: usize) -> Option<Self>;
+
+    /// The place of the unit that holds for the keys after these; `None` where these do not decide it.
+    fn units(_read: Option<&Self>) -> Option<usize> {
+        None
+    }
+
+    /// Every formula within.
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>);
+
+    /// Every body, point and joint that is named within, formulas aside.
+    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>);
+
+    /// The key that leaves the plane, by the text alone.
+    fn leaves_plane(mapping: &Node) -> Option<&'static str>;
+}
+
+/// A kind of effect or joint.
+pub trait Element: Group {
+    /// The word for it in a model file.
+    const KEYWORD: &'static str;
+    /// What it is, for messages: `a drag`.
+    const WHAT: &'static str;
+    /// What it is, in a line.
+    const DESCRIPTION: &'static str;
+    /// What it does, in the symbols of its file's head.
+    const EQUATIONS: &'static [&'static str];
+    /// Where that is from.
+    const SOURCE: &'static str;
+    /// Its keys in the mechanism that examples belong to.
+    const EXAMPLE: &'static str;
+    /// The key whose list may stand for the mapping.
+    const SHORT: Option<&'static str>;
+
+    /// Reads it; `at` is where to say that a key is missing.
+    fn read_node<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span) -> Option<Self> {
+        let fields = match (&node.value, Self::SHORT) {
+            (yaml::Value::Sequence(_), Some(key)) => Fields::single(Self::WHAT, Self::key_names(), key, node, at),
+            _ => reader.mapping(Self::WHAT, Self::key_names(), node, at)?,
+        };
+        Self::read(reader, &fields, 0)
+    }
+
+    /// The schema of its mapping, with its example.
+    fn object(generator: &mut SchemaGenerator) -> Schema {
+        let keys = Self::keys(generator);
+        let mut schema = object_schema(Self::DESCRIPTION, keys);
+        schema.insert("examples".to_owned(), serde_json::Value::Array(vec![json_of(Self::EXAMPLE)]));
+        schema
+    }
+}
+
+/// What else must hold of the keys of an element.
+pub trait Checked: Sized {
+    /// Reports keys that do not go together, and missing ones of which another would do.
+    fn check_keys<S: SymbolTable>(_reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
+
+    /// Reports values that do not go together.
+    fn check<S: SymbolTable>(&self, _reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
+}
+
+/// What can stand behind a key: a formula, a point, a mapping.
+pub trait Value: Sized {
+    /// Reads it; `at` is the key's place. `None` where an error was reported.
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, quantity: &Quantity) -> Option<Self>;
+
+    /// What a file may have there.
+    fn schema(generator: &mut SchemaGenerator) -> Schema;
+
+    /// Keys within it.
+    fn keys() -> Vec<Key> {
+        Vec::new()
+    }
+
+    /// As a file has it; `None` where it has no short form.
+    fn to_json(&self) -> Option<serde_json::Value> {
+        None
+    }
+
+    /// Every formula within.
+    fn formulas<'a>(&'a self, _found: &mut Vec<&'a Formula>) {}
+
+    /// Every body, point and joint that is named within, formulas aside.
+    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
+
+    /// Whether it leaves the plane, by the text alone.
+    fn leaves_plane(_node: &Node) -> bool {
+        false
+    }
+}
+
+/// A value that a plain number can stand for.
+pub trait FromNumber {
+    /// The number, in every component.
+    fn from_number(value: f64) -> Self;
+}
+
+/// What the number of a key must be.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantity {
+    /// As one writes it; several units are divided by ` or `.
+    pub unit: &'static str,
+    /// Which of them holds.
+    pub choice: usize,
+    /// What a formula may depend on.
+    pub context: Context,
+    /// What must hold at every corner of the parameters.
+    pub requirement: Option<Requirement>,
+}
+
+impl Quantity {
+    /// What its unit measures.
+    pub fn dimension(&self) -> Dimension {
+        let units: Vec<&str> = self.unit.split(" or ").collect();
+        let unit = units.get(self.choice).or(units.first()).copied().unwrap_or_default();
+        // A test parses every unit of every element.
+        Unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension)
+    }
+}
+
+/// What must hold of a number.
+#[derive(Clone, Copy, Debug)]
+pub struct Requirement {
+    /// Whether it does.
+    pub holds: fn(f64) -> bool,
+    /// What to say where it does not: `must be positive`.
+    pub message: &'static str,
+}
+
+impl Requirement {
+    /// Above 0.
+    pub const POSITIVE: Self = Self { holds: |value| value > 0.0, message: "must be positive" };
+    /// 0 or above.
+    pub const NONNEGATIVE: Self = Self { holds: |value| value >= 0.0, message: "must not be negative" };
+    /// Not 0.
+    pub const NONZERO: Self = Self { holds: |value| value != 0.0, message: "must not be zero" };
+}
+
+/// A key, for people and for the schema.
+#[derive(Clone, Debug)]
+pub struct Key {
+    /// As it is written.
+    pub name: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+    /// Its unit, or several divided by ` or `; empty where it is no quantity.
+    pub unit: &'static str,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What holds where it is not there.
+    pub default: Option<serde_json::Value>,
+    /// The same in words, where it depends on other keys.
+    pub default_in_words: Option<&'static str>,
+    /// What may stand behind it.
+    pub schema: Schema,
+    /// Keys within it.
+    pub keys: Vec<Key>,
+}
+
+impl Key {
+    /// What it is, with its unit and default, in a line.
+    pub fn description(&self) -> String {
+        let mut text = self.doc.trim_end_matches('.').to_owned();
+        if !self.unit.is_empty() && self.unit != "1" {
+            text += &format!(", {}", self.unit);
+        }
+        let default = self.default.as_ref().map(|default| default.to_string().replace('"', ""));
+        if let Some(default) = default.or_else(|| self.default_in_words.map(str::to_owned)) {
+            text += &format!("; by default {default}");
+        }
+        text + "."
+    }
+}
+
+/// A mapping with these keys alone.
+pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
+    let required: Vec<&str> = keys.iter().filter(|key| key.required).map(|key| key.name).collect();
+    let mut schema = schemars::json_schema!({ "description": description, "type": "object" });
+    let mut properties = serde_json::Map::new();
+    for key in &keys {
+        let mut property = key.schema.clone();
+        property.insert("description".to_owned(), key.description().into());
+        if let Some(default) = &key.default {
+            property.insert("default".to_owned(), default.clone());
+        }
+        properties.insert(key.name.to_owned(), property.to_value());
+    }
+    schema.insert("properties".to_owned(), properties.into());
+    schema.insert("additionalProperties".to_owned(), false.into());
+    if !required.is_empty() {
+        schema.insert("required".to_owned(), required.into());
+    }
+    schema
+}
+
+/// An example as JSON.
+fn json_of(yaml: &str) -> serde_json::Value {
+    fn value(node: &Node) -> serde_json::Value {
+        match &node.value {
+            yaml::Value::Mapping(entries) => {
+                entries.iter().map(|entry| (entry.key.clone(), value(&entry.value))).collect()
+            }
+            yaml::Value::Sequence(items) => items.iter().map(value).collect(),
+            yaml::Value::Scalar(scalar) => match scalar.text.parse::<f64>() {
+                Ok(number) => number_as_json(number),
+                Err(_) => scalar.text.clone().into(),
+            },
+        }
+    }
+    let mut diagnostics = Diagnostics::new("example".to_owned(), yaml);
+    yaml::parse(yaml, &mut diagnostics).as_ref().map_or(serde_json::Value::Null, value)
+}
+
+/// A number; a whole one without decimals.
+pub fn number_as_json(number: f64) -> serde_json::Value {
+    let whole = number as i64;
+    if whole as f64 == number { whole.into() } else { number.into() }
+}
+
+/// An element of the language, for people.
+#[derive(Debug, Serialize)]
+pub struct ElementDocs {
+    /// The word for it in a model file.
+    pub keyword: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// What it does.
+    pub formulas: &'static [&'static str],
+    /// Where that is from.
+    pub source: &'static str,
+    /// Its keys in the mechanism of examples.
+    pub example: &'static str,
+    /// Its keys.
+    pub keys: Vec<KeyDocs>,
+}
+
+/// A key of an element, for people.
+#[derive(Clone, Debug, Serialize)]
+pub struct KeyDocs {
+    /// As it is written.
+    pub name: &'static str,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What it is, with its unit and default.
+    pub description: String,
+    /// Keys within it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub keys: Vec<KeyDocs>,
+}
+
+impl ElementDocs {
+    /// Of a kind of element.
+    pub fn of<E: Element>() -> Self {
+        fn docs(key: &Key) -> KeyDocs {
+            let keys = key.keys.iter().map(docs).collect();
+            KeyDocs { name: key.name, required: key.required, description: key.description(), keys }
+        }
+        let keys = E::keys(&mut SchemaGenerator::default());
+        Self {
+            keyword: E::KEYWORD,
+            description: E::DESCRIPTION,
+            formulas: E::EQUATIONS,
+            source: E::SOURCE,
+            example: E::EXAMPLE,
+            keys: keys.iter().map(docs).collect(),
+        }
+    }
+}

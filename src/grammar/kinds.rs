@@ -1,0 +1,326 @@
+//! What stands behind keys: formulas, vectors, directions, references, groups of them.
+
+use std::ops::Deref;
+
+use schemars::{Schema, SchemaGenerator, json_schema};
+use symdiff::Formula;
+
+use super::element::{FromNumber, Group, Key, Quantity, Value, number_as_json};
+use super::plane;
+use super::reader::{Fields, Reader};
+use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, SymbolTable, Turning};
+use super::values;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{self, Node};
+
+impl Value for Formula {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span, quantity: &Quantity) -> Option<Self> {
+        reader.quantity(node, quantity)
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<values::Number>()
+    }
+
+    fn to_json(&self) -> Option<serde_json::Value> {
+        self.as_number().map(number_as_json)
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        found.push(self);
+    }
+}
+
+impl FromNumber for Formula {
+    fn from_number(value: f64) -> Self {
+        Self::number(value)
+    }
+}
+
+impl<T: Value> Value for Option<T> {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, quantity: &Quantity) -> Option<Self> {
+        T::read(reader, node, at, quantity).map(Some)
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        T::schema(generator)
+    }
+
+    fn keys() -> Vec<Key> {
+        T::keys()
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        self.iter().for_each(|value| value.formulas(found));
+    }
+
+    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>) {
+        self.iter_mut().for_each(|value| value.references(found));
+    }
+
+    fn leaves_plane(node: &Node) -> bool {
+        T::leaves_plane(node)
+    }
+}
+
+/// Vectors that are read in different ways.
+macro_rules! vector {
+    ($($(#[$doc:meta])* $name:ident, schema $schema:ty, leaves $leaves:path, read $read:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub struct $name(pub [Formula; 3]);
+
+        impl Deref for $name {
+            type Target = [Formula; 3];
+
+            fn deref(&self) -> &[Formula; 3] {
+                &self.0
+            }
+        }
+
+        impl FromNumber for $name {
+            fn from_number(value: f64) -> Self {
+                Self([value; 3].map(Formula::number))
+            }
+        }
+
+        impl Value for $name {
+            fn read<S: SymbolTable>(
+                reader: &mut Reader<'_, S>,
+                node: &Node,
+                _at: Span,
+                quantity: &Quantity,
+            ) -> Option<Self> {
+                let read: fn(&mut Reader<'_, S>, &Node, &Quantity) -> Option<[Formula; 3]> = $read;
+                read(reader, node, quantity).map(Self)
+            }
+
+            fn schema(generator: &mut SchemaGenerator) -> Schema {
+                generator.subschema_for::<$schema>()
+            }
+
+            fn to_json(&self) -> Option<serde_json::Value> {
+                vector_as_json(&self.0)
+            }
+
+            fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+                found.extend(&self.0);
+            }
+
+            fn leaves_plane(node: &Node) -> bool {
+                $leaves(node)
+            }
+        }
+    )*};
+}
+
+vector! {
+    /// Components along x and y, and in space along z.
+    Components, schema values::Components, leaves plane::points_out,
+    read |reader, node, quantity| reader.components(node, quantity.context, quantity.dimension());
+    /// A direction along which something moves, of any length but zero.
+    Direction, schema values::Direction, leaves plane::points_out,
+    read |reader, node, _| reader.direction(node);
+    /// An axis about which something turns, of any length but zero.
+    Axis, schema values::Direction, leaves plane::turns_out,
+    read |reader, node, _| reader.turning_axis(node);
+    /// A number for each axis of a frame, or one for all.
+    PerAxis, schema values::PerAxis, leaves nothing_leaves,
+    read |reader, node, quantity| match node.value {
+        yaml::Value::Sequence(_) => reader.three(node, quantity.context, quantity.dimension()),
+        _ => reader.quantity(node, quantity).map(|all| [all.clone(), all.clone(), all]),
+    };
+}
+
+fn nothing_leaves(_: &Node) -> bool {
+    false
+}
+
+/// A unit vector by its axis; a vector of one number in all components by that number.
+fn vector_as_json(vector: &[Formula; 3]) -> Option<serde_json::Value> {
+    let [x, y, z] = [vector[0].as_number()?, vector[1].as_number()?, vector[2].as_number()?];
+    Some(match [x, y, z] {
+        [1.0, 0.0, 0.0] => "x".into(),
+        [0.0, 1.0, 0.0] => "y".into(),
+        [0.0, 0.0, 1.0] => "z".into(),
+        _ if x == y && y == z => number_as_json(x),
+        all => all.map(number_as_json).to_vec().into(),
+    })
+}
+
+/// Along an axis, 0 to 2.
+fn unit_vector(axis: usize) -> [Formula; 3] {
+    std::array::from_fn(|other| Formula::number(f64::from(u8::from(axis == other))))
+}
+
+impl Direction {
+    /// Along an axis, 0 to 2.
+    pub fn along(axis: usize) -> Self {
+        Self(unit_vector(axis))
+    }
+}
+
+impl Axis {
+    /// z.
+    pub fn z() -> Self {
+        Self(unit_vector(2))
+    }
+}
+
+/// References, each by a method of the reader.
+macro_rules! reference {
+    ($($ty:ty, $schema:expr, $read:expr, |$value:ident, $found:ident| $visit:expr;)*) => {$(
+        impl Value for $ty {
+            fn read<S: SymbolTable>(
+                reader: &mut Reader<'_, S>,
+                node: &Node,
+                _at: Span,
+                _quantity: &Quantity,
+            ) -> Option<Self> {
+                let read: fn(&mut Reader<'_, S>, &Node) -> Option<Self> = $read;
+                read(reader, node)
+            }
+
+            fn schema(_: &mut SchemaGenerator) -> Schema {
+                $schema
+            }
+
+            fn references<'a>(&'a mut self, $found: &mut Vec<Reference<'a>>) {
+                let $value = self;
+                $visit;
+            }
+        }
+    )*};
+}
+
+fn name() -> Schema {
+    json_schema!({ "type": "string" })
+}
+
+fn two_names() -> Schema {
+    json_schema!({ "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 })
+}
+
+/// A body, by index; 0 is the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyRef(pub usize);
+
+/// A joint with an angle, by index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TurningJoint(pub usize);
+
+/// A joint with a displacement, by index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlidingJoint(pub usize);
+
+reference! {
+    PointRef, name(), |reader, node| reader.point_ref(node), |point, found| found.push(Reference::Point(point));
+    BodyRef, name(), |reader, node| reader.body_ref(node).map(BodyRef), |body, found| found.push(Reference::Body(&mut body.0));
+    TurningJoint, name(), |reader, node| reader.joint_ref(node, JointCoordinate::Angle).map(TurningJoint),
+        |joint, found| found.push(Reference::Joint(&mut joint.0));
+    SlidingJoint, name(), |reader, node| reader.joint_ref(node, JointCoordinate::Displacement).map(SlidingJoint),
+        |joint, found| found.push(Reference::Joint(&mut joint.0));
+    [PointRef; 2], two_names(), |reader, node| reader.between_points(node),
+        |points, found| found.extend(points.iter_mut().map(Reference::Point));
+    [BodyRef; 2], two_names(), |reader, node| reader.between_bodies(node).map(|bodies| bodies.map(BodyRef)),
+        |bodies, found| found.extend(bodies.iter_mut().map(|body| Reference::Body(&mut body.0)));
+    [Turning; 2], two_names(), |reader, node| reader.turning(node),
+        |turnings, found| found.extend(turnings.iter_mut().map(|turning| match turning {
+            Turning::Body(body) => Reference::Body(body),
+            Turning::Joint(joint) => Reference::Joint(joint),
+        }));
+}
+
+/// `on` and `coordinate`: a joint's coordinate. Units that depend on it are those of a displacement, then those of an angle.
+impl Group for OnJoint {
+    fn key_names() -> Vec<&'static str> {
+        vec!["on", "coordinate"]
+    }
+
+    fn keys(_: &mut SchemaGenerator) -> Vec<Key> {
+        let key = |name, doc, required, words, schema| Key {
+            name,
+            doc,
+            unit: "",
+            required,
+            default: None,
+            default_in_words: words,
+            schema,
+            keys: Vec::new(),
+        };
+        let words = json_schema!({
+            "oneOf": [
+                { "description": "About the joint's axis.", "type": "string", "const": "angle" },
+                { "description": "Along it.", "type": "string", "const": "displacement" }
+            ]
+        });
+        let usual = Some("the displacement of a prismatic joint, the angle of others");
+        vec![
+            key("on", "A revolute, prismatic, cylindrical or screw joint.", true, None, name()),
+            key("coordinate", "Which of the joint's.", false, usual, words),
+        ]
+    }
+
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
+        reader.on_joint(fields)
+    }
+
+    fn units(read: Option<&Self>) -> Option<usize> {
+        Some(read.map_or(JointCoordinate::Angle, |on| on.coordinate).unit_choice())
+    }
+
+    fn formulas<'a>(&'a self, _: &mut Vec<&'a Formula>) {}
+
+    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>) {
+        found.push(Reference::Joint(&mut self.joint));
+    }
+
+    fn leaves_plane(_: &Node) -> Option<&'static str> {
+        None
+    }
+}
+
+/// Where `on` is there.
+impl Group for Option<OnJoint> {
+    fn key_names() -> Vec<&'static str> {
+        OnJoint::key_names()
+    }
+
+    fn keys(generator: &mut SchemaGenerator) -> Vec<Key> {
+        OnJoint::keys(generator).into_iter().map(|key| Key { required: false, ..key }).collect()
+    }
+
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
+        if fields.get("on").is_some() {
+            return reader.on_joint(fields).map(Some);
+        }
+        if fields.get("coordinate").is_some() {
+            reader.error(fields.key_span("coordinate"), "`coordinate` goes with `on`, a joint", None);
+        }
+        Some(None)
+    }
+
+    fn units(read: Option<&Self>) -> Option<usize> {
+        read?.as_ref().map(|on| on.coordinate.unit_choice())
+    }
+
+    fn formulas<'a>(&'a self, _: &mut Vec<&'a Formula>) {}
+
+    fn references<'a>(&'a mut self, found: &mut Vec<Reference<'a>>) {
+        found.extend(self.as_mut().map(|on| Reference::Joint(&mut on.joint)));
+    }
+
+    fn leaves_plane(_: &Node) -> Option<&'static str> {
+        None
+    }
+}
+
+impl JointCoordinate {
+    /// The place of its units in those of a key: `m or rad`.
+    pub fn unit_choice(self) -> usize {
+        match self {
+            Self::Displacement => 0,
+            Self::Angle => 1,
+        }
+    }
+}

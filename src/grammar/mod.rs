@@ -1,0 +1,29 @@
+//! What a model file is made of: elements with their keys, quantities with units, names, and the reader that keeps places.
+//!
+//! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
+
+#![allow(dead_code, unused_imports)] // effects and joints are derived next
+
+pub(crate) mod dimension;
+mod element;
+mod kinds;
+pub(crate) mod mapping;
+pub(crate) mod motions;
+pub(crate) mod names;
+mod places;
+pub(crate) mod plane;
+pub(crate) mod quantity;
+pub(crate) mod reader;
+mod symbols;
+pub(crate) mod values;
+mod vectors;
+
+pub(crate) use crate::syntax::source::Span;
+pub(crate) use crate::syntax::yaml::Node;
+pub use element::{
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, object_schema,
+};
+pub use kinds::{Axis, BodyRef, Components, Direction, PerAxis, SlidingJoint, TurningJoint};
+pub use names::Context;
+pub use reader::{Fields, Reader};
+pub use symbols::*;

@@ -1,0 +1,417 @@
+//! What a name in a formula means: the one place that decides it.
+
+use std::ops::Range;
+
+use super::dimension::Kind;
+use super::motions::{
+    ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
+};
+use super::quantity::Dimension;
+use super::symbols::{Coordinate, EnergyKind, Measure, ReactionComponent, Referent, SymbolTable, TimeOrder};
+use crate::syntax::suggest;
+
+/// The ground's name.
+pub const GROUND: &str = "ground";
+
+/// Names without a dot that are taken.
+const ENERGIES: [(&str, EnergyKind); 3] = [
+    ("energy", EnergyKind::Total),
+    ("kinetic_energy", EnergyKind::Kinetic),
+    ("potential_energy", EnergyKind::Potential),
+];
+
+/// Where a formula stands, and so what it may be made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Context {
+    /// Parameters only.
+    Constant,
+    /// Parameters and time.
+    Time,
+    /// Parameters, time, positions and velocities.
+    Effect,
+    /// Parameters, time and positions.
+    Equation,
+    /// Everything.
+    Output,
+}
+
+/// A name that means nothing, or nothing here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameError {
+    /// What is wrong.
+    pub message: String,
+    /// The part of the name that is wrong, in bytes.
+    pub part: Range<usize>,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+/// Whether the word means something by itself in every formula, so that nothing else may be called so.
+pub fn is_reserved(name: &str) -> bool {
+    matches!(name, "t" | "pi")
+        || ENERGIES.iter().any(|(energy, _)| *energy == name)
+        || symdiff::formula::FUNCTIONS.iter().any(|(function, _)| *function == name)
+}
+
+/// What a name in a formula stands for; `None` where it stands for nothing.
+pub fn referent(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+    if let Some(found) = of_robot(table, name) {
+        return Some(found);
+    }
+    let mut parts = name.split('.');
+    match (parts.next()?, parts.next(), parts.next(), parts.next()) {
+        (name, None, ..) => word(table, name),
+        (owner, Some(member), None, _) => body_motion(table, owner, member)
+            .or_else(|| attitude(table, owner, member))
+            .or_else(|| joint_motion(table, owner, member))
+            .or_else(|| reaction(table, owner, member, None))
+            .or_else(|| measure(table, owner, member)),
+        (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
+            .or_else(|| turning(table, owner, member, part))
+            .or_else(|| reaction(table, owner, member, Some(part)))
+            .or_else(|| of_beam(table, name)),
+        _ => None,
+    }
+}
+
+/// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.
+fn of_beam(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+    let (owner, member) = name.rsplit_once('.')?;
+    body_motion(table, owner, member).or_else(|| measure(table, owner, member))
+}
+
+/// A number of the URDF that is a parameter; `link.NAME.x` and `joint.NAME.angle`; or a part of the motion of a link
+/// that is welded to another, and so a point.
+fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+    table.is_robot().then_some(())?;
+    if let Some(index) = table.parameter(name) {
+        return Some(Referent::Parameter(index));
+    }
+    if let Some(rest) = name.strip_prefix("joint.") {
+        let (joint, member) = rest.split_once('.')?;
+        return match member.split_once('.') {
+            None => joint_motion(table, joint, member).or_else(|| reaction(table, joint, member, None)),
+            Some((member, part)) => reaction(table, joint, member, Some(part)),
+        };
+    }
+    let rest = name.strip_prefix("link.").unwrap_or(name);
+    let (link, member) = rest.split_once('.')?;
+    let place = table.link(link)?;
+    let Some(point) = place.point else {
+        // A body of that name: the usual way.
+        return if rest.len() < name.len() { referent(table, rest) } else { None };
+    };
+    let (_, coordinate, order) = motions(table, place.body).find(|(motion, ..)| *motion == member)?;
+    coordinate.is_length().then_some(Referent::Point {
+        body: place.body,
+        point,
+        coordinate: *coordinate,
+        order: *order,
+    })
+}
+
+/// The parts of a body's motion.
+fn motions(table: &impl SymbolTable, body: usize) -> impl Iterator<Item = &'static Motion<Coordinate>> {
+    let spatial = table.is_spatial();
+    let turns_any_way = table.has_orientation(body);
+    MOTIONS.iter().filter(move |(_, coordinate, _)| match coordinate {
+        Coordinate::X | Coordinate::Y => true,
+        Coordinate::Z => spatial,
+        Coordinate::Angle => !turns_any_way,
+        Coordinate::Euler(_) => turns_any_way,
+    })
+}
+
+fn word(table: &impl SymbolTable, word: &str) -> Option<Referent> {
+    if word == "t" {
+        return Some(Referent::Time);
+    }
+    if let Some((_, kind)) = ENERGIES.iter().find(|(energy, _)| *energy == word) {
+        return Some(Referent::Energy(*kind));
+    }
+    table.parameter(word).map(Referent::Parameter)
+}
+
+fn body_motion(table: &impl SymbolTable, body: &str, member: &str) -> Option<Referent> {
+    let body = table.body(body)?;
+    let (_, coordinate, order) = motions(table, body).find(|(motion, ..)| *motion == member)?;
+    (body != 0).then_some(Referent::Coordinate { body, coordinate: *coordinate, order: *order })
+}
+
+fn attitude(table: &impl SymbolTable, body: &str, member: &str) -> Option<Referent> {
+    let body = table.body(body)?;
+    let angle = ATTITUDE.iter().position(|angle| *angle == member)?;
+    table.has_orientation(body).then_some(Referent::RollPitchYaw { body, angle })
+}
+
+fn turning(table: &impl SymbolTable, body: &str, member: &str, part: &str) -> Option<Referent> {
+    let body = table.body(body)?;
+    let &(_, in_body, order) = TURNING.iter().find(|(vector, ..)| *vector == member)?;
+    let axis = AXES.iter().position(|axis| *axis == part)?;
+    (body != 0 && table.is_spatial()).then_some(Referent::AngularMotion { body, axis, order, in_body })
+}
+
+fn point_motion(table: &impl SymbolTable, body: &str, point: &str, member: &str) -> Option<Referent> {
+    let body = table.body(body)?;
+    let point = table.points(body).position(|known| known == point)?;
+    let (_, coordinate, order) = motions(table, body).find(|(motion, ..)| *motion == member)?;
+    coordinate.is_length().then_some(Referent::Point { body, point, coordinate: *coordinate, order: *order })
+}
+
+fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<Referent> {
+    let joint = table.joint(joint)?;
+    let &(_, coordinate, order) = JOINT_MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
+    table.has_coordinate(joint, coordinate).then_some(Referent::JointCoordinate { joint, coordinate, order })
+}
+
+fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Referent> {
+    let joint = table.joint(joint)?;
+    let axis = match part {
+        Some(part) => Some(AXES.iter().position(|axis| *axis == part)?),
+        None => None,
+    };
+    let component = match (member, axis) {
+        ("force", None) => ReactionComponent::Force,
+        ("force", Some(axis)) if axis < 2 || table.is_spatial() => ReactionComponent::ForceAlong(axis),
+        ("torque", None) => ReactionComponent::Torque,
+        ("torque", Some(axis)) if table.is_spatial() => ReactionComponent::TorqueAbout(axis),
+        _ => return None,
+    };
+    Some(Referent::Reaction { joint, component })
+}
+
+fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Referent> {
+    let effect = table.effect(effect)?;
+    let measures = table.measures(effect);
+    let (measure, _) = measures.into_iter().find(|(measure, _)| measure.name() == member)?;
+    Some(Referent::Measure { effect, measure })
+}
+
+/// What a name stands for, or why that may not stand here.
+pub fn allowed(name: &str, referent: Referent, context: Context) -> Result<Referent, NameError> {
+    let refusal = match (context, referent) {
+        (Context::Output, _) | (_, Referent::Parameter(_)) => None,
+        (Context::Constant, Referent::Time) => Some("only parameters can stand here: this value cannot change in time"),
+        (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
+        (_, Referent::Time) => None,
+        (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
+        (_, Referent::Reaction { .. }) => {
+            Some("reactions are known only when the motion is; only outputs may use them")
+        }
+        (_, Referent::Energy(_)) => Some("only outputs may use energies"),
+        (Context::Effect, Referent::Measure { measure, .. }) if measure.is_motion() => None,
+        (_, Referent::Measure { .. }) => {
+            Some("what an effect does is known only when the motion is; only outputs may use it")
+        }
+        (_, Referent::RollPitchYaw { .. }) => {
+            Some("these angles jump by a turn, so only outputs may use them; a joint's `angle` does not")
+        }
+        (
+            _,
+            Referent::Coordinate { order, .. }
+            | Referent::Point { order, .. }
+            | Referent::AngularMotion { order, .. }
+            | Referent::JointCoordinate { order, .. },
+        ) => match (context, order) {
+            (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
+            (Context::Equation, TimeOrder::Velocity) => {
+                Some("an equation constrains positions, so it cannot use velocities")
+            }
+            _ => Some("accelerations are known only when the motion is; only outputs may use them"),
+        },
+    };
+    match refusal {
+        None => Ok(referent),
+        Some(reason) => Err(NameError {
+            message: format!("`{name}` cannot stand here"),
+            part: 0..name.len(),
+            help: Some(reason.to_owned()),
+        }),
+    }
+}
+
+/// What to say of a part that an effect does not have.
+pub fn no_measure(effect: &str, rest: &str, measures: &[(Measure, Dimension)]) -> NameError {
+    let names: Vec<&str> = measures.iter().map(|(measure, _)| measure.name()).collect();
+    let after = effect.len() + 1;
+    NameError {
+        message: format!("effect `{}` has no `{}`", suggest::clip(effect), suggest::clip(rest)),
+        part: after..after + rest.len(),
+        help: (!names.is_empty()).then(|| format!("it has {}", suggest::list(&names))),
+    }
+}
+
+/// Why a name stands for nothing.
+pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameError {
+    let shown = suggest::clip(name);
+    for (prefix, what) in [("link.", "link"), ("joint.", "joint")].into_iter().filter(|_| table.is_robot()) {
+        if name.starts_with(prefix) {
+            let message = format!("the URDF has nothing called `{shown}`");
+            let help = format!("a {what} has numbers and a motion: `mbint check` shows the tree");
+            return NameError { message, part: 0..name.len(), help: Some(help) };
+        }
+    }
+    match name.split_once('.') {
+        None => unknown_word(table, name, &shown, context),
+        Some((owner, rest)) => unknown_member(table, name, owner, rest, context),
+    }
+}
+
+fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Context) -> NameError {
+    let part = 0..name.len();
+    if table.body(name).is_some() {
+        let help = match context {
+            Context::Constant => "only parameters can stand here".to_owned(),
+            _ if table.is_spatial() => format!("say what of it: `{name}.x`, `{name}.omega.x`, …"),
+            _ => format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
+        };
+        return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
+    }
+    if let Some(parts) = table.parts_of_beam(name) {
+        let message = format!("`{shown}` is a beam, not a number");
+        return NameError { message, part, help: Some(parts) };
+    }
+    if table.joint(name).is_some() {
+        let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
+        return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
+    }
+    let parameters = table.parameters();
+    let energies = ENERGIES.iter().map(|(energy, _)| *energy).filter(|_| context == Context::Output);
+    let help = match suggest::nearest(name, parameters.clone().chain(energies)) {
+        Some(near) => Some(format!("did you mean `{near}`?")),
+        None => suggest::help(name, "parameters", parameters),
+    };
+    let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
+    let message =
+        if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };
+    NameError { message, part, help: if infinite { None } else { help } }
+}
+
+fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str, context: Context) -> NameError {
+    let known = |owner: &str| table.body(owner).is_some();
+    if let Some((node, member)) = name.rsplit_once('.').filter(|(node, _)| *node != owner && known(node)) {
+        return unknown_member(table, name, node, member, context);
+    }
+    let body = table.body(owner);
+    let joint = table.joint(owner).is_some();
+    let after = owner.len() + 1;
+    match (body, joint) {
+        (Some(body), joint) => {
+            let parts = motions(table, body).map(|(motion, ..)| *motion);
+            let points = table.points(body);
+            let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
+            let point = points.clone().any(|point| point == member);
+            if body == 0 && !point && MOTIONS.iter().any(|(motion, ..)| *motion == member) {
+                let message = format!("the ground does not move: `{}` is always 0", suggest::clip(name));
+                return NameError { message, part: 0..name.len(), help: None };
+            }
+            if point && part.is_empty() {
+                let message = format!("`{}` is a point, not a number", suggest::clip(name));
+                let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
+                return NameError { message, part: 0..name.len(), help };
+            }
+            let along_z = matches!(part, "z" | "vz" | "az");
+            if !table.is_spatial() && if point { along_z } else { is_motion(member) } {
+                let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
+                let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
+                return NameError { message, part: 0..name.len(), help: Some(help) };
+            }
+            if point {
+                let start = after + member.len() + 1;
+                let message = format!("a point has no `{}`", suggest::clip(part));
+                let lengths = motions(table, body).filter(|(_, coordinate, _)| coordinate.is_length());
+                let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
+                return NameError { message, part: start..name.len(), help };
+            }
+            if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
+                let message = format!("`{vector}` is a vector: it has the parts x, y and z");
+                let help = Some(format!("e.g. `{owner}.{vector}.z`"));
+                return NameError { message, part: 0..name.len(), help };
+            }
+            if member == "angle" || member.starts_with("angular_") {
+                let message =
+                    format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
+                let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
+                let part = after..after + member.len();
+                return NameError { message, part, help: Some(help.to_owned()) };
+            }
+            let reactions: &[&str] = if joint { &["force", "torque"] } else { &[] };
+            let known: Vec<&str> = if part.is_empty() {
+                points.chain(reactions.iter().copied()).chain(parts).collect()
+            } else {
+                points.collect()
+            };
+            let what = if part.is_empty() { "has no" } else { "has no point" };
+            NameError {
+                message: format!("body `{}` {what} `{}`", suggest::clip(owner), suggest::clip(member)),
+                part: after..after + member.len(),
+                help: suggest::help(member, if part.is_empty() { "names in it" } else { "points of it" }, known),
+            }
+        }
+        (None, true) => NameError {
+            message: format!("joint `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+            part: after..name.len(),
+            help: Some(parts_of_joint(table, owner)),
+        },
+        (None, false) if table.effect(owner).is_some() => {
+            let measures = table.effect(owner).map_or(Vec::new(), |effect| table.measures(effect));
+            no_measure(owner, rest, &measures)
+        }
+        (None, false) if known(name) => NameError {
+            message: format!("`{name}` is a node of a beam, not a number"),
+            part: 0..name.len(),
+            help: Some(format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
+        },
+        (None, false) if table.parts_of_beam(owner).is_some() => NameError {
+            message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+            part: after..name.len(),
+            help: table.parts_of_beam(owner),
+        },
+        (None, false) => {
+            let bodies = table.bodies().skip(1);
+            let joints = table.joints();
+            let (what, kind, joints) = match context {
+                Context::Output => ("body or joint", "bodies and joints", Some(joints)),
+                _ => ("body", "bodies", None),
+            };
+            NameError {
+                message: format!("unknown {what} `{}`", suggest::clip(owner)),
+                part: 0..owner.len(),
+                help: suggest::help(owner, kind, bodies.chain(joints.into_iter().flatten())),
+            }
+        }
+    }
+}
+
+/// What can be said of a joint.
+fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
+    let mut parts = if table.is_spatial() {
+        vec!["force", "force.x", "force.y", "force.z", "torque", "torque.x", "torque.y", "torque.z"]
+    } else {
+        vec!["force", "force.x", "force.y", "torque"]
+    };
+    if let Some(joint) = table.joint(name) {
+        let coordinates = JOINT_MOTIONS.iter().filter(|(_, coordinate, _)| table.has_coordinate(joint, *coordinate));
+        parts.extend(coordinates.map(|(motion, ..)| *motion));
+    }
+    format!("a joint has {}", suggest::list(&parts))
+}
+
+/// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations and of
+/// what effects measure are the reader's.
+pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
+    Kind::motion(match referent {
+        Referent::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
+        Referent::Time => Dimension::TIME,
+        Referent::Coordinate { coordinate, order, .. } | Referent::Point { coordinate, order, .. } => {
+            motion_dimension(coordinate, order)
+        }
+        Referent::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
+        Referent::RollPitchYaw { .. } => Dimension::ANGLE,
+        Referent::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
+        Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
+        | Referent::Energy(_) => Dimension::TORQUE,
+        Referent::Reaction { .. } => Dimension::FORCE,
+        Referent::Measure { .. } => return Kind::Any,
+    })
+}

@@ -1,0 +1,162 @@
+//! References to bodies, points and joints by their names.
+
+use super::reader::{Fields, Reader};
+use super::symbols::{JointCoordinate, OnJoint, PointRef, SymbolTable, Turning};
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::Node;
+
+impl<S: SymbolTable> Reader<'_, S> {
+    /// The body that is named.
+    pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
+        let scalar = self.scalar(node, "the name of a body")?;
+        let name = scalar.text.as_str();
+        if let Some(node) = self.model.body(name) {
+            return Some(node);
+        }
+        let (body, rest) = name.split_once('.').unwrap_or((name, ""));
+        let index = self.find_body(node, body)?;
+        if !rest.is_empty() {
+            let message = format!("`{}` is a point, but a body belongs here", clip(name));
+            self.error(node.span.clone(), message, format!("write `{body}`"));
+            return None;
+        }
+        Some(index)
+    }
+
+    /// The point that is named: `body.point`, or `body` for the origin of its frame.
+    pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
+        let scalar = self.scalar(node, "`body` or `body.point`")?;
+        let text = &scalar.text;
+        if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
+            return Some(place);
+        }
+        if let Some(body) = self.model.body(text) {
+            return Some(PointRef { body, point: None });
+        }
+        let Some((name, point)) = scalar.text.split_once('.') else {
+            return Some(PointRef { body: self.find_body(node, &scalar.text)?, point: None });
+        };
+        let body = self.find_body(node, name)?;
+        let points: Vec<&str> = self.model.points(body).collect();
+        if let Some(found) = points.iter().position(|known| *known == point) {
+            return Some(PointRef { body, point: Some(found) });
+        }
+        let help = if points.is_empty() {
+            Some(format!("`{name}` has no points; give it some with `points`, or write `{name}` for its origin"))
+        } else {
+            suggest::help(point, &format!("points of `{name}`"), points)
+        };
+        let place = scalar.place(&node.span, name.len() + 1..scalar.text.len());
+        self.error(place, format!("body `{name}` has no point `{}`", clip(point)), help);
+        None
+    }
+
+    fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
+        let bodies = || self.model.bodies();
+        if let Some(found) = bodies().position(|known| known == name) {
+            return Some(found);
+        }
+        let (message, help) = match self.model.parts_of_beam(name) {
+            Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
+            None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),
+        };
+        let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, 0..name.len()));
+        self.error(place, message, help);
+        None
+    }
+
+    /// Two points of different bodies.
+    pub fn between_points(&mut self, node: &Node) -> Option<[PointRef; 2]> {
+        let [first, second] = self.two(node, "a list of two points")?;
+        let (a, b) = (self.point_ref(first), self.point_ref(second));
+        let (a, b) = (a?, b?);
+        self.different(second, a.body, b.body).then_some([a, b])
+    }
+
+    /// The joint that is named, with this coordinate.
+    pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
+        let scalar = self.scalar(node, "the name of a joint")?;
+        let name = scalar.text.as_str();
+        let Some(found) = self.model.joint(name) else {
+            let help = suggest::help(name, "joints", self.model.joints());
+            self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
+            return None;
+        };
+        if !self.model.has_coordinate(found, coordinate) {
+            let (what, help) = match coordinate {
+                JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),
+                JointCoordinate::Displacement => {
+                    ("slides", "prismatic, cylindrical and screw joints slide along theirs")
+                }
+            };
+            self.error(node.span.clone(), format!("`{}` is no joint that {what}", clip(name)), help.to_owned());
+            return None;
+        }
+        Some(found)
+    }
+
+    /// Whether a node names a joint and no body.
+    pub fn names_joint(&self, node: &Node) -> bool {
+        let Some(scalar) = node.scalar() else { return false };
+        self.model.joint(&scalar.text).is_some() && self.model.body(&scalar.text).is_none()
+    }
+
+    /// Two different bodies.
+    pub fn between_bodies(&mut self, node: &Node) -> Option<[usize; 2]> {
+        let [first, second] = self.two(node, "a list of two bodies")?;
+        let (a, b) = (self.body_ref(first), self.body_ref(second));
+        let (a, b) = (a?, b?);
+        self.different(second, a, b).then_some([a, b])
+    }
+
+    fn different(&mut self, node: &Node, a: usize, b: usize) -> bool {
+        if a == b {
+            let message = format!("both ends are on `{}`", self.model.body_name(a));
+            self.error(node.span.clone(), message, "name two different bodies".to_owned());
+        }
+        a != b
+    }
+
+    /// The joint of `on`, and its coordinate: that of `coordinate`, else the displacement of what only slides and the angle of others.
+    pub fn on_joint(&mut self, fields: &Fields) -> Option<OnJoint> {
+        let coordinate = fields.get("coordinate").map(|node| {
+            let names = [("angle", JointCoordinate::Angle), ("displacement", JointCoordinate::Displacement)];
+            self.choice(node, &names)
+        });
+        let node = self.required(fields, "on");
+        let coordinate = match coordinate {
+            Some(coordinate) => coordinate?,
+            None => {
+                let joint = node.and_then(Node::scalar).and_then(|name| self.model.joint(&name.text));
+                let has = |coordinate| joint.is_some_and(|joint| self.model.has_coordinate(joint, coordinate));
+                let slides = has(JointCoordinate::Displacement) && !has(JointCoordinate::Angle);
+                if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle }
+            }
+        };
+        let joint = self.joint_ref(node?, coordinate)?;
+        Some(OnJoint { joint, coordinate })
+    }
+
+    /// Two bodies by their angles, or two joints by theirs.
+    pub fn turning(&mut self, node: &Node) -> Option<[Turning; 2]> {
+        let pair = self.two(node, "a list of two bodies or joints")?;
+        if !pair.iter().any(|node| self.names_joint(node)) {
+            let bodies = self.between_bodies(node)?;
+            for (body, node) in bodies.into_iter().zip(pair) {
+                if self.model.has_orientation(body) {
+                    let name = self.model.body_name(body);
+                    let message = format!("`{name}` turns about more than z, so it has no angle");
+                    let help = "name two joints, or give the body the coordinate `angle` instead of `orientation`";
+                    self.error(node.span.clone(), message, help.to_owned());
+                }
+            }
+            return Some(bodies.map(Turning::Body));
+        }
+        let [first, second] = pair.map(|node| self.joint_ref(node, JointCoordinate::Angle));
+        let (first, second) = (first?, second?);
+        if first == second {
+            self.error(pair[1].span.clone(), "a joint is not geared with itself", None);
+        }
+        Some([Turning::Joint(first), Turning::Joint(second)])
+    }
+}

@@ -1,0 +1,288 @@
+//! What names stand for: the parts of a mechanism by their index.
+
+use symdiff::Formula;
+
+use super::quantity::Dimension;
+
+/// The names of a model, which fills the table as it is read. Bodies, joints and effects are numbered as they stand in the file;
+/// body 0 is the ground.
+pub trait SymbolTable {
+    /// Whether the mechanism leaves the plane.
+    fn is_spatial(&self) -> bool;
+    /// Whether bodies and joints are a robot's, whose numbers are parameters.
+    fn is_robot(&self) -> bool;
+    /// Names of the parameters.
+    fn parameters(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Names of the bodies.
+    fn bodies(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Names of a body's points.
+    fn points(&self, body: usize) -> impl Iterator<Item = &str> + Clone;
+    /// Names of the joints.
+    fn joints(&self) -> impl Iterator<Item = &str> + Clone;
+    /// Number of effects so far.
+    fn effects(&self) -> usize;
+    /// The effect of a name.
+    fn effect(&self, name: &str) -> Option<usize>;
+    /// What an effect measures.
+    fn measures(&self, effect: usize) -> Vec<(Measure, Dimension)>;
+    /// Where a link of the robot is.
+    fn link(&self, name: &str) -> Option<PointRef>;
+    /// What of a beam has a name of its own; nothing where there is no beam of that name.
+    fn parts_of_beam(&self, beam: &str) -> Option<String>;
+    /// Whether a body's orientation is that of Euler parameters, and not an angle about z.
+    fn has_orientation(&self, body: usize) -> bool;
+    /// Whether a joint has a coordinate.
+    fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
+    /// What a joint that is an equation sets equal to something else.
+    fn equated(&self, joint: usize) -> Option<&Formula>;
+
+    /// The parameter of a name.
+    fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters().position(|known| known == name)
+    }
+
+    /// The body of a name.
+    fn body(&self, name: &str) -> Option<usize> {
+        self.bodies().position(|known| known == name)
+    }
+
+    /// The joint of a name.
+    fn joint(&self, name: &str) -> Option<usize> {
+        self.joints().position(|known| known == name)
+    }
+
+    /// The name of a body.
+    fn body_name(&self, body: usize) -> &str {
+        self.bodies().nth(body).unwrap_or_default()
+    }
+}
+
+/// A coordinate of a body's frame. A body turns by its angle or, with all four of them, by its Euler parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Coordinate {
+    /// Position of the frame's origin along the ground's x, m.
+    X,
+    /// Position of the frame's origin along the ground's y, m.
+    Y,
+    /// Position of the frame's origin along the ground's z, m.
+    Z,
+    /// Angle of the frame against the ground about z, rad, counter-clockwise, never wrapped.
+    Angle,
+    /// Euler parameter p0 (cosine of half the angle) to p3.
+    Euler(usize),
+}
+
+impl Coordinate {
+    /// The Euler parameters.
+    pub const ORIENTATION: [Self; 4] = [Self::Euler(0), Self::Euler(1), Self::Euler(2), Self::Euler(3)];
+
+    /// Whether it is a length rather than a part of the orientation.
+    pub fn is_length(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z)
+    }
+}
+
+/// A rotation from one frame to another.
+#[derive(Clone, Debug)]
+pub enum Rotation {
+    /// Turned about the fixed x, then y, then z, rad.
+    RollPitchYaw([Formula; 3]),
+    /// About an axis of any length but zero, by an angle in rad.
+    AxisAngle([Formula; 3], Formula),
+    /// Euler parameters p0 to p3, of any length but zero.
+    Quaternion([Formula; 4]),
+}
+
+/// A point of a body; the frame's origin where `point` is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PointRef {
+    /// Index into the bodies; 0 is the ground.
+    pub body: usize,
+    /// Index into that body's points.
+    pub point: Option<usize>,
+}
+
+/// How often a quantity is differentiated by time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum TimeOrder {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+/// What a name in a formula stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Referent {
+    /// Index of the parameter.
+    Parameter(usize),
+    /// `t`, s.
+    Time,
+    /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
+    Coordinate {
+        #[allow(missing_docs)]
+        body: usize,
+        #[allow(missing_docs)]
+        coordinate: Coordinate,
+        #[allow(missing_docs)]
+        order: TimeOrder,
+    },
+    /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
+    AngularMotion {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: x, y, z.
+        axis: usize,
+        /// Velocity or acceleration.
+        order: TimeOrder,
+        #[allow(missing_docs)]
+        in_body: bool,
+    },
+    /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
+    RollPitchYaw {
+        #[allow(missing_docs)]
+        body: usize,
+        /// 0 to 2: roll, pitch, yaw.
+        angle: usize,
+    },
+    /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
+    JointCoordinate {
+        #[allow(missing_docs)]
+        joint: usize,
+        #[allow(missing_docs)]
+        coordinate: JointCoordinate,
+        #[allow(missing_docs)]
+        order: TimeOrder,
+    },
+    /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
+    Point {
+        #[allow(missing_docs)]
+        body: usize,
+        #[allow(missing_docs)]
+        point: usize,
+        #[allow(missing_docs)]
+        coordinate: Coordinate,
+        #[allow(missing_docs)]
+        order: TimeOrder,
+    },
+    /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
+    Reaction {
+        #[allow(missing_docs)]
+        joint: usize,
+        #[allow(missing_docs)]
+        component: ReactionComponent,
+    },
+    /// `effect.length`, `effect.force`, …: what an effect measures.
+    Measure {
+        #[allow(missing_docs)]
+        effect: usize,
+        #[allow(missing_docs)]
+        measure: Measure,
+    },
+    /// `energy`, `kinetic_energy`, `potential_energy`, J.
+    Energy(EnergyKind),
+}
+
+/// Part of a joint's reaction on its second body, in the ground's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReactionComponent {
+    /// Magnitude of the force, N.
+    Force,
+    /// Along an axis (0 to 2: x, y, z), N.
+    ForceAlong(usize),
+    /// About the second point, N m: in the plane the component about z, in space the magnitude.
+    Torque,
+    /// About an axis (0 to 2: x, y, z) through the second point, N m.
+    TorqueAbout(usize),
+}
+
+/// Which energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum EnergyKind {
+    Total,
+    Kinetic,
+    Potential,
+}
+
+/// A coordinate of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum JointCoordinate {
+    /// Angle of the second frame against the first about the joint's axis, rad, never wrapped.
+    Angle,
+    /// Of the second point from the first along the joint's axis, m.
+    Displacement,
+}
+
+/// Something with an angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turning {
+    /// The angle of a body about z.
+    Body(usize),
+    /// The angle of a joint.
+    Joint(usize),
+}
+
+/// A joint's coordinate that an effect acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct OnJoint {
+    pub joint: usize,
+    pub coordinate: JointCoordinate,
+}
+
+/// Something that an effect measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs)] // the names say it
+pub enum Measure {
+    Length,
+    Angle,
+    Gap,
+    Rate,
+    Load,
+    Force,
+    Torque,
+    StartTorque,
+    Friction,
+}
+
+impl Measure {
+    /// What pushes a joint's coordinate.
+    pub fn of_effort(coordinate: JointCoordinate) -> Self {
+        match coordinate {
+            JointCoordinate::Angle => Self::Torque,
+            JointCoordinate::Displacement => Self::Force,
+        }
+    }
+
+    /// Its name, as in `spring.length`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Angle => "angle",
+            Self::Gap => "gap",
+            Self::Rate => "rate",
+            Self::Load => "load",
+            Self::Force => "force",
+            Self::Torque => "torque",
+            Self::StartTorque => "start_torque",
+            Self::Friction => "friction",
+        }
+    }
+
+    /// Whether it follows from positions and velocities alone, so that the effect's own formulas may speak of it.
+    pub fn is_motion(self) -> bool {
+        matches!(self, Self::Length | Self::Angle | Self::Gap | Self::Rate)
+    }
+}
+
+/// An index in a joint, an effect or a value at the start.
+#[derive(Debug)]
+pub enum Reference<'a> {
+    /// Of a body.
+    Body(&'a mut usize),
+    /// Of a body, with one of its points.
+    Point(&'a mut PointRef),
+    /// Of a joint.
+    Joint(&'a mut usize),
+}

@@ -1,0 +1,71 @@
+//! What stands behind a key, for the schema: numbers, vectors, directions, rotations.
+
+#![allow(dead_code)] // the fields are there for their names and types
+
+use schemars::JsonSchema;
+
+use super::mapping::grammar;
+
+/// A number, a formula, or a number with its unit.
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+pub enum Number {
+    /// A number in SI units.
+    Plain(f64),
+    /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
+    Text(String),
+}
+
+/// Components along x and y, and in space along z, which is 0 where it is left out.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Components {
+    Planar([Number; 2]),
+    Spatial([Number; 3]),
+}
+
+/// Direction: `x`, `y`, `z` or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum Direction {
+    Named(Axis),
+    Components(Components),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "lowercase", inline)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// A number of the frame's axes each, or one for all.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum PerAxis {
+    All(Number),
+    Each([Number; 3]),
+}
+
+/// A number (in the plane, about z), or components.
+#[derive(JsonSchema)]
+#[schemars(untagged, inline)]
+pub enum TorqueValue {
+    Scalar(Number),
+    Vector([Number; 3]),
+}
+
+grammar! {
+    /// A rotation: one of `rpy`, `axis` with `angle`, and `quaternion`.
+    Rotation is "a rotation" {
+        /// Roll, pitch and yaw: about the fixed x, then y, then z, rad.
+        rpy: Option<[Number; 3]>,
+        /// The axis of a rotation by `angle`.
+        axis: Option<Direction>,
+        /// rad
+        angle: Option<Number>,
+        /// Euler parameters p0 (cosine of half the angle) to p3, of any length.
+        quaternion: Option<[Number; 4]>,
+    }
+}
