@@ -8,6 +8,7 @@ pub mod compile;
 pub mod export;
 pub(crate) mod grammar;
 pub mod model;
+pub mod multibody;
 pub mod numerics;
 pub mod reduce;
 pub mod results;

@@ -8,7 +8,7 @@
 //! displacements across the axis are felt; another joint holds what moves along it or tilts. K of two cylinders' ends as
 //! spheres (Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369): 4/(3 (h₁ + h₂)) √(R r/(R − r)), h = (1 − ν²)/E.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -27,7 +27,7 @@ pub const SHEET: Sheet = Sheet {
     source: "Flores, Ambrósio, Claro & Lankarani, Kinematics and Dynamics of Multibody Systems with Imperfect Joints (2008)",
 };
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoint) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoint) -> Result<(), BuildError> {
     let clearance = m.formula(g, &joint.clearance, Context::Time)?;
     let radius = m.formula(g, &joint.radius, Context::Time)?;
     let axis = m.vector(g, &joint.axis, Context::Time)?;

@@ -6,7 +6,7 @@
 //!
 //! It acts from outside the mechanism: nothing feels the reaction, and it has no potential.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,7 +18,7 @@ use super::{Loads, Sheet};
 pub const SHEET: Sheet = Sheet { keyword: "force", formulas: &["F = value"], source: "Newton" };
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     on: PointRef,

@@ -7,7 +7,7 @@
 //! and on the mass along beams (`flexible`).
 //! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,7 +18,7 @@ use super::{Loads, Sheet};
 /// For `mbint explain --effects`.
 pub const SHEET: Sheet = Sheet { keyword: "gravity", formulas: &["F = m g at each centre of mass"], source: "Newton" };
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
     let acceleration = m.vector(g, acceleration, Context::Motion)?;
     for (index, body) in m.bodies.iter().enumerate() {
         let weight = space::scale(g, body.mass, acceleration);

@@ -7,7 +7,7 @@
 //!
 //! Points that coincide have no line between them.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -23,7 +23,7 @@ pub const SHEET: Sheet = Sheet {
     source: "Newton",
 };
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
     let force = m.formula(g, &preload.value, Context::Motion)?;
     let potential = match preload.on {
         Preloaded::Points(between) => {

@@ -8,7 +8,7 @@
 //! In the plane value is about z, counter-clockwise. A motor between two bodies; from the ground, the reaction is the
 //! ground's. It has no potential.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -20,7 +20,7 @@ pub const SHEET: Sheet =
     Sheet { keyword: "torque", formulas: &["τ(on) = value, τ(from) = −value"], source: "Newton" };
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     on: usize,
@@ -38,7 +38,7 @@ pub fn apply(
 
 /// The torque of a motor at a joint.
 pub fn apply_at_joint(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     joint: usize,

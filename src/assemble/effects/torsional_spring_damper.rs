@@ -8,7 +8,7 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
 //! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -25,7 +25,7 @@ pub const SHEET: Sheet = Sheet {
 };
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     on: Twisted,
@@ -41,7 +41,7 @@ pub fn apply(
             g.sub(m.bodies[second].velocity[ANGLE], m.bodies[first].velocity[ANGLE]),
         ),
         Twisted::Joint(joint) => {
-            let mut coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
+            let coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
             (coordinate(TimeOrder::Position), coordinate(TimeOrder::Velocity))
         }
     };
