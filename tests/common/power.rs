@@ -6,6 +6,7 @@ use super::{Vary, curve, largest, nominal, order, read};
 pub fn pair(joints: &str, effects: &str, initial: &str) -> String {
     format!(
         "
+space: planar
 bodies:
   ground: {{ points: {{ O: [0.2, 0.1] }} }}
   a: {{ mass: 2, inertia: 0.1, center_of_mass: [0.1, 0.2], points: {{ P: [0.3, -0.5] }} }}
@@ -34,6 +35,7 @@ pub const APART: &str = "  b.x: 0.9\n  b.y: 0.5\n  b.angle: -0.6\n  b.vx: -0.4\n
 pub fn spatial_pair(joints: &str, effects: &str, initial: &str) -> String {
     format!(
         "
+space: spatial
 bodies:
   ground: {{ points: {{ O: [0.2, 0.1, -0.3] }} }}
   a:
