@@ -7,7 +7,6 @@ mod bounds_request;
 mod catalog;
 mod description;
 mod effect_kinds;
-mod kinds;
 mod names;
 mod references;
 
@@ -30,6 +29,7 @@ mod tables;
 mod tests;
 mod urdf;
 
+pub use crate::elements::JointKind;
 pub use crate::grammar::{
     Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
     Rotation, TimeOrder, Turning,
@@ -39,6 +39,5 @@ pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
 pub use effect_kinds::*;
 pub use file::schema;
-pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;

@@ -3,7 +3,6 @@
 use symdiff::Formula;
 
 use super::description::Description;
-use super::kinds::JointKind;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{self, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
 
@@ -71,9 +70,7 @@ impl SymbolTable for Description {
     }
 
     fn equated(&self, joint: usize) -> Option<&Formula> {
-        match &self.joints[joint].kind {
-            JointKind::Equation { left, .. } => Some(left),
-            _ => None,
-        }
+        let [left, _] = self.joints[joint].kind.equation()?;
+        Some(left)
     }
 }

@@ -8,8 +8,8 @@ use std::path::Path;
 const ROOMS: [&str; 15] = [
     "syntax",
     "grammar",
-    "numerics",
     "multibody",
+    "numerics",
     "elements",
     "model",
     "reduce",
@@ -246,7 +246,8 @@ fn circles(package: &Package) -> Vec<Vec<String>> {
 #[test]
 fn files_form_no_circles() {
     let found: Vec<_> = ["src", "crates/symdiff/src"].iter().flat_map(|folder| circles(&Package::of(folder))).collect();
-    let new: Vec<_> = found.iter().filter(|circle| !circle.iter().all(|module| CIRCLING.contains(&module.as_str()))).collect();
+    let new: Vec<_> =
+        found.iter().filter(|circle| !circle.iter().all(|module| CIRCLING.contains(&module.as_str()))).collect();
     assert!(new.is_empty(), "{new:#?}");
 }
 

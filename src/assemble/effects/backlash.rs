@@ -32,7 +32,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
     let (play, corner) = (number(g, &gear.backlash)?, number(g, &gear.transition)?);
     let (stiffness, damping) = (number(g, &gear.stiffness)?, number(g, &gear.damping)?);
     let between = |order: TimeOrder| {
-        let [first, second] = gear.between.map(|turning| turned(g, m, turning, order));
+        let [first, second] = gear.between.map(|angle_of| turned(g, m, angle_of, order));
         let wanted = g.mul(ratio, first);
         g.sub(second, wanted)
     };
@@ -67,8 +67,8 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
 }
 
 /// An angle, or its rate.
-fn turned(g: &Builder, m: &Mechanism, turning: Turning, order: TimeOrder) -> Expr {
-    match turning {
+fn turned(g: &Builder, m: &Mechanism, angle_of: Turning, order: TimeOrder) -> Expr {
+    match angle_of {
         Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
         Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
     }

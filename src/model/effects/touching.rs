@@ -4,6 +4,7 @@ use crate::grammar::JointCoordinate;
 use symdiff::Formula;
 
 use super::{needed, or_zero, positive, positive_or};
+use crate::elements::joints::Mobilizer;
 use crate::grammar::motions::dimensions_of;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
@@ -12,7 +13,6 @@ use crate::model::effect_kinds::{
     ClearanceJoint, Contact, DryFriction, Impact, JointFriction, Loss, RestitutionLaw, Rubbing, Stop, Surface,
 };
 use crate::model::file;
-use crate::model::kinds::JointKind;
 use crate::model::names::Reader;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
@@ -70,10 +70,10 @@ fn rubbing_joint(reader: &mut Reader, fields: &Fields) -> Option<(usize, Rubbing
         // Says so.
         return reader.joint_ref(node, JointCoordinate::Angle).map(|joint| (joint, Rubbing::Turning));
     };
-    let rubbing = match reader.model.joints[joint].kind {
-        JointKind::Revolute { .. } => Rubbing::Turning,
-        JointKind::Prismatic { .. } => Rubbing::Sliding,
-        JointKind::Cylindrical { .. } => Rubbing::Both,
+    let rubbing = match reader.model.joints[joint].kind.mobilizer() {
+        Some(Mobilizer::Rotation { .. }) => Rubbing::Turning,
+        Some(Mobilizer::Translation { .. }) => Rubbing::Sliding,
+        Some(Mobilizer::RotationAndTranslation { .. }) => Rubbing::Both,
         _ => {
             let help = "it acts in revolute, prismatic and cylindrical joints".to_owned();
             let message = format!("joint friction does not know how `{}` rubs", reader.model.joints[joint].name);
