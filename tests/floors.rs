@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Each stage stands on those before it, and knows none after it.
 const FLOORS: [&str; 12] = [
-    "syntax", "grammar", "model", "reduce", "assemble", "compile", "simulate", "numerics", "results", "export",
+    "syntax", "grammar", "elements", "model", "reduce", "assemble", "compile", "simulate", "numerics", "results", "export",
     "study", "cli",
 ];
 

@@ -3,7 +3,7 @@
 use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
-use super::effect_kinds::EffectKind;
+use crate::elements::effects::EffectKind;
 use super::kinds::JointKind;
 use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
 

@@ -5,7 +5,7 @@ use symdiff::Formula;
 use super::description::Description;
 use super::kinds::JointKind;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{self, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
+use crate::grammar::{self, FrictionMode, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
 
 /// Reads a description.
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
@@ -68,6 +68,15 @@ impl SymbolTable for Description {
 
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool {
         self.joints[joint].kind.axis_of(coordinate).is_some()
+    }
+
+    fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {
+        match self.joints[joint].kind {
+            JointKind::Revolute { .. } => Some(FrictionMode::Turning),
+            JointKind::Prismatic { .. } => Some(FrictionMode::Sliding),
+            JointKind::Cylindrical { .. } => Some(FrictionMode::Both),
+            _ => None,
+        }
     }
 
     fn equated(&self, joint: usize) -> Option<&Formula> {

@@ -17,14 +17,7 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder, Turning};
 
 use super::positive_part::PositivePart;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "backlash",
-    formulas: &["τ = k [p(x − b/2) − p(−x − b/2)] + c ẋ [p' + p'], x = θ₂ − ratio θ₁ − offset"],
-    source: "Nordin & Gutman, Automatica 38 (2002) 1633",
-};
+use super::Loads;
 
 pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
     let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Motion);

@@ -16,14 +16,7 @@ use crate::assemble::space;
 use crate::model::{Cable, Measure};
 
 use super::positive_part::{PositivePart, clipped};
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "cable",
-    formulas: &["T = ⟨k p(x) + c p'(x) ℓ̇⟩, x = ℓ − ℓ₀, p the positive part with a rounded corner"],
-    source: "Hooke",
-};
+use super::Loads;
 
 pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Result<(), BuildError> {
     let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Motion);

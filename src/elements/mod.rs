@@ -1,0 +1,3 @@
+//! The elements of the language: one file each, and one line in a registry.
+
+pub mod effects;
