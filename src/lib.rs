@@ -9,6 +9,7 @@ pub mod export;
 pub(crate) mod elements;
 pub(crate) mod grammar;
 pub mod model;
+pub mod multibody;
 pub mod numerics;
 pub mod reduce;
 pub mod results;

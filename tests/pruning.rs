@@ -1,4 +1,4 @@
-//! Only what is asked for is simulated: parts that no output needs change nothing, islands are models of their own, welded bodies are one.
+//! Only what is asked for is simulated: parts that no output needs change nothing, subsystems are models of their own, welded bodies are one.
 
 use std::fmt::Write as _;
 
@@ -145,19 +145,19 @@ fn bodies_that_no_output_needs_change_nothing() {
 }
 
 #[test]
-fn islands_are_models_run_apart() {
+fn subsystems_are_models_run_apart() {
     let (a, b) = (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"));
     let c = pendulum("c", 0.1, "");
     let both = a.with(&b).with(&c).model();
     let (together, summary) = run(&both);
-    assert_eq!(summary.islands.len(), 3);
-    for (island, one) in summary.islands.iter().zip([a, b, c]) {
+    assert_eq!(summary.subsystems.len(), 3);
+    for (subsystem, one) in summary.subsystems.iter().zip([a, b, c]) {
         let (apart, of_one) = run(&one.model());
         let without_seconds = |methods: &[MethodSummary]| {
             let without = |method: &MethodSummary| MethodSummary { seconds: None, ..method.clone() };
             methods.iter().map(without).collect::<Vec<_>>()
         };
-        assert_eq!(without_seconds(&island.methods), without_seconds(&of_one.methods));
+        assert_eq!(without_seconds(&subsystem.methods), without_seconds(&of_one.methods));
         for output in &apart.outputs {
             let found = together.outputs.iter().find(|known| known.name == output.name).unwrap();
             assert_eq!(found, output, "{}", output.name);
@@ -167,7 +167,7 @@ fn islands_are_models_run_apart() {
     let solves = |name: &str| summary.methods.iter().find(|method| method.method == name).unwrap().solves;
     assert_eq!((solves("nominal"), solves("chebyshev"), solves("scan")), (3, 10, 10));
     // Its own, and one with halved steps for its error.
-    let certain = &summary.islands[2];
+    let certain = &summary.subsystems[2];
     assert_eq!(certain.parameters, Vec::<String>::new());
     let solves: Vec<(&str, usize)> =
         certain.methods.iter().map(|method| (method.method.as_str(), method.solves)).collect();
@@ -181,9 +181,9 @@ fn islands_are_models_run_apart() {
     }
 }
 
-/// An output that is no different, and makes the islands one.
+/// An output that is no different, and makes the subsystems one.
 #[test]
-fn islands_simulated_together_give_the_same() {
+fn subsystems_simulated_together_give_the_same() {
     let (a, b) = (pendulum("a", 0.0, ", tolerance: 2%"), pendulum("b", 0.3, ", tolerance: 1%"));
     let mut apart = a.with(&b);
     // (The tight range of a polynomial has a margin, which more parameters make wider.)
@@ -191,7 +191,7 @@ fn islands_simulated_together_give_the_same() {
     let mut joined = apart.clone();
     joined.outputs += "  mixed: a.B.x - b.B.x\n";
     let ((apart, of_apart), (joined, of_joined)) = (run(&apart.model()), run(&joined.model()));
-    assert_eq!((of_apart.islands.len(), of_joined.islands.len()), (2, 0));
+    assert_eq!((of_apart.subsystems.len(), of_joined.subsystems.len()), (2, 0));
     let solves = |summary: &Summary| summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().solves;
     assert_eq!((solves(&of_apart), solves(&of_joined)), (10, 25));
     for (apart, joined) in apart.outputs.iter().zip(&joined.outputs) {
@@ -338,13 +338,13 @@ bounds: {{ scan: {{ points: 3 }} }}
         ))
     };
     let (apart, summary) = run(&text("{ x: left.x, y: right.y }"));
-    let bodies: Vec<Vec<String>> = summary.islands.iter().map(|island| island.bodies.clone()).collect();
+    let bodies: Vec<Vec<String>> = summary.subsystems.iter().map(|subsystem| subsystem.bodies.clone()).collect();
     assert_eq!(bodies, [["base", "left"], ["base", "right"]]);
-    assert_eq!(summary.islands[0].parameters, ["l"]);
-    assert!(summary.islands[1].parameters.is_empty());
+    assert_eq!(summary.subsystems[0].parameters, ["l"]);
+    assert!(summary.subsystems[1].parameters.is_empty());
     // The reaction at the foot is that of all.
     let (whole, summary) = run(&text("{ x: left.x, y: right.y, foot: foot.force }"));
-    assert!(summary.islands.is_empty() && summary.not_simulated.is_empty());
+    assert!(summary.subsystems.is_empty() && summary.not_simulated.is_empty());
     assert_eq!(summary.parameters.len(), 2);
     for (name, off) in difference(&apart, &Bounds { outputs: whole.outputs[..2].to_vec(), ..whole.clone() }) {
         assert!(off < 1e-9, "{name} is off by {off} of its size");
@@ -466,7 +466,7 @@ fn an_island_that_stops_leaves_the_others_alone() {
     let (bounds, summary) = run(&both.model());
     let failure = summary.failure.unwrap();
     assert!(failure.contains("locks at t = 0."), "{failure}");
-    assert_eq!((summary.islands.len(), bounds.times.len()), (2, 31));
+    assert_eq!((summary.subsystems.len(), bounds.times.len()), (2, 31));
     let mut alone = free.clone();
     (alone.simulation, alone.bounds) = (both.simulation.clone(), both.bounds.clone());
     let (apart, _) = run(&alone.model());
@@ -502,7 +502,7 @@ fn with_parts_of_the_box_left_out_there_is_one_island() {
     let refused = study::run(&model, Options::default()).unwrap_err().to_string();
     assert!(refused.contains("cannot be assembled") && refused.contains("rod"), "{refused}");
     let (bounds, summary) = study::run(&model, Options { skip_infeasible: true, ..Options::default() }).unwrap();
-    assert!(summary.islands.is_empty() && !summary.pieces.is_empty());
+    assert!(summary.subsystems.is_empty() && !summary.pieces.is_empty());
     assert!(summary.pieces.iter().all(|piece| piece.lower.len() == 2), "{:?}", summary.pieces);
     // Of 0.25 m, 0.05 are too short.
     assert!((0.6..0.85).contains(&bounds.covered[0]), "{:?}", bounds.covered);

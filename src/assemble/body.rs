@@ -12,7 +12,7 @@
 //! so that a force F at r and a torque τ have the generalised forces F on r₀ and T = R s × F + τ about its origin: T_z on θ,
 //! 2 Eᵀ T on p. Along p itself nothing acts; what stands there is for the multiplier of pᵀp = 1 alone.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use super::carried::Carried;
 use super::rotation::{self, Quaternion};
@@ -100,7 +100,7 @@ fn euler(list: &[Expr; FREEDOMS]) -> Quaternion {
 
 impl Body {
     /// `R a`: from the body's frame to the ground's.
-    pub fn rotate(&self, g: &mut Graph, a: Vector) -> Vector {
+    pub fn rotate(&self, g: &Builder, a: Vector) -> Vector {
         match self.turn {
             Turn::Angle => {
                 let (cos, sin) = (g.cos(self.position[ANGLE]), g.sin(self.position[ANGLE]));
@@ -116,7 +116,7 @@ impl Body {
     }
 
     /// R.
-    pub fn matrix(&self, g: &mut Graph) -> Matrix {
+    pub fn matrix(&self, g: &Builder) -> Matrix {
         match (&self.attitude, self.turn) {
             (Some(attitude), _) => attitude.matrix,
             (None, Turn::Angle) => {
@@ -128,7 +128,7 @@ impl Body {
     }
 
     /// The frame's orientation as Euler parameters.
-    pub fn orientation(&self, g: &mut Graph) -> Quaternion {
+    pub fn orientation(&self, g: &Builder) -> Quaternion {
         match self.turn {
             Turn::Angle => {
                 let axis = space::along(g, 2);
@@ -149,7 +149,7 @@ impl Body {
     }
 
     /// ω in the ground's axes.
-    pub fn angular_velocity(&self, g: &mut Graph) -> Vector {
+    pub fn angular_velocity(&self, g: &Builder) -> Vector {
         match &self.attitude {
             Some(attitude) => attitude.omega,
             None => self.turning(g, &self.velocity),
@@ -157,14 +157,14 @@ impl Body {
     }
 
     /// ω̇ in the ground's axes.
-    pub fn angular_acceleration(&self, g: &mut Graph) -> Vector {
+    pub fn angular_acceleration(&self, g: &Builder) -> Vector {
         match &self.attitude {
             Some(attitude) => attitude.alpha,
             None => self.turning(g, &self.acceleration),
         }
     }
 
-    fn turning(&self, g: &mut Graph, derivative: &[Expr; FREEDOMS]) -> Vector {
+    fn turning(&self, g: &Builder, derivative: &[Expr; FREEDOMS]) -> Vector {
         match self.turn {
             Turn::Angle => {
                 let zero = g.constant(0.0);
@@ -178,18 +178,18 @@ impl Body {
     }
 
     /// ω in the body's axes.
-    pub fn angular_velocity_in_body(&self, g: &mut Graph) -> Vector {
+    pub fn angular_velocity_in_body(&self, g: &Builder) -> Vector {
         let omega = self.attitude.as_ref().map(|attitude| attitude.omega);
         self.turning_in_body(g, omega, &self.velocity)
     }
 
     /// ω̇ in the body's axes.
-    pub fn angular_acceleration_in_body(&self, g: &mut Graph) -> Vector {
+    pub fn angular_acceleration_in_body(&self, g: &Builder) -> Vector {
         let alpha = self.attitude.as_ref().map(|attitude| attitude.alpha);
         self.turning_in_body(g, alpha, &self.acceleration)
     }
 
-    fn turning_in_body(&self, g: &mut Graph, turning: Option<Vector>, derivative: &[Expr; FREEDOMS]) -> Vector {
+    fn turning_in_body(&self, g: &Builder, turning: Option<Vector>, derivative: &[Expr; FREEDOMS]) -> Vector {
         match (turning, self.turn) {
             (Some(turning), _) => {
                 let back = space::transposed(&self.matrix(g));
@@ -204,19 +204,19 @@ impl Body {
     }
 
     /// `r₀ + arm`.
-    pub fn position_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+    pub fn position_of(&self, g: &Builder, arm: Vector) -> Vector {
         space::add(g, self.origin(), arm)
     }
 
     /// `ṙ₀ + ω × arm`.
-    pub fn velocity_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+    pub fn velocity_of(&self, g: &Builder, arm: Vector) -> Vector {
         let omega = self.angular_velocity(g);
         let turning = space::cross(g, omega, arm);
         space::add(g, origin(&self.velocity), turning)
     }
 
     /// `r̈₀ + ω̇ × arm + ω × (ω × arm)`.
-    pub fn acceleration_of(&self, g: &mut Graph, arm: Vector) -> Vector {
+    pub fn acceleration_of(&self, g: &Builder, arm: Vector) -> Vector {
         let alpha = self.angular_acceleration(g);
         let turning = space::cross(g, alpha, arm);
         let sum = space::add(g, origin(&self.acceleration), turning);
@@ -225,7 +225,7 @@ impl Body {
     }
 
     /// `−ω × (ω × arm)`.
-    pub fn centripetal(&self, g: &mut Graph, arm: Vector) -> Vector {
+    pub fn centripetal(&self, g: &Builder, arm: Vector) -> Vector {
         match self.turn {
             Turn::Angle => {
                 let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
@@ -241,7 +241,7 @@ impl Body {
     }
 
     /// Generalised forces of a force F on r₀ and a torque T about it, in the ground's axes.
-    pub fn generalised(&self, g: &mut Graph, force: Vector, torque: Vector) -> [Expr; FREEDOMS] {
+    pub fn generalised(&self, g: &Builder, force: Vector, torque: Vector) -> [Expr; FREEDOMS] {
         let zero = g.constant(0.0);
         let turning = match self.turn {
             Turn::Angle => [torque[2], zero, zero, zero],

@@ -1,7 +1,7 @@
 //! The equations of motion of a description.
 
 use symdiff::taylor_model::encloses;
-use symdiff::{Binary, Expr, Graph};
+use symdiff::{Binary, Builder, Expr};
 
 use crate::model::{Description, Formulation};
 
@@ -38,9 +38,9 @@ pub fn build(description: &Description) -> Result<System, BuildError> {
 /// # Errors
 /// As for [`build`].
 pub fn in_absolute_coordinates(description: &Description) -> Result<System, BuildError> {
-    let mut graph = Graph::new();
-    let mechanism = Mechanism::new(&mut graph, description, false)?;
-    equations(graph, mechanism)
+    let builder = Builder::new();
+    let mechanism = Mechanism::new(&builder, description, false)?;
+    equations(builder, mechanism)
 }
 
 /// Joints carry bodies as far as they can; or why they cannot do here. With `deepest`, not where joints close loops, nor where
@@ -52,19 +52,19 @@ pub fn in_joint_coordinates(
     description: &Description,
     deepest: Option<usize>,
 ) -> Result<Result<System, String>, BuildError> {
-    let mut graph = Graph::new();
-    let mechanism = Mechanism::new(&mut graph, description, true)?;
+    let builder = Builder::new();
+    let mechanism = Mechanism::new(&builder, description, true)?;
     if let Some(why) = deepest.and_then(|deepest| mechanism.tree.too_involved(description, deepest)) {
         return Ok(Err(why));
     }
-    match mechanism.obstacle(&mut graph) {
+    match mechanism.obstacle(&builder) {
         Some(why) => Ok(Err(why)),
-        None => equations(graph, mechanism).map(Ok),
+        None => equations(builder, mechanism).map(Ok),
     }
 }
 
-fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, BuildError> {
-    let (g, description) = (&mut graph, mechanism.description);
+fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, BuildError> {
+    let (g, description) = (&builder, mechanism.description);
     let length = mechanism.characteristic_length(g)?;
 
     let mut left_out = Vec::new();
@@ -117,7 +117,7 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
         }
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
-        let enclosed = g.exprs_after(nodes).all(|expr| encloses(g.node(expr)));
+        let enclosed = g.graph().exprs_after(nodes).all(|expr| encloses(g.node(expr)));
         effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes, enclosed });
     }
     let mut mass = Vec::new();
@@ -192,14 +192,14 @@ fn equations(mut graph: Graph, mut mechanism: Mechanism) -> Result<System, Build
             joint: !mechanism.tree.is_absolute(),
             why: "the model asks for them".to_owned(),
         },
-        graph,
+        graph: builder.finish(),
     };
     system.note_unused_parameters();
     Ok(system)
 }
 
 /// ∂ inertia / ∂w, both triangles: it is symmetric, so one is enough to be computed.
-fn mass_matrix(g: &mut Graph, inertia: &[Expr], w: &[Expr]) -> Vec<(usize, usize, Expr)> {
+fn mass_matrix(g: &Builder, inertia: &[Expr], w: &[Expr]) -> Vec<(usize, usize, Expr)> {
     let slopes = g.jacobian(inertia, w);
     let lower = slopes.entries().filter(|&(row, column, _)| column <= row);
     lower
@@ -211,7 +211,7 @@ fn mass_matrix(g: &mut Graph, inertia: &[Expr], w: &[Expr]) -> Vec<(usize, usize
 }
 
 /// (pᵀp − 1) / 2 of a body that turns by Euler parameters.
-fn normalisation(g: &mut Graph, body: &Body) -> Option<Expr> {
+fn normalisation(g: &Builder, body: &Body) -> Option<Expr> {
     body.index[EULER + 1].filter(|_| body.turn == Turn::Euler)?;
     let p = body.euler();
     let (square, one) = (g.dot(&p, &p), g.constant(1.0));
@@ -228,7 +228,7 @@ struct Constraints {
 }
 
 impl Constraints {
-    fn add(&mut self, g: &mut Graph, info: ConstraintInfo, value: Expr) -> Expr {
+    fn add(&mut self, g: &Builder, info: ConstraintInfo, value: Expr) -> Expr {
         let lambda = g.symbol(&format!("lambda:{}", info.name));
         self.infos.push(info);
         self.values.push(value);
@@ -238,7 +238,7 @@ impl Constraints {
 }
 
 /// Whether a row constrains anything. One without a coordinate holds always, and is not needed, or never.
-fn is_effective(g: &Graph, m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> Result<bool, BuildError> {
+fn is_effective(g: &Builder, m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> Result<bool, BuildError> {
     if !m.is_given(g, &[row.value]) {
         return Ok(true);
     }

@@ -9,7 +9,7 @@
 //! r_c = r_p + R_p ρ − R_c f       ρ  = joint in p, with the displacement       f = joint in c       a = axis in c
 //! ```
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{JointCoordinate, JointKind, PointRef};
 
@@ -58,7 +58,7 @@ pub struct Carried {
 const ROUNDING: f64 = 1e-15;
 
 /// The matrix of a rotation that does not change. A quarter turn has zeros and ones, which cost nothing.
-fn steady(g: &mut Graph, p: Quaternion) -> Matrix {
+fn steady(g: &Builder, p: Quaternion) -> Matrix {
     rotation::matrix(g, p).map(|row| {
         row.map(|entry| match g.as_constant(entry) {
             Some(value) if (value - value.round()).abs() < ROUNDING => g.constant(value.round()),
@@ -69,10 +69,10 @@ fn steady(g: &mut Graph, p: Quaternion) -> Matrix {
 
 impl Mechanism<'_> {
     /// Places a body on what carries it, which is placed already.
-    pub fn carry(&mut self, g: &mut Graph, body: usize, carrier: Carrier) -> Result<(), BuildError> {
+    pub fn carry(&mut self, g: &Builder, body: usize, carrier: Carrier) -> Result<(), BuildError> {
         let kind = &self.description.joints[carrier.joint].kind;
         let freedoms = self.freedoms(g, kind, carrier)?;
-        let along = |g: &mut Graph, list: &[Expr], part: fn(&Freedom) -> Expr| {
+        let along = |g: &Builder, list: &[Expr], part: fn(&Freedom) -> Expr| {
             let parts: Vec<Expr> = freedoms.iter().map(|freedom| g.mul(part(freedom), list[freedom.index])).collect();
             g.sum(parts)
         };
@@ -139,7 +139,7 @@ impl Mechanism<'_> {
     }
 
     /// The coordinates of a joint that carries; φ and s count from the body that carries.
-    fn freedoms(&mut self, g: &mut Graph, kind: &JointKind, carrier: Carrier) -> Result<Vec<Freedom>, BuildError> {
+    fn freedoms(&mut self, g: &Builder, kind: &JointKind, carrier: Carrier) -> Result<Vec<Freedom>, BuildError> {
         let (zero, one) = (g.constant(0.0), g.constant(if carrier.reversed { -1.0 } else { 1.0 }));
         let mut freedoms = Vec::new();
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
@@ -163,14 +163,14 @@ impl Mechanism<'_> {
     }
 
     /// The rotation of the frame at a point against its body's.
-    fn local_frame(&self, g: &mut Graph, point: PointRef) -> Quaternion {
+    fn local_frame(&self, g: &Builder, point: PointRef) -> Quaternion {
         let frame = point.point.and_then(|index| self.bodies[point.body].frames[index]);
         frame.unwrap_or_else(|| rotation::identity(g))
     }
 
     /// Position, velocity and acceleration in the ground's axes; `turned` is the rotation against the parent, in the plane
     /// by `angle`.
-    fn place(&mut self, g: &mut Graph, index: usize, carried: Carried, turned: Quaternion, angle: Expr) {
+    fn place(&mut self, g: &Builder, index: usize, carried: Carried, turned: Quaternion, angle: Expr) {
         let parent = &self.bodies[carried.parent];
         let mut body = self.bodies[index].clone();
         let arm = parent.rotate(g, carried.reach);

@@ -14,7 +14,7 @@
 
 use std::collections::BTreeSet;
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::model::{Description, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning};
 
@@ -86,7 +86,7 @@ pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
 
 impl Mechanism<'_> {
     /// A joint's coordinate or its derivative. One that is not a coordinate of its own is an angle of the plane.
-    pub fn joint_coordinate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
+    pub fn joint_coordinate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
         if let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) {
             let list = match order {
                 TimeOrder::Position => &self.q,
@@ -108,7 +108,7 @@ impl Mechanism<'_> {
     }
 
     /// The rate of a joint's coordinate; one that is not a coordinate of its own follows from the bodies' velocities.
-    pub fn joint_rate(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
+    pub fn joint_rate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
         let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
         let between = self.description.joints[joint].kind.between();
         let (Some(between), false) =
@@ -133,7 +133,7 @@ impl Mechanism<'_> {
     }
 
     /// The constraints that define a joint's own coordinates: name and Φ.
-    pub fn definitions(&self, g: &mut Graph, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
+    pub fn definitions(&self, g: &Builder, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
         let kind = &self.description.joints[joint].kind;
         let mut rows = Vec::new();
         if self.tree.uses(joint) {

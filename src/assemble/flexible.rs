@@ -20,7 +20,7 @@
 //! ∫ r ds = L/2 (r_A + r_B) + L²/12 (t_A − t_B)
 //! ```
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{Coordinate, LineMass, StartValue, TimeOrder};
 
@@ -58,17 +58,17 @@ impl Mechanism<'_> {
     }
 
     /// Lengths of all elements with mass together.
-    pub fn length_of_beams(&self, g: &mut Graph) -> Result<Expr, BuildError> {
+    pub fn length_of_beams(&self, g: &Builder) -> Result<Expr, BuildError> {
         let lengths: Result<Vec<Expr>, BuildError> =
             beams(self).map(|beam| self.formula(g, beam.length, Context::Parameters)).collect();
         Ok(g.sum(lengths?))
     }
 
-    fn elements(&self, g: &mut Graph) -> Result<Vec<Element>, BuildError> {
+    fn elements(&self, g: &Builder) -> Result<Vec<Element>, BuildError> {
         beams(self).map(|beam| self.element(g, &beam)).collect()
     }
 
-    fn element(&self, g: &mut Graph, beam: &LineMass) -> Result<Element, BuildError> {
+    fn element(&self, g: &Builder, beam: &LineMass) -> Result<Element, BuildError> {
         let ends = beam.between.map(|point| self.point(g, point));
         let axis = self.vector(g, beam.axis, Context::Parameters)?;
         let axis = space::unit(g, axis);
@@ -79,7 +79,7 @@ impl Mechanism<'_> {
     }
 
     /// Generalised inertial forces of all beams, n: their part of M w, with what depends on velocities.
-    pub fn inertia_of_beams(&self, g: &mut Graph) -> Result<Vec<Expr>, BuildError> {
+    pub fn inertia_of_beams(&self, g: &Builder) -> Result<Vec<Expr>, BuildError> {
         let mut loads = Loads::new(g, self.bodies.len());
         for element in self.elements(g)? {
             let accelerations = element.end_values(g, |g, element, end| {
@@ -100,7 +100,7 @@ impl Mechanism<'_> {
     }
 
     /// T of all beams, J.
-    pub fn kinetic_energy_of_beams(&self, g: &mut Graph) -> Result<Expr, BuildError> {
+    pub fn kinetic_energy_of_beams(&self, g: &Builder) -> Result<Expr, BuildError> {
         let mut parts = Vec::new();
         for element in self.elements(g)? {
             let velocities = element.end_values(g, |g, element, end| {
@@ -119,7 +119,7 @@ impl Mechanism<'_> {
     }
 
     /// Adds the weights of all beams in a uniform field, with their potential energy.
-    pub fn weigh_beams(&self, g: &mut Graph, loads: &mut Loads, field: Vector) -> Result<(), BuildError> {
+    pub fn weigh_beams(&self, g: &Builder, loads: &mut Loads, field: Vector) -> Result<(), BuildError> {
         for element in self.elements(g)? {
             let square = g.mul(element.length, element.length);
             let (whole, bent) = (g.mul(element.mass, element.length), g.mul(element.mass, square));
@@ -141,7 +141,7 @@ impl Mechanism<'_> {
     }
 
     /// A beam starts straight and moves as a rigid body, but between nodes whose coordinates (velocities) are all given.
-    pub fn start_of_beams(&self, g: &mut Graph) -> Result<Vec<StartCondition>, BuildError> {
+    pub fn start_of_beams(&self, g: &Builder) -> Result<Vec<StartCondition>, BuildError> {
         let mut conditions = Vec::new();
         for beam in beams(self) {
             let [first, second] = beam.between.map(|point| point.body);
@@ -183,13 +183,13 @@ impl Mechanism<'_> {
 
 impl Element {
     /// Something of e: (r_A, L t_A, r_B, L t_B), from what it is of r and t.
-    fn end_values(&self, g: &mut Graph, of: impl Fn(&mut Graph, &Self, usize) -> [Vector; 2]) -> [Vector; 4] {
+    fn end_values(&self, g: &Builder, of: impl Fn(&Builder, &Self, usize) -> [Vector; 2]) -> [Vector; 4] {
         let ([first, turning], [second, turned]) = (of(g, self, 0), of(g, self, 1));
         [first, space::scale(g, self.length, turning), second, space::scale(g, self.length, turned)]
     }
 
     /// Σ m_kl x_l
-    fn momenta(&self, g: &mut Graph, values: &[Vector; 4]) -> [Vector; 4] {
+    fn momenta(&self, g: &Builder, values: &[Vector; 4]) -> [Vector; 4] {
         let whole = g.mul(self.mass, self.length);
         let unit = g.scale(1.0 / 420.0, whole);
         MASS.map(|row| {
@@ -202,13 +202,13 @@ impl Element {
     }
 
     /// What does F · δr + G · L δt for every motion of an end.
-    fn push(&self, g: &mut Graph, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
+    fn push(&self, g: &Builder, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
         let turning = space::scale(g, self.length, turning);
         self.push_by(g, loads, end, force, turning);
     }
 
     /// What does F · δr + G · δt.
-    fn push_by(&self, g: &mut Graph, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
+    fn push_by(&self, g: &Builder, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
         let across = space::perpendicular(g, self.axes[end]);
         let (zero, moment) = (g.constant(0.0), space::dot(g, across, turning));
         loads.add_force(g, &self.ends[end], force);

@@ -1,6 +1,6 @@
 //! Whether a mechanism can be described in joint coordinates.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::model::{JointKind, Referent, StartValue, Turning};
 
@@ -9,7 +9,7 @@ use super::mechanism::{Context, Mechanism};
 
 impl Mechanism<'_> {
     /// What is in the way of joint coordinates; `None` where they do.
-    pub fn obstacle(&self, g: &mut Graph) -> Option<String> {
+    pub fn obstacle(&self, g: &Builder) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can carry a body".to_owned());
         }
@@ -20,7 +20,7 @@ impl Mechanism<'_> {
     }
 
     /// Friction by the load of a joint that carries.
-    fn loaded_friction(&self, g: &mut Graph) -> Option<String> {
+    fn loaded_friction(&self, g: &Builder) -> Option<String> {
         let d = self.description;
         let joint = d.effects.iter().find_map(|effect| {
             let (joint, factor) = effect.kind.loading_joint().filter(|(joint, _)| self.tree.uses(*joint))?;

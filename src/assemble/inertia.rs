@@ -20,7 +20,7 @@
 //! J is taken about the centre of mass. 4 Gᵀ J₀ G is singular: it knows nothing of a change of |p|. The term with μ makes M
 //! positive definite and changes no motion, since it acts along p, where the multiplier of pᵀp = 1 takes it up.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use super::body::{ANGLE, Body, EULER, FREEDOMS, Turn};
 use super::rotation;
@@ -31,7 +31,7 @@ type MassMatrix = [[Expr; FREEDOMS]; FREEDOMS];
 impl Body {
     /// Adds the body's entries to M and its velocity-dependent inertial forces to Q. A held coordinate that moves (by
     /// a formula of t) drives the others through its column of M.
-    pub fn add_inertia(&self, g: &mut Graph, mass: &mut Vec<(usize, usize, Expr)>, force: &mut [Expr]) {
+    pub fn add_inertia(&self, g: &Builder, mass: &mut Vec<(usize, usize, Expr)>, force: &mut [Expr]) {
         if self.carried.is_some() || self.index.iter().all(Option::is_none) {
             return;
         }
@@ -56,7 +56,7 @@ impl Body {
     }
 
     /// M and Q with θ, of all coordinates, held ones included.
-    fn turning_by_angle(&self, g: &mut Graph) -> (MassMatrix, [Expr; FREEDOMS]) {
+    fn turning_by_angle(&self, g: &Builder) -> (MassMatrix, [Expr; FREEDOMS]) {
         let zero = g.constant(0.0);
         let arm = self.rotate(g, self.center);
         let moment = space::scale(g, self.mass, arm);
@@ -79,7 +79,7 @@ impl Body {
     }
 
     /// M and Q with Euler parameters.
-    fn turning_by_euler(&self, g: &mut Graph) -> (MassMatrix, [Expr; FREEDOMS]) {
+    fn turning_by_euler(&self, g: &Builder) -> (MassMatrix, [Expr; FREEDOMS]) {
         let zero = g.constant(0.0);
         let p = self.euler();
         let r = rotation::matrix(g, p);
@@ -126,7 +126,7 @@ impl Body {
     }
 
     /// J₀ = J + m (sᵀs 1 − s sᵀ).
-    pub fn inertia_about_origin(&self, g: &mut Graph) -> [Vector; 3] {
+    pub fn inertia_about_origin(&self, g: &Builder) -> [Vector; 3] {
         let s = self.center;
         let square = space::dot(g, s, s);
         let mut shifted = self.inertia;
@@ -142,7 +142,7 @@ impl Body {
     }
 
     /// ½ m |ṙ_c|² + ½ ω'ᵀ J ω', J.
-    pub fn kinetic_energy(&self, g: &mut Graph) -> Expr {
+    pub fn kinetic_energy(&self, g: &Builder) -> Expr {
         let arm = self.rotate(g, self.center);
         let velocity = self.velocity_of(g, arm);
         let square = space::dot(g, velocity, velocity);

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula, Scalar};
 
 use crate::model::{
     self, Coordinate, Description, JointCoordinate, JointKind, Measure, ParameterValue, PointRef, Referent, Rotation,
@@ -135,7 +135,7 @@ pub struct Mechanism<'d> {
 
 impl<'d> Mechanism<'d> {
     /// The symbols and bodies of a description; with `carry`, as many bodies as can be are carried by their joints.
-    pub fn new(g: &mut Graph, description: &'d Description, carry: bool) -> Result<Self, BuildError> {
+    pub fn new(g: &Builder, description: &'d Description, carry: bool) -> Result<Self, BuildError> {
         let time = g.symbol("t");
         let mut mechanism = Self {
             description,
@@ -189,7 +189,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// Whether nothing of a joint is driven by t.
-    fn is_steady(&self, g: &mut Graph, kind: &JointKind) -> bool {
+    fn is_steady(&self, g: &Builder, kind: &JointKind) -> bool {
         let mut formulas: Vec<&Formula> = Vec::new();
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
             formulas.extend(kind.axis_of(coordinate).into_iter().flatten());
@@ -202,7 +202,7 @@ impl<'d> Mechanism<'d> {
         formulas.into_iter().all(|formula| self.formula(g, formula, Context::Parameters).is_ok())
     }
 
-    fn body(&mut self, g: &mut Graph, index: usize, body: &model::Body) -> Result<Body, BuildError> {
+    fn body(&mut self, g: &Builder, index: usize, body: &model::Body) -> Result<Body, BuildError> {
         let zero = g.constant(0.0);
         let turn = if body.has_orientation() { Turn::Euler } else { Turn::Angle };
         let mut built = Body {
@@ -262,7 +262,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// Symbols for one more coordinate; its place in q.
-    pub fn add_coordinate(&mut self, g: &mut Graph, owner: Owner) -> usize {
+    pub fn add_coordinate(&mut self, g: &Builder, owner: Owner) -> usize {
         let name = match owner {
             Owner::Body(..) => self.coordinate_name(owner),
             // A joint may be called like a body.
@@ -276,7 +276,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// J; of a body that turns about z only, no more than J_zz.
-    fn inertia(&self, g: &mut Graph, body: &model::Body, turn: Turn) -> Result<[Vector; 3], BuildError> {
+    fn inertia(&self, g: &Builder, body: &model::Body, turn: Turn) -> Result<[Vector; 3], BuildError> {
         let mut tensor = [space::zero(g); 3];
         let Some(inertia) = &body.inertia else { return Ok(tensor) };
         let model::Inertia { xx, yy, zz, xy, xz, yz } = inertia;
@@ -315,33 +315,35 @@ impl<'d> Mechanism<'d> {
     }
 
     /// A formula as an expression: the one place where names become expressions.
-    pub fn formula(&self, g: &mut Graph, formula: &Formula, context: Context) -> Result<Expr, BuildError> {
-        formula.build(g, |g, name| match self.description.referent(name) {
-            Some(referent) if Context::of(referent) <= context => Ok(self.observe(g, referent)),
+    pub fn formula(&self, g: &Builder, formula: &Formula, context: Context) -> Result<Expr, BuildError> {
+        let built = formula.build(g, |name| match self.description.referent(name) {
+            Some(referent) if Context::of(referent) <= context => Ok(g.scalar(self.observe(g, referent))),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: context }),
-        })
+        });
+        built.map(Scalar::expr)
     }
 
     /// A formula of an effect, which may speak of what the effect measures itself.
-    pub fn own_formula(&self, g: &mut Graph, formula: &Formula, own: &[(Measure, Expr)]) -> Result<Expr, BuildError> {
-        formula.build(g, |g, name| match self.description.referent(name) {
+    pub fn own_formula(&self, g: &Builder, formula: &Formula, own: &[(Measure, Expr)]) -> Result<Expr, BuildError> {
+        let built = formula.build(g, |name| match self.description.referent(name) {
             Some(Referent::Measure { effect, measure }) if !self.measures.contains_key(&(effect, measure)) => {
-                let found = own.iter().find(|(known, _)| *known == measure).map(|&(_, expr)| expr);
+                let found = own.iter().find(|(known, _)| *known == measure).map(|&(_, expr)| g.scalar(expr));
                 found.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: Context::Motion })
             }
-            Some(referent) if Context::of(referent) <= Context::Motion => Ok(self.observe(g, referent)),
+            Some(referent) if Context::of(referent) <= Context::Motion => Ok(g.scalar(self.observe(g, referent))),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Motion }),
-        })
+        });
+        built.map(Scalar::expr)
     }
 
     /// Three formulas as a vector.
-    pub fn vector(&self, g: &mut Graph, formulas: &[Formula; 3], context: Context) -> Result<Vector, BuildError> {
+    pub fn vector(&self, g: &Builder, formulas: &[Formula; 3], context: Context) -> Result<Vector, BuildError> {
         let [x, y, z] = formulas;
         Ok([self.formula(g, x, context)?, self.formula(g, y, context)?, self.formula(g, z, context)?])
     }
 
     /// A rotation of parameters as Euler parameters of length 1.
-    pub fn rotation(&self, g: &mut Graph, rotation: &Rotation) -> Result<Quaternion, BuildError> {
+    pub fn rotation(&self, g: &Builder, rotation: &Rotation) -> Result<Quaternion, BuildError> {
         match rotation {
             Rotation::RollPitchYaw(angles) => {
                 let angles = self.vector(g, angles, Context::Parameters)?;
@@ -363,7 +365,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// A point in its body's frame.
-    pub fn local(&self, g: &mut Graph, point: PointRef) -> Vector {
+    pub fn local(&self, g: &Builder, point: PointRef) -> Vector {
         match point.point {
             Some(index) => self.bodies[point.body].points[index],
             None => space::zero(g),
@@ -371,13 +373,13 @@ impl<'d> Mechanism<'d> {
     }
 
     /// A point of a body in the ground's frame.
-    pub fn point(&self, g: &mut Graph, point: PointRef) -> MaterialPoint {
+    pub fn point(&self, g: &Builder, point: PointRef) -> MaterialPoint {
         let local = self.local(g, point);
         self.point_at(g, point.body, local)
     }
 
     /// The point s = `local` of a body's frame in the ground's.
-    pub fn point_at(&self, g: &mut Graph, body: usize, local: Vector) -> MaterialPoint {
+    pub fn point_at(&self, g: &Builder, body: usize, local: Vector) -> MaterialPoint {
         let frame = &self.bodies[body];
         let arm = frame.rotate(g, local);
         let position = frame.position_of(g, arm);
@@ -386,7 +388,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// The point of a body that is at a place of the ground just now.
-    pub fn carried_along(&self, g: &mut Graph, body: usize, position: Vector) -> MaterialPoint {
+    pub fn carried_along(&self, g: &Builder, body: usize, position: Vector) -> MaterialPoint {
         let frame = &self.bodies[body];
         let arm = space::sub(g, position, frame.origin());
         let velocity = frame.velocity_of(g, arm);
@@ -394,7 +396,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// The frame at a point of a body.
-    pub fn frame(&self, g: &mut Graph, point: PointRef) -> Frame {
+    pub fn frame(&self, g: &Builder, point: PointRef) -> Frame {
         let body = &self.bodies[point.body];
         let orientation = body.orientation(g);
         let local = point.point.and_then(|index| body.frames[index]);
@@ -406,21 +408,21 @@ impl<'d> Mechanism<'d> {
     }
 
     /// Whether only parameters and t stand in the expressions.
-    pub fn is_given(&self, g: &Graph, exprs: &[Expr]) -> bool {
+    pub fn is_given(&self, g: &Builder, exprs: &[Expr]) -> bool {
         let given =
             |symbol: &Expr| *symbol == self.time || self.uncertain.iter().any(|parameter| parameter.symbol == *symbol);
         g.symbols_of(exprs).iter().all(given)
     }
 
     /// Values at the nominal parameters, t = 0 and, should they occur, zero coordinates.
-    pub fn nominal(&self, g: &Graph, exprs: &[Expr]) -> Vec<f64> {
+    pub fn nominal(&self, g: &Builder, exprs: &[Expr]) -> Vec<f64> {
         self.sample(g, exprs, 0.0, |parameter| parameter.nominal)
     }
 
     /// Values at chosen parameters and time.
     pub fn sample(
         &self,
-        g: &Graph,
+        g: &Builder,
         exprs: &[Expr],
         time: f64,
         choose: impl Fn(&UncertainParameter) -> f64,

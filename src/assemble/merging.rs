@@ -7,7 +7,7 @@
 //! J = J₁ + R J₂ Rᵀ + Σ mᵢ (dᵢᵀdᵢ 1 − dᵢ dᵢᵀ),   dᵢ from c to each centre; together m₁m₂/m (dᵀd 1 − d dᵀ), d = o + R c₂ − c₁
 //! ```
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use super::mechanism::Mechanism;
 use super::space::{self, Matrix, Vector};
@@ -21,7 +21,7 @@ struct Inertial {
 
 impl Mechanism<'_> {
     /// Hands the inertia of merged bodies on to what they follow.
-    pub fn merge(&mut self, g: &mut Graph) {
+    pub fn merge(&mut self, g: &Builder) {
         // From the ends of the trees inwards, so that each has all of its own before it hands it on.
         for &index in self.tree.order.iter().rev().filter(|&&index| self.tree.merges(index)) {
             let Some(carried) = &self.bodies[index].carried else { continue };
@@ -49,7 +49,7 @@ impl Mechanism<'_> {
     }
 }
 
-fn together(g: &mut Graph, a: Inertial, b: Inertial) -> Inertial {
+fn together(g: &Builder, a: Inertial, b: Inertial) -> Inertial {
     let inertia = sum(g, &a.inertia, &b.inertia);
     // Without mass there is no centre, and nothing to be moved to another.
     if g.is_zero(b.mass) {
@@ -75,6 +75,6 @@ fn together(g: &mut Graph, a: Inertial, b: Inertial) -> Inertial {
     Inertial { mass, center, inertia: sum(g, &inertia, &steiner) }
 }
 
-fn sum(g: &mut Graph, a: &Matrix, b: &Matrix) -> Matrix {
+fn sum(g: &Builder, a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| space::add(g, a[i], b[i]))
 }

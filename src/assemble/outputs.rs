@@ -1,6 +1,6 @@
 //! What is observed: a referent as an expression over t, q, v, w, λ and the parameters.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{EnergyKind, ReactionComponent, Referent, TimeOrder};
 
@@ -12,7 +12,7 @@ use super::system::OutputInfo;
 
 impl Mechanism<'_> {
     /// The expression that a name stands for. Joints whose reactions are asked for must have been built.
-    pub fn observe(&self, g: &mut Graph, referent: Referent) -> Expr {
+    pub fn observe(&self, g: &Builder, referent: Referent) -> Expr {
         match referent {
             Referent::Parameter(index) => self.parameters[index],
             Referent::Time => self.time,
@@ -77,13 +77,13 @@ impl Mechanism<'_> {
         }
     }
 
-    fn kinetic_energy(&self, g: &mut Graph) -> Expr {
+    fn kinetic_energy(&self, g: &Builder) -> Expr {
         let bodies: Vec<Expr> = self.bodies.iter().map(|body| body.kinetic_energy(g)).collect();
         g.sum(bodies.into_iter().chain([self.bending]))
     }
 
     /// All outputs of the description.
-    pub fn outputs(&self, g: &mut Graph) -> Result<Vec<OutputInfo>, BuildError> {
+    pub fn outputs(&self, g: &Builder) -> Result<Vec<OutputInfo>, BuildError> {
         let outputs = self.description.outputs.iter();
         outputs
             .map(|output| {

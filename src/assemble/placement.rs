@@ -14,7 +14,7 @@
 
 use std::collections::VecDeque;
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{Coordinate, JointCoordinate, JointKind, LineMass, PointRef};
 
@@ -70,7 +70,7 @@ pub struct Placement {
 
 impl Placement {
     /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(g: &mut Graph, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+    pub fn of(g: &Builder, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
         let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
             for (freedom, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
@@ -98,7 +98,7 @@ impl Placement {
     }
 
     /// A joint's coordinate.
-    pub fn joint(&self, g: &mut Graph, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
+    pub fn joint(&self, g: &Builder, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
         let kind = &m.description.joints[joint].kind;
         let Some(between) = kind.between() else { return 0.0 };
         let [first, second] = between.map(|point| self.pose(point.body));
@@ -216,10 +216,10 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
 }
 
 /// The joints of each body, and the elements of beams, straight.
-fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
+fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
     for joint in &m.description.joints {
-        let mut value = |formula| {
+        let value = |formula| {
             let expr = m.formula(g, formula, Context::Time)?;
             Ok(m.nominal(g, &[expr])[0])
         };
@@ -250,7 +250,7 @@ fn links(g: &mut Graph, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     Ok(links)
 }
 
-fn local(g: &mut Graph, m: &Mechanism, point: PointRef) -> [f64; 2] {
+fn local(g: &Builder, m: &Mechanism, point: PointRef) -> [f64; 2] {
     let expr = m.local(g, point);
     let values = m.nominal(g, &expr);
     [values[0], values[1]]

@@ -14,7 +14,7 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{JointCoordinate, JointKind, PointRef};
 
@@ -84,7 +84,7 @@ pub struct Poses<'m, 'd> {
 
 impl<'m, 'd> Poses<'m, 'd> {
     /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(g: &mut Graph, m: &'m Mechanism<'d>, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+    pub fn of(g: &Builder, m: &'m Mechanism<'d>, known: &[Option<Expr>]) -> Result<Self, BuildError> {
         let values: Vec<Option<f64>> = known.iter().map(|known| known.map(|value| m.nominal(g, &[value])[0])).collect();
         let known: Vec<Known> = m.bodies.iter().map(|body| known_of(g, m, body, &values)).collect();
         let complete = |known: &Known| {
@@ -99,7 +99,7 @@ impl<'m, 'd> Poses<'m, 'd> {
     }
 
     /// Values of all coordinates.
-    pub fn coordinates(&self, g: &mut Graph) -> Result<Vec<f64>, BuildError> {
+    pub fn coordinates(&self, g: &Builder) -> Result<Vec<f64>, BuildError> {
         let m = self.mechanism;
         let mut values = Vec::with_capacity(m.coordinates.len());
         for &owner in &m.coordinates {
@@ -120,7 +120,7 @@ impl<'m, 'd> Poses<'m, 'd> {
         Ok(values)
     }
 
-    fn joint(&self, g: &mut Graph, joint: usize, coordinate: JointCoordinate) -> Result<f64, BuildError> {
+    fn joint(&self, g: &Builder, joint: usize, coordinate: JointCoordinate) -> Result<f64, BuildError> {
         let kind = &self.mechanism.description.joints[joint].kind;
         let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { return Ok(0.0) };
         let axis = self.direction(g, axis)?;
@@ -132,7 +132,7 @@ impl<'m, 'd> Poses<'m, 'd> {
         })
     }
 
-    fn direction(&self, g: &mut Graph, axis: &[symdiff::Formula; 3]) -> Result<Vector3<f64>, BuildError> {
+    fn direction(&self, g: &Builder, axis: &[symdiff::Formula; 3]) -> Result<Vector3<f64>, BuildError> {
         let axis = self.mechanism.vector(g, axis, Context::Time)?;
         let values = self.mechanism.nominal(g, &axis);
         Ok(Vector3::from_column_slice(&values).normalize())
@@ -142,7 +142,7 @@ impl<'m, 'd> Poses<'m, 'd> {
         self.poses[body].unwrap_or_else(|| self.known[body].or(Vector3::zeros(), UnitQuaternion::identity()))
     }
 
-    fn find_links(&mut self, g: &mut Graph) -> Result<(), BuildError> {
+    fn find_links(&mut self, g: &Builder) -> Result<(), BuildError> {
         let m = self.mechanism;
         for (index, joint) in m.description.joints.iter().enumerate() {
             let Some(between) = joint.kind.between() else { continue };
@@ -169,7 +169,7 @@ impl<'m, 'd> Poses<'m, 'd> {
     }
 
     /// A joint's second frame against the first, its coordinates zero where they are not known.
-    fn across(&self, g: &mut Graph, joint: usize, kind: &JointKind) -> Result<Pose, BuildError> {
+    fn across(&self, g: &Builder, joint: usize, kind: &JointKind) -> Result<Pose, BuildError> {
         let mut pose = Pose::at(Vector3::zeros(), UnitQuaternion::identity());
         if let JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } = kind {
             let angle = self.mechanism.formula(g, angle, Context::Time)?;
@@ -255,7 +255,7 @@ impl Known {
     }
 }
 
-fn known_of(g: &mut Graph, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> Known {
+fn known_of(g: &Builder, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> Known {
     let value = |place: usize| match body.index[place] {
         Some(index) => values[index],
         None if body.carried.is_some() => None,
@@ -278,7 +278,7 @@ fn angle_about(rotation: &UnitQuaternion<f64>, axis: &Vector3<f64>) -> f64 {
 }
 
 /// The frame at a point against its body's.
-fn local(g: &mut Graph, m: &Mechanism, point: PointRef) -> Pose {
+fn local(g: &Builder, m: &Mechanism, point: PointRef) -> Pose {
     let position = m.local(g, point);
     let frame = point.point.and_then(|index| m.bodies[point.body].frames[index]);
     let frame = frame.unwrap_or_else(|| rotation::identity(g));

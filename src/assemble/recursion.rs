@@ -19,7 +19,7 @@
 //! Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69; with U, Khalil & Dombre, *Modeling, Identification and Control of
 //! Robots*, ch. 9.) The generalised forces are linear in w; their slopes are the mass matrix.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::{JointCoordinate, JointKind};
 
@@ -41,7 +41,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(g: &mut Graph, omega: Vector, alpha: Vector, acceleration: Vector) -> Self {
+    fn new(g: &Builder, omega: Vector, alpha: Vector, acceleration: Vector) -> Self {
         Self { omega, alpha, acceleration, spread: spread(g, omega, alpha) }
     }
 }
@@ -59,7 +59,7 @@ pub struct InertialForces {
 
 /// The inertial forces of all carried bodies, less their weight in a uniform field of acceleration (m/s², in the
 /// ground's axes).
-pub fn inertial_forces(g: &mut Graph, m: &Mechanism, field: Vector) -> InertialForces {
+pub fn inertial_forces(g: &Builder, m: &Mechanism, field: Vector) -> InertialForces {
     let zero = space::zero(g);
     let mut forces =
         InertialForces { generalised: vec![g.constant(0.0); m.q.len()], wrenches: vec![[zero; 2]; m.bodies.len()] };
@@ -100,7 +100,7 @@ pub fn inertial_forces(g: &mut Graph, m: &Mechanism, field: Vector) -> InertialF
 }
 
 /// A root moves as its own coordinates say, in the field.
-fn root(g: &mut Graph, body: &Body, field: Vector) -> Motion {
+fn root(g: &Builder, body: &Body, field: Vector) -> Motion {
     let felt = space::sub(g, [body.acceleration[0], body.acceleration[1], body.acceleration[2]], field);
     let back = space::transposed(&body.matrix(g));
     let acceleration = space::times(g, &back, felt);
@@ -108,7 +108,7 @@ fn root(g: &mut Graph, body: &Body, field: Vector) -> Motion {
     Motion::new(g, omega, alpha, acceleration)
 }
 
-fn carried_motion(g: &mut Graph, body: &Body, parent: &Motion) -> Motion {
+fn carried_motion(g: &Builder, body: &Body, parent: &Motion) -> Motion {
     let Some(carried) = &body.carried else { return *parent };
     let [axis, axis_in_parent] = carried.axis;
     let back = space::transposed(&carried.rotation);
@@ -136,7 +136,7 @@ fn carried_motion(g: &mut Graph, body: &Body, parent: &Motion) -> Motion {
 }
 
 /// U = ω̇̃ + ω̃ ω̃.
-fn spread(g: &mut Graph, omega: Vector, alpha: Vector) -> Matrix {
+fn spread(g: &Builder, omega: Vector, alpha: Vector) -> Matrix {
     let squares = omega.map(|component| g.mul(component, component));
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -152,7 +152,7 @@ fn spread(g: &mut Graph, omega: Vector, alpha: Vector) -> Matrix {
 }
 
 /// F and N of the body alone.
-fn inertial_wrench(g: &mut Graph, body: &Body, motion: &Motion) -> Wrench {
+fn inertial_wrench(g: &Builder, body: &Body, motion: &Motion) -> Wrench {
     let first = space::scale(g, body.mass, body.center);
     let straight = space::scale(g, body.mass, motion.acceleration);
     let swung = space::times(g, &motion.spread, first);
@@ -183,7 +183,7 @@ fn inertial_wrench(g: &mut Graph, body: &Body, motion: &Motion) -> Wrench {
 }
 
 /// What a root's own coordinates feel of what it carries.
-fn on_root(g: &mut Graph, body: &Body, [force, torque]: Wrench, generalised: &mut [Expr]) {
+fn on_root(g: &Builder, body: &Body, [force, torque]: Wrench, generalised: &mut [Expr]) {
     if body.carried.is_some() || body.index.iter().all(Option::is_none) {
         return;
     }
@@ -208,7 +208,7 @@ impl Mechanism<'_> {
     /// The reactions of the joints that carry, in the ground's axes: what moves a body and all that it carries, less the
     /// forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates a joint
     /// has none.
-    pub fn react(&mut self, g: &mut Graph, loads: &Loads, forces: &InertialForces, closures: &[usize]) {
+    pub fn react(&mut self, g: &Builder, loads: &Loads, forces: &InertialForces, closures: &[usize]) {
         let mut loads = loads.clone();
         for &joint in closures {
             let Reaction { force, torque, .. } = self.reactions[joint];
@@ -265,7 +265,7 @@ impl Mechanism<'_> {
 }
 
 /// The part of a vector across a unit vector.
-fn across(g: &mut Graph, a: Vector, axis: Vector) -> Vector {
+fn across(g: &Builder, a: Vector, axis: Vector) -> Vector {
     let along = space::dot(g, a, axis);
     let part = space::scale(g, along, axis);
     space::sub(g, a, part)

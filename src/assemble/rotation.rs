@@ -12,7 +12,7 @@
 //! on p, since 2 E δp is the virtual rotation. (Nikravesh, *Computer-Aided Analysis of Mechanical Systems*, ch. 6.)
 //! A second rotation in the turned frame multiplies from the right: R(p) R(r) = R(p ∘ r).
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use super::space::{self, Matrix, Vector};
 
@@ -23,18 +23,18 @@ pub type Quaternion = [Expr; 4];
 pub type Rates = [[Expr; 4]; 3];
 
 /// No rotation.
-pub fn identity(g: &mut Graph) -> Quaternion {
+pub fn identity(g: &Builder) -> Quaternion {
     let (one, zero) = (g.constant(1.0), g.constant(0.0));
     [one, zero, zero, zero]
 }
 
 /// The inverse of a rotation.
-pub fn conjugate(g: &mut Graph, p: Quaternion) -> Quaternion {
+pub fn conjugate(g: &Builder, p: Quaternion) -> Quaternion {
     [p[0], g.neg(p[1]), g.neg(p[2]), g.neg(p[3])]
 }
 
 /// p ∘ r = (p₀ r₀ − e·f, p₀ f + r₀ e + e × f).
-pub fn product(g: &mut Graph, p: Quaternion, r: Quaternion) -> Quaternion {
+pub fn product(g: &Builder, p: Quaternion, r: Quaternion) -> Quaternion {
     let (e, f) = (vector_part(p), vector_part(r));
     let (scalars, dot) = (g.mul(p[0], r[0]), space::dot(g, e, f));
     let (left, right) = (space::scale(g, p[0], f), space::scale(g, r[0], e));
@@ -50,7 +50,7 @@ pub fn vector_part(p: Quaternion) -> Vector {
 }
 
 /// By an angle about a unit vector.
-pub fn about(g: &mut Graph, axis: Vector, angle: Expr) -> Quaternion {
+pub fn about(g: &Builder, axis: Vector, angle: Expr) -> Quaternion {
     let half = g.scale(0.5, angle);
     let (cos, sin) = (g.cos(half), g.sin(half));
     let e = space::scale(g, sin, axis);
@@ -58,7 +58,7 @@ pub fn about(g: &mut Graph, axis: Vector, angle: Expr) -> Quaternion {
 }
 
 /// About the fixed x, then y, then z.
-pub fn roll_pitch_yaw(g: &mut Graph, angles: [Expr; 3]) -> Quaternion {
+pub fn roll_pitch_yaw(g: &Builder, angles: [Expr; 3]) -> Quaternion {
     let [roll, pitch, yaw] = std::array::from_fn(|axis| {
         let axis_vector = space::along(g, axis);
         about(g, axis_vector, angles[axis])
@@ -68,24 +68,24 @@ pub fn roll_pitch_yaw(g: &mut Graph, angles: [Expr; 3]) -> Quaternion {
 }
 
 /// p / |p|.
-pub fn normalised(g: &mut Graph, p: Quaternion) -> Quaternion {
+pub fn normalised(g: &Builder, p: Quaternion) -> Quaternion {
     let square = g.dot(&p, &p);
     let length = g.sqrt(square);
     p.map(|component| g.div(component, length))
 }
 
 /// R, by rows.
-pub fn matrix(g: &mut Graph, p: Quaternion) -> Matrix {
+pub fn matrix(g: &Builder, p: Quaternion) -> Matrix {
     let squares = p.map(|component| g.mul(component, component));
     let all = squares[1..].iter().fold(squares[0], |rest, &square| g.sub(rest, square));
     let [px, py, pz] = [1, 2, 3].map(|i| g.mul(p[0], p[i]));
     let [xy, xz, yz] = [(1, 2), (1, 3), (2, 3)].map(|(i, j)| g.mul(p[i], p[j]));
-    let mut diagonal = |i: usize| {
+    let diagonal = |i: usize| {
         let twice = g.scale(2.0, squares[i]);
         g.add(all, twice)
     };
     let [xx, yy, zz] = [diagonal(1), diagonal(2), diagonal(3)];
-    let mut twice = |a: Expr, b: Expr, plus: bool| {
+    let twice = |a: Expr, b: Expr, plus: bool| {
         let sum = if plus { g.add(a, b) } else { g.sub(a, b) };
         g.scale(2.0, sum)
     };
@@ -97,7 +97,7 @@ pub fn matrix(g: &mut Graph, p: Quaternion) -> Matrix {
 }
 
 /// R of a rotation by an angle about a unit vector a: cos φ 1 + sin φ ã + (1 − cos φ) a aᵀ, by rows.
-pub fn matrix_about(g: &mut Graph, axis: Vector, angle: Expr) -> Matrix {
+pub fn matrix_about(g: &Builder, axis: Vector, angle: Expr) -> Matrix {
     let (cos, sin, one) = (g.cos(angle), g.sin(angle), g.constant(1.0));
     let rest = g.sub(one, cos);
     std::array::from_fn(|i| {
@@ -117,19 +117,19 @@ pub fn matrix_about(g: &mut Graph, axis: Vector, angle: Expr) -> Matrix {
 }
 
 /// E: rates of rotation in the ground's axes.
-pub fn ground_rates(g: &mut Graph, p: Quaternion) -> Rates {
+pub fn ground_rates(g: &Builder, p: Quaternion) -> Rates {
     let [n1, n2, n3] = vector_part(p).map(|component| g.neg(component));
     [[n1, p[0], n3, p[2]], [n2, p[3], p[0], n1], [n3, n2, p[1], p[0]]]
 }
 
 /// G: rates of rotation in the body's axes.
-pub fn body_rates(g: &mut Graph, p: Quaternion) -> Rates {
+pub fn body_rates(g: &Builder, p: Quaternion) -> Rates {
     let [n1, n2, n3] = vector_part(p).map(|component| g.neg(component));
     [[n1, p[0], p[3], n2], [n2, n3, p[0], p[1]], [n3, p[2], n1, p[0]]]
 }
 
 /// 2 E ṗ or 2 G ṗ; 2 E p̈ or 2 G p̈.
-pub fn turning(g: &mut Graph, rates: &Rates, derivative: Quaternion) -> Vector {
+pub fn turning(g: &Builder, rates: &Rates, derivative: Quaternion) -> Vector {
     rates.map(|row| {
         let half = g.dot(&row, &derivative);
         g.scale(2.0, half)
@@ -137,7 +137,7 @@ pub fn turning(g: &mut Graph, rates: &Rates, derivative: Quaternion) -> Vector {
 }
 
 /// `factor` Eᵀ a or Gᵀ a: with 2 a torque's generalised forces, with ½ an angular velocity's ṗ.
-pub fn transposed(g: &mut Graph, factor: f64, rates: &Rates, a: Vector) -> Quaternion {
+pub fn transposed(g: &Builder, factor: f64, rates: &Rates, a: Vector) -> Quaternion {
     std::array::from_fn(|i| {
         let sum = g.dot(&rates.map(|row| row[i]), &a);
         g.scale(factor, sum)
@@ -145,11 +145,11 @@ pub fn transposed(g: &mut Graph, factor: f64, rates: &Rates, a: Vector) -> Quate
 }
 
 /// Roll, pitch and yaw of a rotation matrix, each between −π and π, pitch at most a right angle.
-pub fn angles(g: &mut Graph, r: &[Vector; 3]) -> [Expr; 3] {
+pub fn angles(g: &Builder, r: &[Vector; 3]) -> [Expr; 3] {
     let (square, other) = (g.mul(r[2][1], r[2][1]), g.mul(r[2][2], r[2][2]));
     let sum = g.add(square, other);
     let (level, down) = (g.sqrt(sum), g.neg(r[2][0]));
-    let mut atan2 = |y: Expr, x: Expr| g.binary(symdiff::Binary::Atan2, y, x);
+    let atan2 = |y: Expr, x: Expr| g.binary(symdiff::Binary::Atan2, y, x);
     [atan2(r[2][1], r[2][2]), atan2(down, level), atan2(r[1][0], r[0][0])]
 }
 
@@ -162,13 +162,14 @@ mod tests {
     const P: Numbers = [0.5, -0.1, 0.7, 0.5];
     const RATE: Numbers = [0.3, 0.8, -0.2, 0.14];
 
-    fn symbols(g: &mut Graph, name: &str) -> Quaternion {
+    fn symbols(g: &Builder, name: &str) -> Quaternion {
         std::array::from_fn(|i| g.symbol(&format!("{name}{i}")))
     }
 
-    fn values(g: &Graph, exprs: &[Expr], p: Numbers, rate: Numbers) -> Vec<f64> {
-        g.evaluate(exprs, |symbol| {
-            let name = g.symbol_name(symbol).unwrap();
+    fn values(g: &Builder, exprs: &[Expr], p: Numbers, rate: Numbers) -> Vec<f64> {
+        let graph = g.graph();
+        graph.evaluate(exprs, |symbol| {
+            let name = graph.symbol_name(symbol).unwrap();
             let index: usize = name[1..].parse().unwrap();
             if name.starts_with('p') { p[index] } else { rate[index] }
         })
@@ -180,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_matrix_is_a_rotation_and_its_derivative_turns_by_omega() {
-        let g = &mut Graph::new();
+        let g = &Builder::new();
         let (p, rate) = (symbols(g, "p"), symbols(g, "v"));
         let r = matrix(g, p);
         let rates = ground_rates(g, p);
@@ -214,7 +215,7 @@ mod tests {
 
     #[test]
     fn products_turn_one_after_the_other() {
-        let g = &mut Graph::new();
+        let g = &Builder::new();
         let angles = [0.3, -0.7, 1.9].map(|angle| g.constant(angle));
         let p = roll_pitch_yaw(g, angles);
         let r = matrix(g, p);

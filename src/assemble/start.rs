@@ -1,6 +1,6 @@
 //! What is known at the start, and the model's size.
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::model::{Coordinate, JointCoordinate, JointKind, StartValue, TimeOrder};
 
@@ -26,7 +26,7 @@ impl Mechanism<'_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
     /// where the joints put the bodies when they are walked from the ground ([`Placement`], [`Poses`]), with the nominal
     /// parameters.
-    pub fn start(&self, g: &mut Graph) -> Result<Start, BuildError> {
+    pub fn start(&self, g: &Builder) -> Result<Start, BuildError> {
         let description = self.description;
         let position = self.values_at_start(g, &description.initial, TimeOrder::Position)?;
         let velocity = self.values_at_start(g, &description.initial, TimeOrder::Velocity)?;
@@ -40,7 +40,7 @@ impl Mechanism<'_> {
     }
 
     /// Where the joints put the coordinates.
-    fn placed(&self, g: &mut Graph, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
+    fn placed(&self, g: &Builder, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
         if self.is_spatial() {
             return Poses::of(g, self, known)?.coordinates(g);
         }
@@ -54,7 +54,7 @@ impl Mechanism<'_> {
 
     fn values_at_start(
         &self,
-        g: &mut Graph,
+        g: &Builder,
         values: &[StartValue],
         wanted: TimeOrder,
     ) -> Result<Vec<Option<Expr>>, BuildError> {
@@ -128,7 +128,7 @@ impl Mechanism<'_> {
 
     /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
     /// and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, g: &mut Graph) -> Result<f64, BuildError> {
+    pub fn characteristic_length(&self, g: &Builder) -> Result<f64, BuildError> {
         let mut lengths: Vec<Expr> = Vec::new();
         for body in &self.bodies {
             lengths.extend(body.points.iter().flatten());

@@ -9,7 +9,6 @@ use super::console::{BOLD, Console, count};
 use super::{Failure, Status, tree};
 use crate::model::{self, Description};
 use crate::reduce::{Choices, Reduction};
-use crate::results::Explanation;
 use crate::study::{self, RunError};
 
 /// What is known of a model; an element of the JSON output.
@@ -132,7 +131,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Of the whole model, whatever of it will be simulated.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let explanation = Explanation::new(&model.name, &study::prepare_whole(model)?);
+        let explanation = study::explain_whole(model)?;
         Ok(Self {
             model: explanation.model,
             coordinates: explanation.coordinates.len(),

@@ -437,7 +437,7 @@ mod tests {
             contributions: vec![],
             pieces: vec![],
             not_simulated: vec![],
-            islands: vec![],
+            subsystems: vec![],
             failure: None,
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));

@@ -128,7 +128,7 @@ mod tests {
             contributions: vec![],
             pieces: vec![],
             not_simulated: vec![],
-            islands: vec![],
+            subsystems: vec![],
             failure: None,
         };
         (bounds, summary)

@@ -6,7 +6,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
-use symdiff::{Formula, Graph, Spline};
+use symdiff::{Builder, Formula, Spline};
 
 use super::dimension::{self, Kind};
 use super::element::{Quantity, Requirement};
@@ -545,10 +545,9 @@ impl<S: SymbolTable> Reader<'_, S> {
 
 /// The formula's value, each name's given by `name`.
 pub fn evaluate(formula: &Formula, name: impl Fn(&str) -> Option<f64>) -> Option<f64> {
-    let mut graph = Graph::new();
-    let built =
-        formula.build(&mut graph, |graph, text| name(text).map(|value| graph.constant(value)).ok_or(())).ok()?;
-    graph.as_constant(built)
+    let builder = Builder::new();
+    let built = formula.build(&builder, |text| name(text).map(|value| builder.number(value)).ok_or(()));
+    built.ok()?.as_constant()
 }
 
 /// `a joint` → `joint`.

@@ -1,13 +1,6 @@
 //! Which bounds are asked for, typed: what `bounds:` says, checked.
 
-/// A bounding method's range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RangeKind {
-    /// Interval evaluation term by term (the paper's).
-    Interval,
-    /// The polynomial's own range.
-    Tight,
-}
+pub use crate::numerics::RangeKind;
 
 /// What a Chebyshev surrogate expands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

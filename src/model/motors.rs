@@ -3,7 +3,7 @@
 use crate::grammar::JointCoordinate;
 use std::convert::Infallible;
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use super::file;
 use super::kinds::{JointKind, Prescribed, Profile};
@@ -82,10 +82,10 @@ fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dim
 /// A formula of parameters and t that can be integrated.
 fn integrable(reader: &mut Reader, node: &Node, dimension: Dimension) -> Option<Formula> {
     let formula = reader.formula(node, Context::Time, dimension)?;
-    let mut graph = Graph::new();
-    let time = graph.symbol("t");
-    let speed = formula.build(&mut graph, |graph, name| Ok::<_, Infallible>(graph.symbol(name)));
-    let integral = speed.ok().and_then(|speed| graph.integral(speed, time));
+    let builder = Builder::new();
+    let time = builder.variable("t");
+    let Ok(speed) = formula.build(&builder, |name| Ok::<_, Infallible>(builder.variable(name)));
+    let integral = speed.integral(time);
     if integral.is_none() {
         let help = "polynomials, sin, cos, exp, sqrt, min and max of straight lines, and their sums can be; or give it as `position`";
         reader.error(node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());

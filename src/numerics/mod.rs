@@ -4,7 +4,7 @@
 //!
 //! - [`ChebyshevBasis`]: responses at its nodes → coefficients → [`PolynomialRange`];
 //! - [`SparseGrid`]: responses at nodes that grow where they are needed → [`SparseTransform`] → coefficients in a
-//!   [`SparseBasis`], for many parameters → [`VarianceShares`];
+//!   [`SparseBasis`], for many parameters → [`SobolDecomposition`];
 //! - [`TaylorRange`]: the response's jet → range;
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
@@ -20,13 +20,14 @@ mod range;
 mod samples;
 mod scan;
 mod search;
-mod shares;
+mod sobol;
 mod sparse_basis;
 mod sparse_grid;
 mod sparse_transform;
 mod surrogate;
 mod taylor;
 mod tensor;
+mod union;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
@@ -34,14 +35,15 @@ pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extremes::{Extent, extremes, extremes_near};
-pub use range::{Enclosed, PolynomialRange, Range};
+pub use range::{Enclosed, PolynomialRange, Range, RangeKind};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
-pub use shares::{Shares, VarianceShares};
+pub use sobol::{SobolDecomposition, SobolIndices};
 pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::SparseGrid;
 pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
 pub use tensor::Work;
+pub use union::{EMPTY, union};

@@ -23,7 +23,15 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::bernstein::Bernstein;
 use super::tensor::{Matrix, Separable, Work, cos_pi};
-use crate::model::RangeKind;
+
+/// How the range of a polynomial is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RangeKind {
+    /// Interval evaluation term by term (the paper's).
+    Interval,
+    /// The polynomial's own range.
+    Tight,
+}
 
 /// Grid intervals for each degree.
 const DENSITY: usize = 16;

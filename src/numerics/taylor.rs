@@ -2,9 +2,8 @@
 
 use symdiff::jet::Monomials;
 
-use super::range::{Enclosed, PolynomialRange, Range};
+use super::range::{Enclosed, PolynomialRange, Range, RangeKind};
 use super::tensor::{Matrix, Separable, Work};
-use crate::model::RangeKind;
 
 /// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how much
 /// too wide it is is unknown.

@@ -2,8 +2,6 @@
 
 use serde::Serialize;
 
-use crate::compile::Program;
-
 /// Instructions of the parts of a step, or differences of them: without an effect elimination may take another order, and a
 /// part then even becomes longer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -17,16 +15,6 @@ pub struct StepInstructions {
 }
 
 impl StepInstructions {
-    /// Of a program, where everything touches that can, or nothing does.
-    pub fn of(program: &Program, touching: bool) -> Self {
-        let count = |tape: &symdiff::Tape| tape.len_where(touching) as i64;
-        Self {
-            step: count(program.step()) + count(program.advance()),
-            factor: count(program.factor()),
-            iteration: count(program.correct()),
-        }
-    }
-
     /// What is more here than in `less`.
     #[must_use]
     pub fn beyond(self, less: Self) -> Self {
@@ -57,14 +45,4 @@ pub struct EffectCost {
     pub acting: StepInstructions,
     /// Where it and its like touch nothing in any sample of a tile; absent where it always acts.
     pub apart: Option<StepInstructions>,
-}
-
-impl EffectCost {
-    /// In two programs.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        let apart = |cost: &Self| cost.apart.unwrap_or(cost.acting);
-        let sometimes = self.apart.is_some() || other.apart.is_some();
-        Self { acting: self.acting + other.acting, apart: sometimes.then(|| apart(&self) + apart(&other)) }
-    }
 }

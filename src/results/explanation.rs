@@ -4,8 +4,6 @@ use serde::Serialize;
 
 use super::Decision;
 use super::effect_cost::EffectCost;
-use crate::compile::Program;
-use crate::simulate::Simulator;
 
 /// What a model was compiled to. Plain data: serialised as it stands, shown as text by the command line.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -47,62 +45,6 @@ pub struct Explanation {
     pub decisions: Vec<Decision>,
 }
 
-impl Explanation {
-    /// Of a model by this name.
-    pub fn new(model: &str, simulator: &Simulator) -> Self {
-        let (system, program) = (&simulator.system, &simulator.program);
-        let (nonzeros, factor_nonzeros) = program.nonzeros;
-        Self {
-            model: model.to_owned(),
-            space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
-            formulation: format!(
-                "{} coordinates: {}",
-                if system.formulation.joint { "joint" } else { "absolute" },
-                system.formulation.why
-            ),
-            coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
-            constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
-            degrees_of_freedom: simulator.mobility.degrees_of_freedom,
-            redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
-            singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
-            undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
-            parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
-            effects: system
-                .effects
-                .iter()
-                .map(|effect| EffectExplanation {
-                    name: effect.name.clone(),
-                    kind: effect.kind.to_owned(),
-                    forces: effect.forces,
-                    expressions: effect.expressions,
-                    adds: None,
-                })
-                .collect(),
-            outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
-            instructions: InstructionCounts::of(program, true),
-            apart: Some(InstructionCounts::of(program, false))
-                .filter(|apart| *apart != InstructionCounts::of(program, true)),
-            newton: NewtonMatrix {
-                size: program.residual.len(),
-                nonzeros,
-                factor_nonzeros,
-                fill: factor_nonzeros.saturating_sub(nonzeros),
-                pivots: program.pivots.clone(),
-            },
-            left_out: system
-                .left_out
-                .iter()
-                .map(|left_out| LeftOut { what: left_out.what.clone(), why: left_out.why.clone() })
-                .collect(),
-            decisions: Vec::new(),
-        }
-    }
-}
-
-fn constraint_names(simulator: &Simulator, constraints: &[usize]) -> Vec<String> {
-    constraints.iter().map(|&constraint| simulator.system.constraints[constraint].name.clone()).collect()
-}
-
 /// What an effect came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectExplanation {
@@ -138,31 +80,6 @@ pub struct InstructionCounts {
 }
 
 impl InstructionCounts {
-    /// Of a program, where everything touches that can, or nothing does.
-    fn of(program: &Program, touching: bool) -> Self {
-        let count = |tape: &symdiff::Tape| tape.len_where(touching);
-        Self {
-            sample: count(program.sample()),
-            step_size: count(program.step_size()),
-            step: count(program.step()),
-            factor: count(program.factor()),
-            correct: count(program.correct()),
-            advance: count(program.advance()),
-            observe: count(program.observe()),
-        }
-    }
-
-    /// Adds those of another program.
-    pub(super) fn add(&mut self, other: &Self) {
-        self.sample += other.sample;
-        self.step_size += other.step_size;
-        self.step += other.step;
-        self.factor += other.factor;
-        self.correct += other.correct;
-        self.advance += other.advance;
-        self.observe += other.observe;
-    }
-
     /// Stages by name, with when they run and how many instructions they have.
     pub fn stages(&self) -> [(&'static str, &'static str, usize); 7] {
         [

@@ -5,6 +5,7 @@ mod cost;
 mod decisions;
 mod effect_cost;
 mod explanation;
+mod merge;
 mod summary;
 
 pub use bounds::{Band, Bounds, Contribution, Method, OutputBounds, foremost};
@@ -14,7 +15,8 @@ pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_
 pub use decisions::{Decision, Each, Saving};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+pub use merge::Piece;
 pub use summary::{
-    ContributionSummary, ErrorSummary, IslandSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
-    Summary,
+    ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
+    SubsystemSummary, Summary,
 };

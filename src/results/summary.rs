@@ -38,9 +38,9 @@ pub struct Summary {
     /// Parts of the model that no output depends on: `body pendulum`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_simulated: Vec<String>,
-    /// Where parts of the model move on their own: what each is and took.
+    /// Where the model consists of several subsystems, which do not interact: what each is and took.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub islands: Vec<IslandSummary>,
+    pub subsystems: Vec<SubsystemSummary>,
     /// Set when the run stopped early: what happened, and up to which time results were kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -51,8 +51,8 @@ impl Summary {
     #[must_use]
     pub fn without_seconds(&self) -> Self {
         let mut summary = self.clone();
-        let of_islands = summary.islands.iter_mut().flat_map(|island| &mut island.methods);
-        summary.methods.iter_mut().chain(of_islands).for_each(|method| method.seconds = None);
+        let of_subsystems = summary.subsystems.iter_mut().flat_map(|subsystem| &mut subsystem.methods);
+        summary.methods.iter_mut().chain(of_subsystems).for_each(|method| method.seconds = None);
         summary
     }
 }
@@ -85,10 +85,10 @@ pub struct PieceSummary {
     pub until: f64,
 }
 
-/// A part of the model that moves on its own, with the names of what is in it and of the uncertain parameters that reach it.
+/// A subsystem, with the names of what is in it and of the uncertain parameters on which it depends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
-pub struct IslandSummary {
+pub struct SubsystemSummary {
     pub bodies: Vec<String>,
     pub outputs: Vec<String>,
     pub parameters: Vec<String>,

@@ -1,7 +1,7 @@
 //! Which tolerance matters: each parameter's part in the spread of every output, row by row.
 
 use super::compose::Row;
-use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, VarianceShares, extremes};
+use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate, SurrogateWork, extremes};
 
 /// Degree of the polynomials whose variance is apportioned, by the number of parameters: the outputs', which follow from
 /// the coordinates' at any number of points. For more parameters the shape is the surrogate's own.
@@ -21,8 +21,8 @@ pub(super) struct Parts {
 pub(super) struct Apportion {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
-    fine: Option<(Surrogate, VarianceShares)>,
-    own: VarianceShares,
+    fine: Option<(Surrogate, SobolDecomposition)>,
+    own: SobolDecomposition,
     /// Whether any interval is wider than its rounding: else all that varies is rounding.
     varies: bool,
 }
@@ -33,12 +33,12 @@ impl Apportion {
         let k = domain.dimension();
         let fine = k.checked_sub(1).and_then(|place| DEGREES.get(place)).map(|&degree| {
             let fine = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
-            let shares = VarianceShares::new(fine.basis());
+            let shares = SobolDecomposition::new(fine.basis());
             (fine, shares)
         });
         let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
-        Self { nominal, fine, own: VarianceShares::new(surrogate.basis()), varies }
+        Self { nominal, fine, own: SobolDecomposition::new(surrogate.basis()), varies }
     }
 
     /// The parts of every output's spread, whose ranges are known.
@@ -51,7 +51,7 @@ impl Apportion {
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
-            let (main, total) = match shares.shares(coefficients).filter(|_| self.varies) {
+            let (main, total) = match shares.indices(coefficients).filter(|_| self.varies) {
                 Some(shares) => (shares.main, shares.total),
                 // Nothing varies: nobody has a part in it.
                 None => (vec![0.0; k], vec![0.0; k]),

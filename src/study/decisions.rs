@@ -1,14 +1,12 @@
-//! What a model is compiled to, and what was decided on the way: what each decision saves is counted by compiling without it.
+//! What is not computed, or less often than it might be: what each decision saves is counted by compiling without it.
 
 use symdiff::{Formula, Input, lower};
 
-use super::RunError;
-use super::effect_costs::effect_costs;
 use super::formulation::{as_chosen, compiled, instructions};
-use super::islands::{Prepared, prepare};
+use super::subsystems::{Prepared, prepare};
 use crate::model::{ChebyshevRequest, Degree, Description, JointKind, Output, ParameterValue, ScanRequest};
 use crate::reduce::{Choices, Reduction};
-use crate::results::{Decision, Each, Explanation, LeftOut, Saving};
+use crate::results::{Decision, Each, Saving};
 
 /// Instructions a step up to which a model is compiled again to count what is saved.
 const COUNTED: usize = 30_000;
@@ -16,47 +14,13 @@ const COUNTED: usize = 30_000;
 /// Names told of many.
 const NAMED: usize = 8;
 
-/// What a model is compiled to, and why it is no more than that.
-///
-/// # Errors
-/// Where it cannot be built or assembled.
-pub fn explain(description: &Description) -> Result<Explanation, RunError> {
-    let (reduction, prepared) = prepare(description, Choices::default())?;
-    let of_island = |Prepared { island, simulator }: &Prepared| {
-        let mut explanation = Explanation::new(&description.name, simulator);
-        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&island.description, simulator)) {
-            effect.adds = adds;
-        }
-        explanation
-    };
-    let mut explanation = Explanation::of_islands(prepared.iter().map(of_island).collect());
-    let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
-    explanation.outputs.sort_by_key(place);
-    let uncertain = uncertain(description);
-    let place = |name: &String| uncertain.iter().position(|known| known == name);
-    explanation.parameters.sort_by_key(place);
-    for number in idle(&uncertain, &prepared) {
-        let what = format!("parameter {}", uncertain[number]);
-        explanation.left_out.push(LeftOut { what, why: "nothing depends on it".to_owned() });
-    }
-    for what in &reduction.left_out {
-        explanation.left_out.push(LeftOut { what: what.clone(), why: "no output depends on it".to_owned() });
-    }
-    explanation.decisions = decisions(description, &reduction, &prepared);
-    Ok(explanation)
-}
-
-fn uncertain(description: &Description) -> Vec<String> {
+/// Names of the uncertain parameters.
+pub(super) fn uncertain(description: &Description) -> Vec<String> {
     description.uncertain().map(|(_, parameter)| parameter.name.clone()).collect()
 }
 
-/// Uncertain parameters that reach no island.
-fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
-    let reached = |number: &usize| prepared.iter().any(|one| one.island.parameters.contains(number));
-    (0..uncertain.len()).filter(|number| !reached(number)).collect()
-}
-
-fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepared]) -> Vec<Decision> {
+/// All decisions about a model.
+pub(super) fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepared]) -> Vec<Decision> {
     let step: usize = prepared.iter().map(|one| instructions(&one.simulator)).sum();
     let affordable = step <= COUNTED;
     let default = Choices::default();
@@ -82,7 +46,7 @@ fn decisions(description: &Description, reduction: &Reduction, prepared: &[Prepa
         let what = format!("bodies of joint {name} stay two");
         found.extend(obstacle.as_ref().map(|why| Decision { what, why: why.clone(), saves: None }));
     }
-    found.extend(islands(description, prepared));
+    found.extend(subsystems(description, prepared));
     found.extend(constants(prepared));
     if affordable {
         found.extend(numbers(prepared, step));
@@ -125,7 +89,7 @@ fn samples(description: &Description) -> Option<usize> {
 }
 
 /// Parts that move on their own, with what reaches them.
-fn islands(description: &Description, prepared: &[Prepared]) -> Vec<Decision> {
+fn subsystems(description: &Description, prepared: &[Prepared]) -> Vec<Decision> {
     let uncertain = uncertain(description);
     let whole = samples(description);
     let mut found = Vec::new();

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::formulation::{as_chosen, compiled};
 use super::{RunError, prepare_whole};
+use crate::compile::Program;
 use crate::model::{Description, EffectKind, load_str};
 use crate::results::{EffectCost, StepInstructions};
 use crate::simulate::Simulator;
@@ -51,7 +52,7 @@ fn example(effect: Option<(&str, &str)>) -> Description {
 /// What each effect of a model adds, in file order. `None` where others cannot do without it (they use what it measures, or
 /// only it holds something), and for models with too many effects for their size.
 pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> Vec<Option<EffectCost>> {
-    let all = StepInstructions::of(&simulator.program, true);
+    let all = step_instructions(&simulator.program, true);
     let instructions = (all.step + all.factor + all.iteration).unsigned_abs() as usize;
     let effects = 0..description.effects.len();
     if instructions * effects.len() > MOST_INSTRUCTIONS {
@@ -69,10 +70,19 @@ pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> 
     effects.into_par_iter().map(cost).collect()
 }
 
+/// A step's instructions, with every conditional effect active, or none.
+fn step_instructions(program: &Program, active: bool) -> StepInstructions {
+    let count = |tape: &symdiff::Tape| tape.len_where(active) as i64;
+    StepInstructions {
+        step: count(program.step()) + count(program.advance()),
+        factor: count(program.factor()),
+        iteration: count(program.correct()),
+    }
+}
+
 fn difference(with: &Simulator, without: &Simulator) -> EffectCost {
-    let [acting, apart] = [true, false].map(|touching| {
-        StepInstructions::of(&with.program, touching).beyond(StepInstructions::of(&without.program, touching))
-    });
+    let [acting, apart] = [true, false]
+        .map(|active| step_instructions(&with.program, active).beyond(step_instructions(&without.program, active)));
     EffectCost { acting, apart: (acting != apart).then_some(apart) }
 }
 

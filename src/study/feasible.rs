@@ -8,12 +8,9 @@
 use std::fmt;
 
 use super::RunError;
-use super::adapt::{EMPTY, union};
-use super::islands::add;
 use super::run::{Ran, Study, Tried, summarised_errors};
-use crate::numerics::{BandError, ParameterBox, Range, spread, validation};
-use crate::results::{Band, Bounds, OutputBounds};
-use crate::results::{PieceSummary, Summary};
+use crate::numerics::{ParameterBox, Range, spread, validation};
+use crate::results::{self, Bounds, PieceSummary, Summary};
 use crate::simulate::SimulationError;
 
 /// Samples of the box that tell how much of it fails.
@@ -139,7 +136,7 @@ pub(super) fn run(study: &Study) -> Result<(Bounds, Summary), RunError> {
     match ran.is_empty() {
         // There is nothing to be told but what the whole box' own run tells.
         true => study.run().map(|ran| (ran.bounds, ran.summary)).map_err(|error| explained(study, error)),
-        false => Ok(together(study, ran)),
+        false => Ok(merged(study, &ran)),
     }
 }
 
@@ -201,55 +198,21 @@ fn trial(study: &Study) -> Result<Found, RunError> {
     })
 }
 
-/// Bounds of all pieces together.
-fn together(study: &Study, ran: Vec<(Ran, &Piece)>) -> (Bounds, Summary) {
-    let rows = ran.iter().map(|(ran, _)| ran.whole).max().unwrap_or(0);
-    let reach = |row: usize| ran.iter().filter(move |(ran, _)| row < ran.whole);
-    let covered: Vec<f64> = (0..rows).map(|row| reach(row).map(|(_, piece)| piece.share).sum()).collect();
-    // Who calls this has refused a model of which no piece runs.
-    let (longest, _) = ran.iter().max_by_key(|(ran, _)| ran.whole).expect("some piece ran");
-    let outputs = longest.bounds.outputs.iter().enumerate().map(|(output, first)| {
-        let band = |(place, first): (usize, &Band)| {
-            let of = |ran: &Ran| ran.bounds.outputs[output].bands.get(place).cloned();
-            let mut all = Band { method: first.method, lower: vec![], upper: vec![], error: BandError::default() };
-            for row in 0..rows {
-                let found = reach(row).map(|(ran, _)| match of(ran) {
-                    Some(band) => (Range { lower: band.lower[row], upper: band.upper[row] }, band.error.total[row]),
-                    None => (Range::UNKNOWN, f64::NAN),
-                });
-                let (range, error) = found.fold((EMPTY, 0.0), union);
-                all.lower.push(range.lower);
-                all.upper.push(range.upper);
-                all.error.total.push(error);
-                let unresolved = |(ran, _): &(Ran, &Piece)| of(ran).is_none_or(|band| band.error.unresolved[row]);
-                all.error.unresolved.push(reach(row).any(unresolved));
-            }
-            let errors = || ran.iter().filter_map(|(ran, _)| of(ran)).map(|band| band.error);
-            all.error.surrogate = crate::numerics::largest(errors().map(|error| error.surrogate));
-            all.error.time = crate::numerics::largest(errors().map(|error| error.time));
-            all
-        };
-        let bands = first.bands.iter().enumerate().map(band).collect();
-        OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
-    });
-    let outputs = outputs.collect();
-    let contributions = if ran.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() };
-    let bounds = Bounds { times: longest.bounds.times[..rows].to_vec(), outputs, contributions, covered };
-    let summary = summary(study, &ran, &bounds);
+/// Bounds of all pieces, merged.
+fn merged(study: &Study, ran: &[(Ran, &Piece)]) -> (Bounds, Summary) {
+    let pieces: Vec<results::Piece> = ran
+        .iter()
+        .map(|(ran, piece)| results::Piece { bounds: &ran.bounds, rows: ran.whole, share: piece.share })
+        .collect();
+    let bounds = Bounds::of_pieces(&pieces);
+    let summary = summary(study, ran, &bounds);
     (bounds, summary)
 }
 
 /// What all pieces took.
 fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
     let mut summary = ran[0].0.summary.clone();
-    for (ran, _) in &ran[1..] {
-        for method in &ran.summary.methods {
-            match summary.methods.iter_mut().find(|known| known.method == method.method) {
-                Some(known) => add(known, method),
-                None => summary.methods.push(method.clone()),
-            }
-        }
-    }
+    ran[1..].iter().for_each(|(ran, _)| summary.add_methods(&ran.summary.methods));
     let piece = |(ran, piece): &(Ran, &Piece)| PieceSummary {
         lower: piece.domain.lower.clone(),
         upper: piece.domain.upper.clone(),

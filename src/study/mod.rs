@@ -1,26 +1,27 @@
 //! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
 //!
-//! `islands` takes a model apart into what moves on its own. A `study` of each makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
+//! `subsystems` separates a model into parts that do not interact. A `study` of each makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
 //! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
 //! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
 //! `adapt` expands them as far as a tolerance asks for; `feasible` bounds the part of a box in which there is a motion. `cost` runs one model with many settings, to tell what accuracy costs.
 
 mod adapt;
 mod apportion;
-mod certain;
 mod certify;
 mod compose;
 mod cost;
 mod decisions;
+mod deterministic;
 mod effect_costs;
+mod explain;
 mod feasible;
 mod finding;
 mod formulation;
-mod islands;
 mod methods;
 mod probe;
 mod run;
 mod step_search;
+mod subsystems;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;
@@ -30,11 +31,11 @@ use crate::results::Summary;
 use crate::results::{Bounds, Method};
 use crate::simulate::{SimulationError, Simulator};
 
-use islands::Prepared;
+use subsystems::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
-pub use decisions::explain;
 pub use effect_costs::language_costs;
+pub use explain::{explain, explain_whole};
 pub use feasible::{Place, Survey};
 
 /// How to run.
@@ -98,7 +99,7 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| islands::run(description, &options))
+    pool.install(|| subsystems::run(description, &options))
 }
 
 /// A compiled model: of what `run` simulates, all in one.

@@ -215,7 +215,7 @@ impl<'a> Study<'a> {
     /// the schedule's steps are divided or joined.
     fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
         if self.domain.dimension() == 0 {
-            return self.certain(schedule, tolerance);
+            return self.deterministic(schedule, tolerance);
         }
         let progress = Progress { done: AtomicUsize::new(0), total: self.total_work(schedule) };
         let (schedule, probes) = if self.request.is_empty() {
@@ -448,7 +448,7 @@ impl<'a> Study<'a> {
             contributions: contributions(bounds),
             pieces: Vec::new(),
             not_simulated: Vec::new(),
-            islands: Vec::new(),
+            subsystems: Vec::new(),
             failure,
         }
     }

@@ -33,11 +33,11 @@ pub fn formula(text: &str) {
     if let Ok(formula) = symdiff::Formula::parse(text)
         && formula.terms().len() < 1000
     {
-        let mut graph = symdiff::Graph::new();
-        let x = graph.symbol("x");
-        let built = formula.build(&mut graph, |_, _| Ok::<_, ()>(x)).expect("every name is known");
-        let slope = graph.derivative(built, x);
-        graph.evaluate(&[built, slope], |_| 0.3);
+        let builder = symdiff::Builder::new();
+        let x = builder.variable("x");
+        let built = formula.build(&builder, |_| Ok::<_, ()>(x)).expect("every name is known");
+        let slope = built.derivative(x);
+        builder.graph().evaluate(&[built.expr(), slope.expr()], |_| 0.3);
     }
     if let Ok(setting) = Override::parse(text) {
         model::read_str("fuzz.yaml", "model: a", &[setting]);

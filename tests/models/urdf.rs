@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use mbint::model::{self, Description, EffectKind, Reading};
 use mbint::results::Bounds;
 use mbint::study::{self, Options};
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use super::common::{
     Findings, Vary, curve, distance, distance_from, largest, load, nominal, order, reference, row, run,
@@ -100,9 +100,9 @@ fn robots_swing_as_those_of_pinocchio() {
 
 /// A formula without names.
 fn number(formula: &Formula) -> f64 {
-    let mut graph = Graph::new();
-    let built = formula.build(&mut graph, |_, name| Err(name.to_owned())).unwrap();
-    graph.as_constant(built).unwrap()
+    let builder = Builder::new();
+    let built = formula.build(&builder, |name| Err(name.to_owned())).unwrap();
+    built.as_constant().unwrap()
 }
 
 /// Two point-like links welded with a quarter turn between them.

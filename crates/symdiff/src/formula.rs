@@ -13,7 +13,8 @@
 
 use std::ops::Range;
 
-use crate::expr::{Binary, Expr, Graph, Unary};
+use crate::builder::{Builder, Scalar};
+use crate::expr::{Binary, Expr, Unary};
 use crate::spline::Spline;
 
 /// How deep parentheses, signs and powers may nest.
@@ -147,22 +148,22 @@ impl Formula {
     ///
     /// # Errors
     /// Whatever `resolve` says.
-    pub fn build<E>(
+    pub fn build<'g, E>(
         &self,
-        graph: &mut Graph,
-        mut resolve: impl FnMut(&mut Graph, &str) -> Result<Expr, E>,
-    ) -> Result<Expr, E> {
+        builder: &'g Builder,
+        mut resolve: impl FnMut(&str) -> Result<Scalar<'g>, E>,
+    ) -> Result<Scalar<'g>, E> {
         let mut built: Vec<Expr> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
             let expr = match term {
-                Term::Number(value) => graph.constant(*value),
-                Term::Name(name) => resolve(graph, name)?,
-                Term::Unary(function, a) => graph.unary(*function, built[*a]),
-                Term::Binary(function, a, b) => graph.binary(*function, built[*a], built[*b]),
+                Term::Number(value) => builder.with(|graph| graph.constant(*value)),
+                Term::Name(name) => resolve(name)?.expr(),
+                Term::Unary(function, a) => builder.with(|graph| graph.unary(*function, built[*a])),
+                Term::Binary(function, a, b) => builder.with(|graph| graph.binary(*function, built[*a], built[*b])),
             };
             built.push(expr);
         }
-        Ok(*built.last().expect("parse and number make at least one term"))
+        Ok(builder.scalar(*built.last().expect("parse and number make at least one term")))
     }
 }
 
@@ -424,9 +425,9 @@ mod tests {
     use super::*;
 
     fn value(text: &str) -> f64 {
-        let mut graph = Graph::new();
-        let built = Formula::parse(text).unwrap().build(&mut graph, |_, name| Err(name.to_owned())).unwrap();
-        graph.as_constant(built).unwrap()
+        let builder = Builder::new();
+        let built = Formula::parse(text).unwrap().build(&builder, |name| Err(name.to_owned())).unwrap();
+        built.as_constant().unwrap()
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! numbers in a [`Tile`]. The crate knows no mechanics.
 
 mod blocks;
+mod builder;
 mod derivative;
 mod expr;
 pub mod formula;
@@ -24,6 +25,7 @@ mod tape;
 pub mod taylor_model;
 mod vectorised;
 
+pub use builder::{Builder, Scalar};
 pub use derivative::SparseMatrix;
 pub use expr::{Binary, Expr, Graph, Node, Unary};
 pub use formula::{Formula, SyntaxError};

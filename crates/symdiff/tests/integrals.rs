@@ -1,13 +1,14 @@
 //! Antiderivatives: their derivatives are what they are of, and they are zero at zero.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula, Scalar};
 
 fn integral(text: &str) -> Option<[f64; 2]> {
-    let mut g = Graph::new();
-    let t = g.symbol("t");
-    let of = Formula::parse(text).unwrap().build(&mut g, |g, name| Ok::<_, ()>(g.symbol(name))).unwrap();
-    let integral = g.integral(of, t)?;
-    let slope = g.derivative(integral, t);
+    let builder = Builder::new();
+    let t = builder.variable("t");
+    let of = Formula::parse(text).unwrap().build(&builder, |name| Ok::<_, ()>(builder.variable(name))).unwrap();
+    let integral = of.integral(t)?;
+    let [slope, integral, of, t] = [integral.derivative(t), integral, of, t].map(Scalar::expr);
+    let g = builder.graph();
     let mut worst = [0.0_f64; 2];
     for step in 0..50 {
         let at = 0.0371 * f64::from(step) - 0.4;

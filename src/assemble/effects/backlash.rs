@@ -10,7 +10,7 @@
 //! computed. The reactions of the
 //! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid gear.
 
-use symdiff::{Expr, Graph, Unary};
+use symdiff::{Builder, Expr, Unary};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -19,12 +19,12 @@ use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, Tim
 use super::positive_part::PositivePart;
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
-    let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Motion);
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
+    let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);
     let (ratio, offset) = (number(g, &gear.ratio)?, number(g, &gear.offset)?);
     let (play, corner) = (number(g, &gear.backlash)?, number(g, &gear.transition)?);
     let (stiffness, damping) = (number(g, &gear.stiffness)?, number(g, &gear.damping)?);
-    let mut between = |order: TimeOrder| {
+    let between = |order: TimeOrder| {
         let [first, second] = gear.between.map(|turning| turned(g, m, turning, order));
         let wanted = g.mul(ratio, first);
         g.sub(second, wanted)
@@ -60,14 +60,14 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -
 }
 
 /// An angle, or its rate.
-fn turned(g: &mut Graph, m: &Mechanism, turning: Turning, order: TimeOrder) -> Expr {
+fn turned(g: &Builder, m: &Mechanism, turning: Turning, order: TimeOrder) -> Expr {
     match turning {
         Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
         Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
     }
 }
 
-fn add_torque(g: &mut Graph, m: &Mechanism, loads: &mut Loads, on: Turning, torque: Expr) -> Result<(), BuildError> {
+fn add_torque(g: &Builder, m: &Mechanism, loads: &mut Loads, on: Turning, torque: Expr) -> Result<(), BuildError> {
     match on {
         Turning::Body(body) => {
             let zero = g.constant(0.0);

@@ -15,7 +15,7 @@
 //! average, so bending does not stretch it, and tension stiffens it. L is its length, τ Kelvin and Voigt's damping, φ between −π
 //! and π. A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
-use symdiff::{Binary, Expr, Formula, Graph};
+use symdiff::{Binary, Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -24,8 +24,8 @@ use crate::model::{Beam, Measure, PointRef};
 
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Result<(), BuildError> {
-    let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Motion);
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Result<(), BuildError> {
+    let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);
     let (free, damping) = (number(g, &beam.length)?, number(g, &beam.damping)?);
     let (axial, bending) = (number(g, &beam.axial_stiffness)?, number(g, &beam.bending_stiffness)?);
     let (axial, bending) = (g.div(axial, free), g.div(bending, free));
@@ -99,14 +99,14 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Re
 }
 
 /// x + τ ẋ
-fn delayed(g: &mut Graph, damping: Expr, value: Expr, rate: Expr) -> Expr {
+fn delayed(g: &Builder, damping: Expr, value: Expr, rate: Expr) -> Expr {
     let viscous = g.mul(damping, rate);
     g.add(value, viscous)
 }
 
 /// φ and φ̇ of an end, the chord turning by `turning`.
 fn bent(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     end: PointRef,
     axis: &[Formula; 3],

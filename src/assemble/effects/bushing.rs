@@ -16,7 +16,7 @@
 //! q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a stiffness depends on
 //! the motion, there is no potential and none is counted.
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::joints::Pair;
@@ -36,7 +36,7 @@ pub struct Law {
 
 impl Law {
     pub fn new(
-        g: &mut Graph,
+        g: &Builder,
         m: &Mechanism,
         [straight, torsional]: [&[Formula; 3]; 2],
         full: Option<&[[Formula; 6]; 6]>,
@@ -53,7 +53,7 @@ impl Law {
     }
 
     /// The full matrix times (displacement, rotation): a force and a torque.
-    fn full_times(&self, g: &mut Graph, displacement: Vector, rotation: Vector) -> Option<[Vector; 2]> {
+    fn full_times(&self, g: &Builder, displacement: Vector, rotation: Vector) -> Option<[Vector; 2]> {
         let along = [displacement, rotation].concat();
         let matrix = self.full?;
         let product = matrix.map(|row| g.dot(&row, &along));
@@ -73,7 +73,7 @@ impl Law {
 }
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     between: [PointRef; 2],
@@ -138,18 +138,18 @@ pub fn apply(
 }
 
 /// The torque q₀ y + e × y that does the work y · d(2 e).
-fn conjugate(g: &mut Graph, q0: Expr, e: Vector, y: Vector) -> Vector {
+fn conjugate(g: &Builder, q0: Expr, e: Vector, y: Vector) -> Vector {
     let (straight, across) = (space::scale(g, q0, y), space::cross(g, e, y));
     space::add(g, straight, across)
 }
 
 /// Component by component.
-fn weighted(g: &mut Graph, weights: Vector, a: Vector) -> Vector {
+fn weighted(g: &Builder, weights: Vector, a: Vector) -> Vector {
     std::array::from_fn(|i| g.mul(weights[i], a[i]))
 }
 
 /// A vector along given axes.
-fn in_ground(g: &mut Graph, axes: [Vector; 3], a: Vector) -> Vector {
+fn in_ground(g: &Builder, axes: [Vector; 3], a: Vector) -> Vector {
     let mut sum = space::zero(g);
     for (axis, component) in axes.into_iter().zip(a) {
         let part = space::scale(g, component, axis);

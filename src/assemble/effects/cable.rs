@@ -8,7 +8,7 @@
 //! p is the positive part with its corner rounded (`positive_part`): the cable becomes taut over ±ε of stretch. Slack, it
 //! does nothing, and only its length is computed. Points that coincide have no line between them.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,8 +18,8 @@ use crate::model::{Cable, Measure};
 use super::positive_part::{PositivePart, clipped};
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Result<(), BuildError> {
-    let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Motion);
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Result<(), BuildError> {
+    let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);
     let (free, corner) = (number(g, &cable.free_length)?, number(g, &cable.transition)?);
     let (stiffness, damping) = (number(g, &cable.stiffness)?, number(g, &cable.damping)?);
     let [a, b] = cable.between.map(|point| m.point(g, point));

@@ -8,7 +8,7 @@
 //! displacements across the axis are felt; another joint holds what moves along it or tilts. K of two cylinders' ends as
 //! spheres (Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369): 4/(3 (h₁ + h₂)) √(R r/(R − r)), h = (1 − ν²)/E.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -20,7 +20,7 @@ use super::dry_friction::DryFriction;
 use super::impact::Impact;
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoint) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoint) -> Result<(), BuildError> {
     let clearance = m.formula(g, &joint.clearance, Context::Time)?;
     let radius = m.formula(g, &joint.radius, Context::Time)?;
     let axis = m.vector(g, &joint.axis, Context::Time)?;

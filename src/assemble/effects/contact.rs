@@ -14,7 +14,7 @@
 //! centres meet, is no contact that this can tell. Apart the force and its slopes are exactly zero, and of a tile of samples that
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::joints::Pair;
@@ -53,9 +53,9 @@ pub struct Touch {
     pub friction: Option<DryFriction>,
 }
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, contact: &Contact) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, contact: &Contact) -> Result<(), BuildError> {
     let radius = m.formula(g, &contact.radius, Context::Time)?;
-    let direction = |g: &mut Graph, formulas: &[Formula; 3]| -> Result<Vector, BuildError> {
+    let direction = |g: &Builder, formulas: &[Formula; 3]| -> Result<Vector, BuildError> {
         let vector = m.vector(g, formulas, Context::Time)?;
         Ok(space::unit(g, vector))
     };
@@ -88,7 +88,7 @@ struct Gap {
 
 impl Touch {
     /// Adds the forces.
-    pub fn apply(&self, g: &mut Graph, m: &Mechanism, loads: &mut Loads) {
+    pub fn apply(&self, g: &Builder, m: &Mechanism, loads: &mut Loads) {
         let pair = Pair::of(g, m, self.between);
         let Gap { gap, normal, overlap } = self.gap(g, &pair);
         let inward = space::scale(g, self.radius, normal);
@@ -129,7 +129,7 @@ impl Touch {
         }
     }
 
-    fn gap(&self, g: &mut Graph, pair: &Pair) -> Gap {
+    fn gap(&self, g: &Builder, pair: &Pair) -> Gap {
         let offset = pair.offset(g);
         match self.shape {
             Shape::Plane(normal) => {
@@ -161,7 +161,7 @@ impl Touch {
     }
 
     /// d, and its square.
-    fn across(&self, g: &mut Graph, pair: &Pair, offset: Vector) -> (Vector, Expr) {
+    fn across(&self, g: &Builder, pair: &Pair, offset: Vector) -> (Vector, Expr) {
         let across = match self.axis {
             Some(axis) => {
                 let axis = pair.outward(g, axis);

@@ -6,7 +6,7 @@
 //!
 //! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second slope at rest. It has no potential.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,7 +18,7 @@ use super::Loads;
 /// ε, m/s
 const AT_REST: f64 = 1e-6;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Result<(), BuildError> {
     let point = m.point(g, drag.on);
     let wind = m.vector(g, &drag.wind, Context::Motion)?;
     let linear = m.formula(g, &drag.linear, Context::Motion)?;

@@ -9,7 +9,7 @@
 //! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
 //! of the friction that it could bear at u₀ κ/√(1 − κ²).
 
-use symdiff::{Expr, Formula, Graph, Unary};
+use symdiff::{Builder, Expr, Formula, Unary};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -27,7 +27,7 @@ pub struct DryFriction {
 
 impl DryFriction {
     pub fn of(
-        g: &mut Graph,
+        g: &Builder,
         m: &Mechanism,
         coefficient: &Formula,
         law: &model::DryFriction,
@@ -42,7 +42,7 @@ impl DryFriction {
     }
 
     /// s/√(|u|² + u₀²): what a unit of dry friction takes for a unit of velocity.
-    pub fn resistance(&self, g: &mut Graph, velocity: &[Expr]) -> Expr {
+    pub fn resistance(&self, g: &Builder, velocity: &[Expr]) -> Expr {
         let square = g.dot(velocity, velocity);
         let rest = g.mul(self.transition, self.transition);
         let smooth = g.add(square, rest);

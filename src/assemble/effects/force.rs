@@ -6,7 +6,7 @@
 //!
 //! It acts from outside the mechanism: nothing feels the reaction, and it has no potential.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -15,7 +15,7 @@ use crate::model::PointRef;
 use super::Loads;
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     on: PointRef,

@@ -7,7 +7,7 @@
 //! and on the mass along beams (`flexible`).
 //! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -15,7 +15,7 @@ use crate::assemble::space;
 
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
     let acceleration = m.vector(g, acceleration, Context::Motion)?;
     for (index, body) in m.bodies.iter().enumerate() {
         let weight = space::scale(g, body.mass, acceleration);

@@ -14,7 +14,7 @@
 //! Whatever K and n, an impact at v ends with the speed e v of χ v − ln(1 + χ v) = −χ e v − ln(1 − χ e v) (Marhefka & Orin,
 //! IEEE Trans. Syst. Man Cybern. 29 (1999) 566). Both formulas for χ hold for e near 1: at e = 0.5, they leave 0.66 and 0.73.
 
-use symdiff::{Binary, Expr, Graph};
+use symdiff::{Binary, Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -32,7 +32,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    pub fn of(g: &mut Graph, m: &Mechanism, impact: &model::Impact) -> Result<Self, BuildError> {
+    pub fn of(g: &Builder, m: &Mechanism, impact: &model::Impact) -> Result<Self, BuildError> {
         let stiffness = m.formula(g, &impact.stiffness, Context::Motion)?;
         let dissipation = match (&impact.restitution, &impact.impact_velocity, &impact.dissipation) {
             (None, _, Some(dissipation)) => m.formula(g, dissipation, Context::Motion)?,
@@ -54,7 +54,7 @@ impl Impact {
     }
 
     /// f, by δ > 0 and δ̇.
-    pub fn force(&self, g: &mut Graph, depth: Expr, rate: Expr) -> Expr {
+    pub fn force(&self, g: &Builder, depth: Expr, rate: Expr) -> Expr {
         let one = g.constant(1.0);
         let damping = g.mul(self.dissipation, rate);
         let damping = g.add(one, damping);
@@ -65,14 +65,14 @@ impl Impact {
     }
 
     /// V, by δ > 0.
-    pub fn potential(&self, g: &mut Graph, depth: Expr) -> Expr {
+    pub fn potential(&self, g: &Builder, depth: Expr) -> Expr {
         let power = self.power(g, depth, self.exponent + 1.0);
         let product = g.mul(self.stiffness, power);
         g.scale(1.0 / (self.exponent + 1.0), product)
     }
 
     /// δ to a power. Half powers are products with a root, which whole tiles take at once.
-    fn power(&self, g: &mut Graph, depth: Expr, exponent: f64) -> Expr {
+    fn power(&self, g: &Builder, depth: Expr, exponent: f64) -> Expr {
         let whole = exponent.floor();
         if exponent - whole == 0.5 {
             let (power, root) = (g.powi(depth, whole as i32), g.sqrt(depth));

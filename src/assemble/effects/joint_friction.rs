@@ -12,7 +12,7 @@
 //! matrix has its block −∂Q/∂λ. |F| is √(F² + ε²), ε = 1 µN, for |F| has no slope at 0. Where friction is so large that the
 //! reaction it needs grows faster than what it resists, the mechanism jams (Painlevé) and there is no motion to be found.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::joints;
@@ -26,7 +26,7 @@ use super::Loads;
 /// ε, N
 const NO_LOAD: f64 = 1e-6;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, friction: &JointFriction) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFriction) -> Result<(), BuildError> {
     let joint = friction.on.joint;
     let dry = DryFriction::of(g, m, &friction.coefficient, &friction.dry)?;
     let constant = m.formula(g, &friction.coulomb, Context::Motion)?;
@@ -42,7 +42,7 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, friction: &JointFr
     }
     let bound = g.add(constant, bound);
 
-    let rate = |g: &mut Graph, coordinate| m.joint_rate(g, joint, coordinate);
+    let rate = |g: &Builder, coordinate| m.joint_rate(g, joint, coordinate);
     let mut efforts = Vec::new();
     let velocity = match friction.on.mode {
         FrictionMode::Turning => vec![rate(g, JointCoordinate::Angle)?],
@@ -80,7 +80,7 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, friction: &JointFr
 }
 
 /// N.
-fn load(g: &mut Graph, m: &Mechanism, friction: &JointFriction) -> Result<Expr, BuildError> {
+fn load(g: &Builder, m: &Mechanism, friction: &JointFriction) -> Result<Expr, BuildError> {
     let reaction = &m.reactions[friction.on.joint];
     let (force, torque) = (reaction.force, reaction.torque);
     let Some(length) = &friction.length else { return Ok(magnitude(g, force)) };
@@ -99,7 +99,7 @@ fn load(g: &mut Graph, m: &Mechanism, friction: &JointFriction) -> Result<Expr, 
 }
 
 /// √(F² + ε²).
-fn magnitude(g: &mut Graph, force: Vector) -> Expr {
+fn magnitude(g: &Builder, force: Vector) -> Expr {
     let square = space::dot(g, force, force);
     let least = g.constant(NO_LOAD * NO_LOAD);
     let sum = g.add(square, least);

@@ -28,7 +28,7 @@ mod torsional_spring_damper;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::model::force::Frame;
 use crate::model::torque::TorqueOn;
@@ -41,7 +41,7 @@ use super::mechanism::Mechanism;
 use super::space::{self, Vector};
 
 /// Applies an effect.
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
     match kind {
         EffectKind::Gravity(gravity) => gravity::apply(g, m, loads, &gravity.acceleration),
         EffectKind::Force(force) => force::apply(g, m, loads, force.on, &force.value, force.frame == Frame::Body),
@@ -114,7 +114,7 @@ pub struct Loads {
 
 impl Loads {
     /// No forces.
-    pub fn new(g: &mut Graph, bodies: usize) -> Self {
+    pub fn new(g: &Builder, bodies: usize) -> Self {
         let zero = g.constant(0.0);
         let (coordinates, potentials, touched) = (BTreeMap::new(), Vec::new(), BTreeSet::new());
         Self {
@@ -150,7 +150,7 @@ impl Loads {
     }
 
     /// All that acts, each under its condition.
-    pub fn with_guarded(&self, g: &mut Graph) -> Self {
+    pub fn with_guarded(&self, g: &Builder) -> Self {
         let mut all = Self { guarded: Vec::new(), guard: None, ..self.clone() };
         for &(condition, target, part) in &self.guarded {
             let total = all.total(g, target);
@@ -161,7 +161,7 @@ impl Loads {
     }
 
     /// What acts under conditions alone.
-    pub fn guarded(&self, g: &mut Graph) -> Self {
+    pub fn guarded(&self, g: &Builder) -> Self {
         let guarded = self.guarded.clone();
         Self { guarded, ..Self::new(g, self.bodies.len()) }.with_guarded(g)
     }
@@ -204,7 +204,7 @@ impl Loads {
     }
 
     /// Forces and torques on all bodies, and on each what acts on the bodies that it carries too.
-    pub fn carried_on(&self, g: &mut Graph, m: &Mechanism) -> Vec<[Expr; 6]> {
+    pub fn carried_on(&self, g: &Builder, m: &Mechanism) -> Vec<[Expr; 6]> {
         let mut totals = self.bodies.clone();
         for &index in m.tree.order.iter().rev() {
             let Some(carried) = &m.bodies[index].carried else { continue };
@@ -220,7 +220,7 @@ impl Loads {
     }
 
     /// Generalised forces on all coordinates.
-    pub fn generalised(&self, g: &mut Graph, m: &Mechanism) -> Vec<Expr> {
+    pub fn generalised(&self, g: &Builder, m: &Mechanism) -> Vec<Expr> {
         let mut force = vec![g.constant(0.0); m.q.len()];
         for (body, &[fx, fy, fz, tx, ty, tz]) in m.bodies.iter().zip(&self.carried_on(g, m)) {
             if let Some(carried) = &body.carried {
@@ -249,7 +249,7 @@ impl Loads {
     }
 
     /// A force at a point: F, and R s × F about the origin.
-    pub fn add_force(&mut self, g: &mut Graph, at: &MaterialPoint, force: Vector) {
+    pub fn add_force(&mut self, g: &Builder, at: &MaterialPoint, force: Vector) {
         let moment = space::cross(g, at.arm, force);
         for (component, part) in force.into_iter().chain(moment).enumerate() {
             self.add(g, at.body, component, part);
@@ -257,7 +257,7 @@ impl Loads {
     }
 
     /// A body's weight at its centre of mass. A carried body's is left to the field.
-    pub fn add_weight(&mut self, g: &mut Graph, m: &Mechanism, center: &MaterialPoint, weight: Vector) {
+    pub fn add_weight(&mut self, g: &Builder, m: &Mechanism, center: &MaterialPoint, weight: Vector) {
         if m.bodies[center.body].carried.is_none() {
             self.add_force(g, center, weight);
             return;
@@ -267,19 +267,19 @@ impl Loads {
     }
 
     /// A uniform field of acceleration, m/s² in the ground's axes, on all carried bodies.
-    pub fn add_field(&mut self, g: &mut Graph, acceleration: Vector) {
+    pub fn add_field(&mut self, g: &Builder, acceleration: Vector) {
         self.field = space::add(g, self.field, acceleration);
     }
 
     /// A force at `to` and its opposite at `from`.
-    pub fn add_force_pair(&mut self, g: &mut Graph, from: &MaterialPoint, to: &MaterialPoint, force: Vector) {
+    pub fn add_force_pair(&mut self, g: &Builder, from: &MaterialPoint, to: &MaterialPoint, force: Vector) {
         self.add_force(g, to, force);
         let opposite = space::neg(g, force);
         self.add_force(g, from, opposite);
     }
 
     /// A torque on `on` and its opposite on `from`.
-    pub fn add_torque_pair(&mut self, g: &mut Graph, from: usize, on: usize, torque: Vector) {
+    pub fn add_torque_pair(&mut self, g: &Builder, from: usize, on: usize, torque: Vector) {
         let opposite = space::neg(g, torque);
         for (body, torque) in [(on, torque), (from, opposite)] {
             for (axis, part) in torque.into_iter().enumerate() {
@@ -292,7 +292,7 @@ impl Loads {
     /// a coordinate of its own.
     pub fn add_joint_torque(
         &mut self,
-        g: &mut Graph,
+        g: &Builder,
         m: &Mechanism,
         joint: usize,
         torque: Expr,
@@ -310,13 +310,7 @@ impl Loads {
 
     /// A force along a joint's axis on its second body at the second point, and the opposite on its first at the same
     /// place: on the joint's displacement, where that is a coordinate of its own.
-    pub fn add_joint_force(
-        &mut self,
-        g: &mut Graph,
-        m: &Mechanism,
-        joint: usize,
-        force: Expr,
-    ) -> Result<(), BuildError> {
+    pub fn add_joint_force(&mut self, g: &Builder, m: &Mechanism, joint: usize, force: Expr) -> Result<(), BuildError> {
         if self.add_to_coordinate(g, m, OnJoint { joint, coordinate: JointCoordinate::Displacement }, force) {
             return Ok(());
         }
@@ -333,7 +327,7 @@ impl Loads {
     /// A force or torque that pushes a joint's coordinate up.
     pub fn add_joint_effort(
         &mut self,
-        g: &mut Graph,
+        g: &Builder,
         m: &Mechanism,
         on: OnJoint,
         effort: Expr,
@@ -345,20 +339,20 @@ impl Loads {
     }
 
     /// Whether the joint's coordinate is one of its own, which the force then acts on.
-    fn add_to_coordinate(&mut self, g: &mut Graph, m: &Mechanism, on: OnJoint, force: Expr) -> bool {
+    fn add_to_coordinate(&mut self, g: &Builder, m: &Mechanism, on: OnJoint, force: Expr) -> bool {
         let Some(&index) = m.joint_coordinates.get(&(on.joint, on.coordinate)) else { return false };
         self.add_to(g, Target::Coordinate(index), force);
         true
     }
 
-    fn total(&mut self, g: &mut Graph, target: Target) -> &mut Expr {
+    fn total(&mut self, g: &Builder, target: Target) -> &mut Expr {
         match target {
             Target::Body(body, component) => &mut self.bodies[body][component],
             Target::Coordinate(index) => self.coordinates.entry(index).or_insert_with(|| g.constant(0.0)),
         }
     }
 
-    fn add_to(&mut self, g: &mut Graph, target: Target, part: Expr) {
+    fn add_to(&mut self, g: &Builder, target: Target, part: Expr) {
         if g.is_zero(part) {
             return;
         }
@@ -372,13 +366,13 @@ impl Loads {
         }
     }
 
-    fn add(&mut self, g: &mut Graph, body: usize, component: usize, part: Expr) {
+    fn add(&mut self, g: &Builder, body: usize, component: usize, part: Expr) {
         self.add_to(g, Target::Body(body, component), part);
     }
 
     /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the
     /// force.
-    pub fn add_potential(&mut self, g: &Graph, m: &Mechanism, coefficients: &[Expr], potential: Expr) {
+    pub fn add_potential(&mut self, g: &Builder, m: &Mechanism, coefficients: &[Expr], potential: Expr) {
         if m.is_given(g, coefficients) {
             self.potentials.push(potential);
         }

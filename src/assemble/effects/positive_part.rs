@@ -6,7 +6,7 @@
 //!
 //! p has a continuous slope, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 /// p, its slope and its integral.
 #[derive(Clone, Copy, Debug)]
@@ -17,16 +17,16 @@ pub struct PositivePart {
 }
 
 /// max(x, 0).
-pub fn clipped(g: &mut Graph, x: Expr) -> Expr {
+pub fn clipped(g: &Builder, x: Expr) -> Expr {
     g.only_where(x, x)
 }
 
 impl PositivePart {
     /// Of x, with a corner ε wide to either side.
-    pub fn of(g: &mut Graph, x: Expr, corner: Expr) -> Self {
+    pub fn of(g: &Builder, x: Expr, corner: Expr) -> Self {
         let (above, below) = (g.add(x, corner), g.sub(x, corner));
         let (above, below) = (clipped(g, above), clipped(g, below));
-        let mut difference = |power: i32, divisor: f64| {
+        let difference = |power: i32, divisor: f64| {
             let (high, low) = (g.powi(above, power), g.powi(below, power));
             let difference = g.sub(high, low);
             let divisor = g.scale(divisor, corner);

@@ -7,7 +7,7 @@
 //!
 //! Points that coincide have no line between them.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -16,7 +16,7 @@ use crate::model::{Preload, TimeOrder};
 
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
     let force = m.formula(g, &preload.value, Context::Motion)?;
     let potential = match (preload.between, preload.on) {
         (Some(between), None) => {

@@ -7,7 +7,7 @@
 //!
 //! sat is x well within the limit L (its slope there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
 
-use symdiff::{Expr, Graph};
+use symdiff::{Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,7 +18,7 @@ use super::Loads;
 /// ε over L.
 const CORNER: f64 = 0.01;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, servo: &Servo) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, servo: &Servo) -> Result<(), BuildError> {
     let on = servo.on;
     let target = m.formula(g, &servo.target, Context::Time)?;
     let proportional = m.formula(g, &servo.proportional, Context::Motion)?;
@@ -37,7 +37,7 @@ pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, servo: &Servo) -> 
     loads.add_joint_effort(g, m, on, effort)
 }
 
-fn saturated(g: &mut Graph, x: Expr, limit: Expr) -> Expr {
+fn saturated(g: &Builder, x: Expr, limit: Expr) -> Expr {
     let corner = g.scale(CORNER, limit);
     let corner = g.mul(corner, corner);
     let (above, below) = (g.add(x, limit), g.sub(x, limit));

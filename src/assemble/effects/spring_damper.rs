@@ -13,7 +13,7 @@
 //! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may speak of.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::body::MaterialPoint;
 use crate::assemble::error::BuildError;
@@ -35,7 +35,7 @@ pub struct Spring<T> {
 }
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     between: [PointRef; 2],
@@ -92,7 +92,7 @@ struct Stretched {
     tension: Expr,
 }
 
-fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> Stretched {
+fn along_line(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> Stretched {
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);
     let square = space::dot(g, line, line);
@@ -110,7 +110,7 @@ fn along_line(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, spring: Sprin
     Stretched { pull, direction, length, rate: g.div(growth, length), tension: g.mul(density, length) }
 }
 
-fn along_axis(g: &mut Graph, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring<Expr>) -> Stretched {
+fn along_axis(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring<Expr>) -> Stretched {
     let axis = space::unit(g, axis);
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);

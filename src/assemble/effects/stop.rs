@@ -6,7 +6,7 @@
 //!
 //! Between the stops nothing acts, and nothing is computed but where s is.
 
-use symdiff::{Binary, Expr, Graph};
+use symdiff::{Binary, Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -15,7 +15,7 @@ use crate::model::{Measure, Stop, TimeOrder};
 use super::impact::Impact;
 use super::Loads;
 
-pub fn apply(g: &mut Graph, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Result<(), BuildError> {
     let on = stop.on;
     let impact = Impact::of(g, m, &stop.impact)?;
     let place = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Position);

@@ -8,7 +8,7 @@
 //! In the plane value is about z, counter-clockwise. A motor between two bodies; from the ground, the reaction is the
 //! ground's. It has no potential.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -16,7 +16,7 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use super::Loads;
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     on: usize,
@@ -34,7 +34,7 @@ pub fn apply(
 
 /// The torque of a motor at a joint.
 pub fn apply_at_joint(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     joint: usize,

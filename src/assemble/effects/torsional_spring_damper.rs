@@ -8,7 +8,7 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
 //! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -18,7 +18,7 @@ use crate::model::{JointCoordinate, Measure, TimeOrder, TorsionalSpringDamper};
 use super::Loads;
 
 pub fn apply(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
     spring: &TorsionalSpringDamper,
@@ -36,7 +36,7 @@ pub fn apply(
         ),
         (_, Some(joint)) => {
             let joint = joint.0;
-            let mut coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
+            let coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
             (coordinate(TimeOrder::Position), coordinate(TimeOrder::Velocity))
         }
         (None, None) => return Ok(()),

@@ -8,7 +8,7 @@
 //! and λ > 0 pulls the points together. Φ is |r| − d to first order and has no root. It fails at d = 0: two coincident
 //! points are a revolute or spherical joint.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -17,7 +17,7 @@ use crate::model::PointRef;
 
 use super::Row;
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], length: &Formula) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], length: &Formula) -> Result<Vec<Row>, BuildError> {
     let length = m.formula(g, length, Context::Time)?;
     let [a, b] = between.map(|point| m.point(g, point));
     let line = space::sub(g, b.position, a.position);

@@ -8,7 +8,7 @@
 //! force or torque: both are zero, and the multiplier λ itself (N for metres, N m for radians), with its sign, stands
 //! for `joint.force`. −Φ_qᵀ λ acts: with `crank.angle = omega*t` the drive's torque on the crank is −λ.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -16,7 +16,7 @@ use crate::assemble::space;
 
 use super::Row;
 
-pub fn rows(g: &mut Graph, m: &Mechanism, left: &Formula, right: &Formula) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, left: &Formula, right: &Formula) -> Result<Vec<Row>, BuildError> {
     let (left, right) = (m.formula(g, left, Context::Positions)?, m.formula(g, right, Context::Positions)?);
     let value = g.sub(left, right);
     Ok(vec![Row { name: "", value, force: space::zero(g), torque: space::zero(g) }])

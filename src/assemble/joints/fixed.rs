@@ -11,7 +11,7 @@
 //! force on the second body, at B. −Φ_qᵀ λ of the others is a torque −λ on the second body and +λ on the first, in the axes
 //! of the turned first frame.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -19,7 +19,7 @@ use crate::model::PointRef;
 
 use super::{Pair, Row, prismatic, spherical};
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], angle: &Formula) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], angle: &Formula) -> Result<Vec<Row>, BuildError> {
     let mut rows = spherical::rows(g, m, between);
     if m.is_spatial() {
         let angle = m.formula(g, angle, Context::Time)?;

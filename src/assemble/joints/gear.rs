@@ -9,7 +9,7 @@
 //! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Tooth
 //! forces on the axles are not part of it: the reaction has no force.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -20,7 +20,7 @@ use crate::model::{JointCoordinate, TimeOrder, Turning};
 use super::{Row, axis_in_ground};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     between: [Turning; 2],
     ratio: &Formula,

@@ -24,7 +24,7 @@ mod screw;
 mod spherical;
 mod universal;
 
-use symdiff::{Expr, Formula, Graph};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::model::{JointCoordinate, JointKind};
 
@@ -59,7 +59,7 @@ pub struct Reaction {
 }
 
 /// A joint's rows.
-pub fn rows(g: &mut Graph, m: &Mechanism, joint: usize) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, joint: usize) -> Result<Vec<Row>, BuildError> {
     match &m.description.joints[joint].kind {
         JointKind::Revolute { between, axis } => revolute::rows(g, m, *between, axis),
         JointKind::Prismatic { between, axis, angle } => prismatic::rows(g, m, *between, axis, angle),
@@ -81,14 +81,14 @@ pub fn rows(g: &mut Graph, m: &Mechanism, joint: usize) -> Result<Vec<Row>, Buil
 }
 
 /// A direction of a joint's frames, of length 1.
-fn unit_vector(g: &mut Graph, m: &Mechanism, direction: &[Formula; 3]) -> Result<Vector, BuildError> {
+fn unit_vector(g: &Builder, m: &Mechanism, direction: &[Formula; 3]) -> Result<Vector, BuildError> {
     let direction = m.vector(g, direction, Context::Time)?;
     Ok(space::unit(g, direction))
 }
 
 /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
 pub fn axis_in_ground(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     joint: usize,
     coordinate: JointCoordinate,
@@ -103,7 +103,7 @@ pub fn axis_in_ground(
 ///
 /// A dropped row (both sides held) has no multiplier: how much the ground carries there is not determined by the
 /// motion, and it counts as zero.
-pub fn reaction(g: &mut Graph, kind: &JointKind, kept: &[(Row, Expr)]) -> Reaction {
+pub fn reaction(g: &Builder, kind: &JointKind, kept: &[(Row, Expr)]) -> Reaction {
     let (mut force, mut torque) = (space::zero(g), space::zero(g));
     let mut along = Vec::new();
     for (row, lambda) in kept {

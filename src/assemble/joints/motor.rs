@@ -20,7 +20,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use symdiff::{Binary, Expr, Graph};
+use symdiff::{Binary, Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -30,7 +30,7 @@ use crate::model::{JointCoordinate, Prescribed, Profile, TimeOrder};
 use super::{Row, axis_in_ground};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     joint: usize,
     coordinate: JointCoordinate,
@@ -48,8 +48,8 @@ pub fn rows(
 }
 
 /// s(t)
-fn wanted(g: &mut Graph, m: &Mechanism, motion: &Prescribed) -> Result<Expr, BuildError> {
-    let number = |g: &mut Graph, formula| m.formula(g, formula, Context::Time);
+fn wanted(g: &Builder, m: &Mechanism, motion: &Prescribed) -> Result<Expr, BuildError> {
+    let number = |g: &Builder, formula| m.formula(g, formula, Context::Time);
     match motion {
         Prescribed::Position(position) => number(g, position),
         Prescribed::Speed { from, speed } => {
@@ -83,7 +83,7 @@ fn wanted(g: &mut Graph, m: &Mechanism, motion: &Prescribed) -> Result<Expr, Bui
 }
 
 /// u
-fn part(g: &mut Graph, m: &Mechanism, start: Expr, duration: Expr) -> Expr {
+fn part(g: &Builder, m: &Mechanism, start: Expr, duration: Expr) -> Expr {
     let since = g.sub(m.time, start);
     let part = g.div(since, duration);
     let (part, one) = (clipped(g, part), g.constant(1.0));
@@ -91,7 +91,7 @@ fn part(g: &mut Graph, m: &Mechanism, start: Expr, duration: Expr) -> Expr {
 }
 
 /// σ and Σ
-fn shape(g: &mut Graph, m: &Mechanism, profile: &Profile, u: Expr) -> Result<[Expr; 2], BuildError> {
+fn shape(g: &Builder, m: &Mechanism, profile: &Profile, u: Expr) -> Result<[Expr; 2], BuildError> {
     let one = g.constant(1.0);
     match profile {
         Profile::Cycloidal => {
@@ -105,7 +105,7 @@ fn shape(g: &mut Graph, m: &Mechanism, profile: &Profile, u: Expr) -> Result<[Ex
             Ok([g.sub(u, sway), g.add(half, bend)])
         }
         Profile::Quintic => {
-            let mut polynomial = |power: i32, [a, b, c]: [f64; 3]| {
+            let polynomial = |power: i32, [a, b, c]: [f64; 3]| {
                 let [a, b, c] = [a, b, c].map(|coefficient| g.constant(coefficient));
                 let inner = g.mul(c, u);
                 let inner = g.add(b, inner);
@@ -122,7 +122,7 @@ fn shape(g: &mut Graph, m: &Mechanism, profile: &Profile, u: Expr) -> Result<[Ex
             let (after, last) = (g.sub(u, ramp), g.sub(u, rest));
             let (after, last) = (clipped(g, after), clipped(g, last));
             let area = g.mul(ramp, rest);
-            let mut truncated = |power: i32, divisor: f64| {
+            let truncated = |power: i32, divisor: f64| {
                 let [all, after, last] = [u, after, last].map(|part| g.powi(part, power));
                 let sum = g.sub(all, after);
                 let sum = g.sub(sum, last);
@@ -135,7 +135,7 @@ fn shape(g: &mut Graph, m: &Mechanism, profile: &Profile, u: Expr) -> Result<[Ex
 }
 
 /// max(x, 0).
-fn clipped(g: &mut Graph, x: Expr) -> Expr {
+fn clipped(g: &Builder, x: Expr) -> Expr {
     let zero = g.constant(0.0);
     g.binary(Binary::Max, x, zero)
 }

@@ -9,7 +9,7 @@
 //! nᵢ at B on the second body (the pin) and the opposite on the first (the slot), at the same place. In the plane the first
 //! row of the prismatic joint.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::Mechanism;
@@ -18,7 +18,7 @@ use crate::model::PointRef;
 
 use super::{Pair, Row, point_on_line};
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
     let mut rows = point_on_line::rows(g, m, between, axis)?;
     if m.is_spatial() {
         let turning = space::along(g, 2);

@@ -8,7 +8,7 @@
 //! n₁ is the plane's unit normal, through A, and the nᵢ are normal to it. −Φ_qᵀ λ of the first row is the force −λ n₁ at B
 //! on the second body and the opposite on the first, at the same place; the others carry the torque across the normal.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::Mechanism;
@@ -16,12 +16,7 @@ use crate::model::PointRef;
 
 use super::{Pair, Row, unit_vector};
 
-pub fn rows(
-    g: &mut Graph,
-    m: &Mechanism,
-    between: [PointRef; 2],
-    normal: &[Formula; 3],
-) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], normal: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
     let normal = unit_vector(g, m, normal)?;
     let pair = Pair::of(g, m, between);
     let mut rows = vec![pair.normal_row(g, "normal", normal)];

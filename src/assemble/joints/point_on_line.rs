@@ -7,7 +7,7 @@
 //! The nᵢ are the line's unit normals; it goes through A and does not end. −Φ_qᵀ λ is the force −λ nᵢ at B on the second
 //! body and the opposite on the first, at the same place.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::Mechanism;
@@ -15,7 +15,7 @@ use crate::model::PointRef;
 
 use super::{Pair, Row, prismatic, unit_vector};
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
     if !m.is_spatial() {
         return Ok(vec![Row { name: "", ..prismatic::normal_row(g, m, between, axis)? }]);
     }

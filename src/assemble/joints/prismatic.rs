@@ -13,7 +13,7 @@
 //! of the others is a torque −λ on the second body and +λ on the first. An axis of length zero has no normal: the rows are
 //! not numbers then.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -24,7 +24,7 @@ use crate::model::PointRef;
 use super::{Pair, Row, unit_vector};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     between: [PointRef; 2],
     axis: &[Formula; 3],
@@ -42,12 +42,7 @@ pub fn rows(
 }
 
 /// n₁ · (r_B − r_A), n₁ the axis turned by a right angle in the plane.
-pub fn normal_row(
-    g: &mut Graph,
-    m: &Mechanism,
-    between: [PointRef; 2],
-    axis: &[Formula; 3],
-) -> Result<Row, BuildError> {
+pub fn normal_row(g: &Builder, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Row, BuildError> {
     let axis = unit_vector(g, m, axis)?;
     let normal = space::perpendicular(g, axis);
     let normal = m.bodies[between[0].body].rotate(g, normal);
@@ -58,7 +53,7 @@ pub fn normal_row(
 }
 
 /// θ₂ − θ₁ − angle.
-pub fn angle_row(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], angle: &Formula) -> Result<Row, BuildError> {
+pub fn angle_row(g: &Builder, m: &Mechanism, between: [PointRef; 2], angle: &Formula) -> Result<Row, BuildError> {
     let angle = m.formula(g, angle, Context::Time)?;
     let [first, second] = between.map(|point| m.bodies[point.body].position[ANGLE]);
     let turned = g.sub(second, first);

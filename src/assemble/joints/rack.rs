@@ -8,7 +8,7 @@
 //! the second body of its joint and the torque +radius λ about the pinion's axis on the second body of its; the opposites
 //! act on the first bodies. The reaction is the force on the rack.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -18,7 +18,7 @@ use crate::model::{JointCoordinate, TimeOrder};
 use super::{Row, axis_in_ground};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     [pinion, rack]: [usize; 2],
     radius: &Formula,

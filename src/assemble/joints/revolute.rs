@@ -9,7 +9,7 @@
 //! the first: λ is the pin's force on the second body, in the ground's axes. The others carry the torque across the axis.
 //! Nothing fails; with both points on held coordinates a row vanishes.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::Mechanism;
@@ -17,7 +17,7 @@ use crate::model::PointRef;
 
 use super::{Pair, Row, spherical, unit_vector};
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2], axis: &[Formula; 3]) -> Result<Vec<Row>, BuildError> {
     let mut rows = spherical::rows(g, m, between);
     if m.is_spatial() {
         let axis = unit_vector(g, m, axis)?;

@@ -9,7 +9,7 @@
 //! thread. −Φ_qᵀ λ of the last row is the force −λ a₁ at B and the torque +λ (pitch / 2π) a₁ on the second body, and the
 //! opposite on the first.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -19,7 +19,7 @@ use crate::model::{JointCoordinate, PointRef, TimeOrder};
 use super::{Pair, Row, cylindrical, unit_vector};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     joint: usize,
     between: [PointRef; 2],

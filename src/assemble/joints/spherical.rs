@@ -6,7 +6,7 @@
 //!
 //! λ is the force on the second body, at B, in the ground's axes. No torque.
 
-use symdiff::Graph;
+use symdiff::Builder;
 
 use crate::assemble::mechanism::Mechanism;
 use crate::assemble::space;
@@ -14,7 +14,7 @@ use crate::model::PointRef;
 
 use super::Row;
 
-pub fn rows(g: &mut Graph, m: &Mechanism, between: [PointRef; 2]) -> Vec<Row> {
+pub fn rows(g: &Builder, m: &Mechanism, between: [PointRef; 2]) -> Vec<Row> {
     let [a, b] = between.map(|point| m.point(g, point));
     let gap = space::sub(g, a.position, b.position);
     let names = ["x", "y", "z"];

@@ -9,7 +9,7 @@
 //! last is the torque λ a₁ × b₂ on the second body and the opposite on the first. It fails where nothing else keeps the arms
 //! from lying in each other's shaft: with the shafts at a right angle, the cross can turn on its own.
 
-use symdiff::{Formula, Graph};
+use symdiff::{Builder, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::Mechanism;
@@ -19,7 +19,7 @@ use crate::model::PointRef;
 use super::{Pair, Row, spherical, unit_vector};
 
 pub fn rows(
-    g: &mut Graph,
+    g: &Builder,
     m: &Mechanism,
     between: [PointRef; 2],
     [first, second]: &[[Formula; 3]; 2],

@@ -1,4 +1,5 @@
-//! A mechanism that no uncertain parameter reaches: simulated once, and once more with halved steps for its error, whatever is asked for.
+//! A mechanism that depends on no uncertain parameter: simulated once, and once more with halved steps for its error, whatever
+//! is asked for.
 
 use std::sync::atomic::AtomicUsize;
 use std::time::Instant;
@@ -12,7 +13,11 @@ use crate::simulate::{Counters, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every method's bounds are the one course that there is.
-    pub(super) fn certain(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+    pub(super) fn deterministic(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<f64>,
+    ) -> Result<Results, SimulationError> {
         let progress = Progress { done: AtomicUsize::new(0), total: 3 * schedule.rows };
         let mut steps = StepSearch::new(schedule);
         loop {

@@ -7,9 +7,9 @@
 use super::sparse_basis::SparseBasis;
 use super::tensor::Matrix;
 
-/// Shares of the parameters in the variance.
+/// SobolIndices of the parameters in the variance.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shares {
+pub struct SobolIndices {
     /// Of each parameter alone.
     pub main: Vec<f64>,
     /// Of each parameter, alone and together with others.
@@ -20,20 +20,20 @@ pub struct Shares {
 
 /// Computes shares for polynomials of one basis.
 #[derive(Clone, Debug)]
-pub struct VarianceShares {
+pub struct SobolDecomposition {
     basis: SparseBasis,
     conversion: Matrix,
 }
 
-impl VarianceShares {
+impl SobolDecomposition {
     /// Prepares the conversion.
     pub fn new(basis: &SparseBasis) -> Self {
         let highest = basis.orders().iter().max().copied().unwrap_or(0);
         Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()) }
     }
 
-    /// Shares in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or not a number.
-    pub fn shares(&self, coefficients: &[f64]) -> Option<Shares> {
+    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or not a number.
+    pub fn indices(&self, coefficients: &[f64]) -> Option<SobolIndices> {
         assert_eq!(coefficients.len(), self.basis.len(), "coefficients of another shape");
         let k = self.basis.dimension();
         // Relative to the largest, so that no square over- or underflows.
@@ -72,7 +72,7 @@ impl VarianceShares {
         }
         main.iter_mut().chain(&mut total).for_each(|share| *share /= variance);
         let interactions = (1.0 - main.iter().sum::<f64>()).max(0.0);
-        Some(Shares { main, total, interactions })
+        Some(SobolIndices { main, total, interactions })
     }
 }
 
@@ -105,12 +105,12 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
-    fn shares(grid: &SparseGrid, f: impl Fn(&[f64]) -> f64) -> Option<Shares> {
+    fn indices(grid: &SparseGrid, f: impl Fn(&[f64]) -> f64) -> Option<SobolIndices> {
         let transform = SparseTransform::new(grid);
         let values: Vec<f64> = (0..grid.len()).map(|index| f(&grid.sample(index))).collect();
         let mut c = vec![0.0; values.len()];
         transform.coefficients(&values, &mut c, &mut TransformWork::default());
-        VarianceShares::new(transform.basis()).shares(&c)
+        SobolDecomposition::new(transform.basis()).indices(&c)
     }
 
     #[test]
@@ -139,13 +139,13 @@ mod tests {
 
     #[test]
     fn what_does_not_vary_has_no_shares() {
-        let basis = VarianceShares::new(&SparseBasis::tensor(&[1, 1]));
-        assert_eq!(basis.shares(&[3.0, 0.0, 0.0, 0.0]), None);
-        assert_eq!(basis.shares(&[3.0, 0.0, f64::NAN, 1.0]), None);
-        assert_eq!(VarianceShares::new(&SparseBasis::tensor(&[])).shares(&[3.0]), None);
+        let basis = SobolDecomposition::new(&SparseBasis::tensor(&[1, 1]));
+        assert_eq!(basis.indices(&[3.0, 0.0, 0.0, 0.0]), None);
+        assert_eq!(basis.indices(&[3.0, 0.0, f64::NAN, 1.0]), None);
+        assert_eq!(SobolDecomposition::new(&SparseBasis::tensor(&[])).indices(&[3.0]), None);
         // Small or large, shares are the same.
         for scale in [1e-300, 1.0, 1e300] {
-            let found = basis.shares(&[scale, scale, 0.0, 0.0]).unwrap();
+            let found = basis.indices(&[scale, scale, 0.0, 0.0]).unwrap();
             assert_eq!((found.main, found.total, found.interactions), (vec![0.0, 1.0], vec![0.0, 1.0], 0.0));
         }
     }
@@ -168,7 +168,7 @@ mod tests {
         fn shares_are_those_of_the_mean_square(c in prop::collection::vec(-1.0..1.0_f64, 12)) {
             // Main effect of the first parameter by quadrature: the variance of the mean over the second.
             let basis = SparseBasis::tensor(&[3, 2]);
-            let found = VarianceShares::new(&basis).shares(&c).unwrap();
+            let found = SobolDecomposition::new(&basis).indices(&c).unwrap();
             // Gauss's two points in each of many cells: an error of about 1e-6 for these degrees.
             let half = 1.0 / 24.0;
             let nodes: Vec<f64> = (0..24)

@@ -1,24 +1,21 @@
-//! Islands of a model, which move on their own: each is a study of its own, with those of the parameters that reach it, and their results
-//! are put together in the model's order.
+//! Subsystems of a model, which do not interact: each is a study of its own, over those parameters on which it depends, and the
+//! results are merged in the model's order.
 //!
-//! Each has its own steps too: one that needs short ones costs the others nothing, and what a step does to one is no matter of
-//! another's. Parts of the box that are not feasible are parts of the whole box: where those are to be left out, there is one
-//! island.
+//! Each has its own steps too: a subsystem that needs short ones does not slow down the others. The feasible part of a box is
+//! a part of the whole box: where only that is to be bounded, there is one subsystem.
 
 use symdiff::Formula;
 
 use super::run::{Ran, Study, contributions, summarised_errors};
 use super::{Options, RunError, feasible, formulation};
-use crate::numerics::{BandError, ParameterBox, Range};
-use crate::results::{Band, Bounds, Contribution, Method, OutputBounds};
-use crate::simulate::Simulator;
-
 use crate::assemble::{self, BuildError};
 use crate::model::{Description, Formulation, ParameterValue};
+use crate::numerics::ParameterBox;
 use crate::reduce::{Choices, Island, Reduction, narrow};
-use crate::results::{IslandSummary, MethodSummary, ParameterSummary, Summary};
+use crate::results::{Bounds, Contribution, Method, OutputBounds, ParameterSummary, SubsystemSummary, Summary};
+use crate::simulate::Simulator;
 
-/// An island ready to run.
+/// A subsystem, compiled.
 pub struct Prepared {
     /// What it is.
     pub island: Island,
@@ -27,7 +24,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Compiles. Parameters that the island names, but no equation of it depends on, are left to their nominal values.
+    /// Compiles. A parameter that the subsystem names, but on which no equation of it depends, gets its nominal value.
     ///
     /// # Errors
     /// Where it cannot be built or assembled.
@@ -55,11 +52,11 @@ impl Prepared {
 /// Reduces a model to what has to be simulated, and compiles that.
 ///
 /// # Errors
-/// Where an island cannot be built or assembled.
+/// Where a subsystem cannot be built or assembled.
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
     let prepared = std::mem::take(&mut reduction.islands).into_iter().map(|island| {
-        // Joints carry bodies in the model that asks for it, but perhaps not in every island.
+        // Joint coordinates that the model asks for may not exist in every subsystem.
         let carried = description.simulation.formulation == Formulation::Joint;
         let absolute = carried.then(|| island.clone());
         match (Prepared::new(island), absolute) {
@@ -76,7 +73,7 @@ pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Re
     Ok((reduction, prepared))
 }
 
-/// Runs every island and puts their results together.
+/// Runs every subsystem and merges the results.
 ///
 /// # Errors
 /// As for any run.
@@ -110,10 +107,10 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
         };
         ran.push(Done { island, bounds, summary });
     }
-    Ok(Together::of(description, reduction.left_out).join(ran))
+    Ok(Whole::of(description, reduction.left_out).merge(ran))
 }
 
-/// What may be spent is dealt out evenly to those that have something to spend it on.
+/// The budget is divided evenly among the subsystems with uncertain parameters.
 fn share_budget(prepared: &mut [Prepared]) {
     let uncertain = prepared.iter().filter(|prepared| !prepared.island.parameters.is_empty()).count().max(1);
     for prepared in prepared {
@@ -123,22 +120,22 @@ fn share_budget(prepared: &mut [Prepared]) {
     }
 }
 
-/// An island's results.
+/// A subsystem's results.
 struct Done<'a> {
     island: &'a Island,
     bounds: Bounds,
     summary: Summary,
 }
 
-/// The whole model, for which islands' results are put together.
-struct Together<'a> {
+/// The whole model, for which subsystems' results are merged.
+struct Whole<'a> {
     description: &'a Description,
     parameters: Vec<ParameterSummary>,
     domain: ParameterBox,
     left_out: Vec<String>,
 }
 
-impl<'a> Together<'a> {
+impl<'a> Whole<'a> {
     fn of(description: &'a Description, left_out: Vec<String>) -> Self {
         let interval = |parameter: &crate::model::Parameter| match parameter.value {
             ParameterValue::Interval { nominal, lower, upper } => {
@@ -156,7 +153,7 @@ impl<'a> Together<'a> {
         Self { description, parameters, domain, left_out }
     }
 
-    fn join(self, ran: Vec<Done>) -> (Bounds, Summary) {
+    fn merge(self, ran: Vec<Done>) -> (Bounds, Summary) {
         let longest = ran.iter().map(|done| &done.bounds.times).max_by_key(|times| times.len());
         let times = longest.cloned().unwrap_or_default();
         let known = ran.iter().any(|done| !done.bounds.contributions.is_empty());
@@ -165,7 +162,7 @@ impl<'a> Together<'a> {
         let mut contributions = vec![Vec::new(); count];
         for done in &ran {
             for (place, (&output, bounds)) in done.island.outputs.iter().zip(&done.bounds.outputs).enumerate() {
-                let bounds = filled(bounds, times.len());
+                let bounds = bounds.padded(times.len());
                 if known {
                     contributions[output] = self.contributions(done, place, &bounds);
                 }
@@ -186,22 +183,17 @@ impl<'a> Together<'a> {
         (bounds, summary)
     }
 
-    /// Every parameter's part in an output; one that does not reach its island has none.
+    /// Every parameter's contribution to an output; zero for one on which its subsystem does not depend.
     fn contributions(&self, done: &Done, place: usize, bounds: &OutputBounds) -> Vec<Contribution> {
         let rows = bounds.nominal.len();
         let unknown = || vec![f64::NAN; rows];
-        let of_island = done.bounds.contributions.get(place);
+        let of_subsystem = done.bounds.contributions.get(place);
         let band = bounds.bands.iter().find(|band| band.method == Method::Chebyshev);
         let contribution = |(number, parameter): (usize, &ParameterSummary)| {
             let name = parameter.name.clone();
             match done.island.parameters.iter().position(|&own| own == number) {
-                Some(own) => match of_island.and_then(|contributions| contributions.get(own)) {
-                    Some(found) => Contribution {
-                        parameter: name,
-                        main: padded(&found.main, rows, f64::NAN),
-                        total: padded(&found.total, rows, f64::NAN),
-                        width_without: padded(&found.width_without, rows, f64::NAN),
-                    },
+                Some(own) => match of_subsystem.and_then(|contributions| contributions.get(own)) {
+                    Some(found) => found.padded(rows),
                     None => {
                         Contribution { parameter: name, main: unknown(), total: unknown(), width_without: unknown() }
                     }
@@ -218,7 +210,7 @@ impl<'a> Together<'a> {
         self.parameters.iter().enumerate().map(contribution).collect()
     }
 
-    /// Values of an island's parameters among those of all, where it has them.
+    /// Values of a subsystem's parameters among those of all, where it has them.
     fn spread<T: Clone>(&self, island: &Island, values: &[T], others: &[T]) -> Vec<T> {
         let own = |number: usize| island.parameters.iter().position(|&own| own == number);
         (0..self.parameters.len())
@@ -237,42 +229,22 @@ impl<'a> Together<'a> {
                 piece.upper = self.spread(done.island, &piece.upper, &self.domain.upper);
             }
         }
-        let islands = if ran.len() > 1 { ran.iter().map(|done| self.island(done)).collect() } else { Vec::new() };
-        let mut parts = ran.into_iter().map(|done| done.summary);
-        // Where no part is needed, all of them are one island (`reduce`).
-        let mut summary = parts.next().expect("a model has an island");
-        let mut failures: Vec<String> = summary.failure.take().into_iter().collect();
-        for other in parts {
-            summary.coordinates += other.coordinates;
-            summary.constraints += other.constraints;
-            summary.degrees_of_freedom += other.degrees_of_freedom;
-            summary.redundant_constraints.extend(other.redundant_constraints);
-            summary.undetermined_outputs.extend(other.undetermined_outputs);
-            summary.singular_at_start.extend(other.singular_at_start);
-            summary.singular_configurations.extend(other.singular_configurations);
-            for method in other.methods {
-                match summary.methods.iter_mut().find(|known| known.method == method.method) {
-                    Some(known) => add(known, &method),
-                    None => summary.methods.push(method),
-                }
-            }
-            failures.extend(other.failure.filter(|failure| !failures.contains(failure)));
-        }
-        summary.singular_configurations.sort_by(|a, b| a.time.total_cmp(&b.time));
-        summary.failure = (!failures.is_empty()).then(|| failures.join("; "));
-        if !islands.is_empty() {
+        let subsystems: Vec<SubsystemSummary> =
+            if ran.len() > 1 { ran.iter().map(|done| self.subsystem(done)).collect() } else { Vec::new() };
+        let mut summary = Summary::of_subsystems(ran.into_iter().map(|done| done.summary).collect());
+        if !subsystems.is_empty() {
             summary.errors = summarised_errors(bounds);
             summary.contributions = contributions(bounds);
         }
         summary.parameters = self.parameters;
         summary.not_simulated = self.left_out;
-        summary.islands = islands;
+        summary.subsystems = subsystems;
         summary
     }
 
-    fn island(&self, done: &Done) -> IslandSummary {
+    fn subsystem(&self, done: &Done) -> SubsystemSummary {
         let Island { description, outputs, parameters } = done.island;
-        IslandSummary {
+        SubsystemSummary {
             bodies: description.bodies.iter().skip(1).map(|body| body.name.clone()).collect(),
             outputs: outputs.iter().map(|&output| self.description.outputs[output].name.clone()).collect(),
             parameters: parameters.iter().map(|&number| self.parameters[number].name.clone()).collect(),
@@ -280,43 +252,5 @@ impl<'a> Together<'a> {
             constraints: done.summary.constraints,
             methods: done.summary.methods.clone(),
         }
-    }
-}
-
-/// Takes in what another part of a run took.
-pub(super) fn add(known: &mut MethodSummary, other: &MethodSummary) {
-    known.solves += other.solves;
-    known.steps = known.steps.max(other.steps);
-    known.newton_iterations += other.newton_iterations;
-    known.rank_revealing_solves += other.rank_revealing_solves;
-    known.boxes = known.boxes.zip(other.boxes).map(|(a, b)| a + b);
-    known.seconds = known.seconds.zip(other.seconds).map(|(a, b)| a + b);
-    if let (Some(known), Some(other)) = (&mut known.order, &other.order) {
-        known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
-    }
-}
-
-fn padded<T: Clone>(values: &[T], rows: usize, with: T) -> Vec<T> {
-    let mut values = values.to_vec();
-    values.resize(rows, with);
-    values
-}
-
-/// An output's bounds over so many rows, unknown where its island did not come that far.
-fn filled(bounds: &OutputBounds, rows: usize) -> OutputBounds {
-    let band = |band: &Band| Band {
-        method: band.method,
-        lower: padded(&band.lower, rows, Range::UNKNOWN.lower),
-        upper: padded(&band.upper, rows, Range::UNKNOWN.upper),
-        error: BandError {
-            total: padded(&band.error.total, rows, f64::NAN),
-            unresolved: padded(&band.error.unresolved, rows, true),
-            ..band.error.clone()
-        },
-    };
-    OutputBounds {
-        nominal: padded(&bounds.nominal, rows, f64::NAN),
-        bands: bounds.bands.iter().map(band).collect(),
-        ..bounds.clone()
     }
 }

@@ -1,0 +1,7 @@
+//! The kernel of multibody dynamics: vectors, matrices and rotations as expressions. It knows no model description.
+
+mod matrix;
+mod vector;
+
+pub use matrix::Matrix;
+pub use vector::Vector;

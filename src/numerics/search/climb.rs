@@ -1,0 +1,142 @@
+//! One climb to an extreme.
+
+use super::ExtremeSearch;
+use super::evaluations::{Evaluations, Goal};
+
+/// First distance of the probes, and that on a face: a maximum nearer to the face than half of it is not seen.
+const REACH: f64 = 0.25;
+const ON_FACE: f64 = 0.05;
+/// Least distance of probes: nearer, rounding bends parabolas.
+const NEAREST: f64 = 0.01;
+/// Shares of the way to the targets that are tried, ascending.
+const STRIDES: [f64; 3] = [0.1, 0.35, 1.0];
+
+/// One way up. A round probes, strides and refines: each stage sees the values that the one before it asked for.
+pub(super) struct Climb {
+    pub(super) goal: Goal,
+    pub(super) at: usize,
+    /// Distances of the probes along each axis.
+    reach: Vec<f64>,
+    /// The points that were asked for last.
+    pub(super) last: Vec<usize>,
+    /// Best point of the round.
+    best: usize,
+    /// All axes' targets, and what they promise together.
+    targets: Vec<f64>,
+    promised: f64,
+    pub(super) arrived: bool,
+}
+
+impl Climb {
+    pub(super) fn new(goal: Goal, at: usize, dimension: usize) -> Self {
+        let (reach, targets) = (vec![REACH; dimension], Vec::with_capacity(dimension));
+        Self { goal, at, reach, last: Vec::new(), best: at, targets, promised: 0.0, arrived: false }
+    }
+
+    /// Asks for two points along each axis, or one on a face.
+    pub(super) fn probe(&mut self, seen: &Evaluations) -> Vec<Vec<f64>> {
+        let x = &seen.points[self.at];
+        let along = |(axis, &reach): (usize, &f64)| {
+            sides(x[axis], reach).into_iter().flatten().map(move |xi| {
+                let mut probe = x.clone();
+                probe[axis] = xi;
+                probe
+            })
+        };
+        self.reach.iter().enumerate().flat_map(along).collect()
+    }
+
+    /// Finds the targets from the probes, and asks for points on the way to them: axes that are coupled overshoot together.
+    pub(super) fn stride(&mut self, seen: &Evaluations) -> Vec<Vec<f64>> {
+        let x = &seen.points[self.at];
+        let here = seen.value(self.goal, self.at);
+        self.targets.clone_from(x);
+        self.promised = 0.0;
+        let mut probes = self.last.iter().map(|&place| seen.value(self.goal, place));
+        for (xi, reach) in self.targets.iter_mut().zip(&mut self.reach) {
+            // As many probes as sides were asked for.
+            let mut value = || probes.next().unwrap_or(here);
+            let (to, gain) = match sides(*xi, *reach) {
+                [Some(a), Some(b)] => {
+                    let found = target(*xi, here, (a, value()), (b, value()));
+                    *reach = (found.0 - *xi).abs().clamp(NEAREST, *reach);
+                    found
+                }
+                [Some(inwards), None] | [None, Some(inwards)] => match value() - here {
+                    gain if gain > 0.0 => (*xi + REACH * (inwards - *xi).signum(), gain * REACH / ON_FACE),
+                    _ => (*xi, 0.0),
+                },
+                [None, None] => (*xi, 0.0),
+            };
+            self.promised += gain;
+            *xi = to;
+        }
+        self.keep_best(seen);
+        if self.targets == *x { Vec::new() } else { STRIDES.map(|share| self.towards(x, share)).to_vec() }
+    }
+
+    /// Asks for the vertex of the parabola through the best stride and its neighbours.
+    pub(super) fn refine(&mut self, seen: &Evaluations) -> Vec<Vec<f64>> {
+        let here = seen.value(self.goal, self.at);
+        let mut along = [(0.0, here); STRIDES.len() + 1];
+        for ((along, &place), share) in along[1..].iter_mut().zip(&self.last).zip(STRIDES) {
+            *along = (share, seen.value(self.goal, place));
+        }
+        let unmoved = self.last.is_empty();
+        self.keep_best(seen);
+        let higher = |a: usize, b: usize| if along[b].1 > along[a].1 { b } else { a };
+        let top = (1..along.len()).fold(0, higher).clamp(1, along.len() - 2);
+        let (share, gain) = target(along[top].0, along[top].1, along[top - 1], along[top + 1]);
+        if unmoved || gain <= 0.0 { Vec::new() } else { vec![self.towards(&seen.points[self.at], share)] }
+    }
+
+    /// The point this share of the way to the targets.
+    fn towards(&self, x: &[f64], share: f64) -> Vec<f64> {
+        let between = |(x, to): (&f64, &f64)| if share == 1.0 { *to } else { (x + share * (to - x)).clamp(-1.0, 1.0) };
+        x.iter().zip(&self.targets).map(between).collect()
+    }
+
+    fn keep_best(&mut self, seen: &Evaluations) {
+        let better = |best, &place: &usize| {
+            if seen.value(self.goal, place) > seen.value(self.goal, best) { place } else { best }
+        };
+        self.best = self.last.iter().fold(self.best, better);
+    }
+
+    /// Moves to the best point, and sees whether to go on.
+    pub(super) fn settle(&mut self, seen: &Evaluations) {
+        self.keep_best(seen);
+        let value = seen.value(self.goal, self.best);
+        let gained = value - seen.value(self.goal, self.at);
+        self.at = self.best;
+        let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
+        let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
+        // What is not a number ends it too.
+        let goes_on = gained > least && self.promised > least;
+        self.arrived = hopeless || !goes_on;
+    }
+}
+
+/// Where along an axis to probe.
+fn sides(xi: f64, reach: f64) -> [Option<f64>; 2] {
+    if xi >= 1.0 {
+        [Some(1.0 - ON_FACE), None]
+    } else if xi <= -1.0 {
+        [None, Some(-1.0 + ON_FACE)]
+    } else {
+        [Some((xi - reach).max(-1.0)), Some((xi + reach).min(1.0))]
+    }
+}
+
+/// Where in [−1, 1] the parabola through three values is largest, and by how much it is larger there than at x. (Position
+/// and value below and above x.)
+pub(super) fn target(x: f64, here: f64, below: (f64, f64), above: (f64, f64)) -> (f64, f64) {
+    let (a, b) = (below.0 - x, above.0 - x);
+    let (left, right) = ((below.1 - here) / a, (above.1 - here) / b);
+    let bend = (right - left) / (b - a);
+    let slope = right - bend * b;
+    let gain = |to: f64| (to - x) * (slope + bend * (to - x));
+    let better_end = if gain(1.0) > gain(-1.0) { 1.0 } else { -1.0 };
+    let to = if bend < 0.0 { (x - 0.5 * slope / bend).clamp(-1.0, 1.0) } else { better_end };
+    if gain(to) > 0.0 { (to, gain(to)) } else { (x, 0.0) }
+}

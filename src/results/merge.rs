@@ -1,0 +1,247 @@
+//! How results of parts become those of a whole, field by field: of a model's subsystems, and of pieces of its box.
+
+use super::summary::MethodSummary;
+use super::{Band, Bounds, Contribution, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};
+use crate::numerics::{BandError, EMPTY, Range, largest, union};
+
+impl MethodSummary {
+    /// Adds what the same method took elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        self.solves += other.solves;
+        self.steps = self.steps.max(other.steps);
+        self.newton_iterations += other.newton_iterations;
+        self.rank_revealing_solves += other.rank_revealing_solves;
+        self.boxes = self.boxes.zip(other.boxes).map(|(a, b)| a + b);
+        self.seconds = self.seconds.zip(other.seconds).map(|(a, b)| a + b);
+        if let (Some(known), Some(other)) = (&mut self.order, &other.order) {
+            known.iter_mut().zip(other).for_each(|(known, other)| *known = (*known).max(*other));
+        }
+    }
+}
+
+impl Summary {
+    /// Adds what the methods took in another part of the run.
+    pub fn add_methods(&mut self, others: &[MethodSummary]) {
+        for other in others {
+            match self.methods.iter_mut().find(|known| known.method == other.method) {
+                Some(known) => known.add(other),
+                None => self.methods.push(other.clone()),
+            }
+        }
+    }
+
+    /// Of a model that consists of these subsystems. What depends on the whole model's bounds (errors, contributions) and
+    /// names (parameters) is that of the first.
+    ///
+    /// # Panics
+    /// Without any.
+    #[must_use]
+    pub fn of_subsystems(subsystems: Vec<Self>) -> Self {
+        let mut failures: Vec<String> = Vec::new();
+        for failure in subsystems.iter().filter_map(|subsystem| subsystem.failure.as_ref()) {
+            if !failures.contains(failure) {
+                failures.push(failure.clone());
+            }
+        }
+        let add = |mut whole: Self, other: Self| {
+            whole.coordinates += other.coordinates;
+            whole.constraints += other.constraints;
+            whole.degrees_of_freedom += other.degrees_of_freedom;
+            whole.redundant_constraints.extend(other.redundant_constraints);
+            whole.undetermined_outputs.extend(other.undetermined_outputs);
+            whole.singular_at_start.extend(other.singular_at_start);
+            whole.singular_configurations.extend(other.singular_configurations);
+            whole.add_methods(&other.methods);
+            whole
+        };
+        // A model has at least one: `reduce` sees to it.
+        let mut whole = subsystems.into_iter().reduce(add).expect("a model has a subsystem");
+        whole.singular_configurations.sort_by(|a, b| a.time.total_cmp(&b.time));
+        whole.failure = (!failures.is_empty()).then(|| failures.join("; "));
+        whole
+    }
+}
+
+/// Bounds of a piece of the box.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece<'b> {
+    /// Its own bounds.
+    pub bounds: &'b Bounds,
+    /// Rows up to which they hold for all of the piece.
+    pub rows: usize,
+    /// Its share of the whole box.
+    pub share: f64,
+}
+
+impl Bounds {
+    /// Bounds over all pieces that reached a row; which share of the box these are is in `covered`.
+    ///
+    /// # Panics
+    /// Without any piece.
+    #[must_use]
+    pub fn of_pieces(pieces: &[Piece]) -> Self {
+        let longest = pieces.iter().max_by_key(|piece| piece.rows).expect("some piece has been bounded");
+        let rows = longest.rows;
+        let reach = |row: usize| pieces.iter().filter(move |piece| row < piece.rows);
+        let output = |(output, first): (usize, &OutputBounds)| {
+            let band = |place: usize| of_band(pieces, output, place, rows);
+            let bands = (0..first.bands.len()).map(band).collect();
+            OutputBounds { nominal: first.nominal[..rows].to_vec(), bands, ..first.clone() }
+        };
+        Self {
+            times: longest.bounds.times[..rows].to_vec(),
+            outputs: longest.bounds.outputs.iter().enumerate().map(output).collect(),
+            contributions: if pieces.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() },
+            covered: (0..rows).map(|row| reach(row).map(|piece| piece.share).sum()).collect(),
+        }
+    }
+}
+
+/// One band of an output over all pieces that have it.
+fn of_band(pieces: &[Piece], output: usize, place: usize, rows: usize) -> Band {
+    let of = |piece: &Piece| piece.bounds.outputs[output].bands.get(place).cloned();
+    let bands: Vec<Option<Band>> = pieces.iter().map(of).collect();
+    let known = || bands.iter().flatten();
+    // The longest piece has the band: the caller counts its bands.
+    let method = known().next().expect("a piece has the band").method;
+    let mut all = Band { method, lower: vec![], upper: vec![], error: BandError::default() };
+    for row in 0..rows {
+        let reach = || pieces.iter().zip(&bands).filter(|(piece, _)| row < piece.rows).map(|(_, band)| band);
+        let found = reach().map(|band| match band {
+            Some(band) => (Range { lower: band.lower[row], upper: band.upper[row] }, band.error.total[row]),
+            None => (Range::UNKNOWN, f64::NAN),
+        });
+        let (range, error) = found.fold((EMPTY, 0.0), union);
+        all.lower.push(range.lower);
+        all.upper.push(range.upper);
+        all.error.total.push(error);
+        let unresolved = |band: &Option<Band>| band.as_ref().is_none_or(|band| band.error.unresolved[row]);
+        all.error.unresolved.push(reach().any(unresolved));
+    }
+    all.error.surrogate = largest(known().map(|band| band.error.surrogate));
+    all.error.time = largest(known().map(|band| band.error.time));
+    all
+}
+
+fn padded<T: Clone>(values: &[T], rows: usize, with: T) -> Vec<T> {
+    let mut values = values.to_vec();
+    values.resize(rows, with);
+    values
+}
+
+impl OutputBounds {
+    /// The same over so many rows, unknown where these have none.
+    #[must_use]
+    pub fn padded(&self, rows: usize) -> Self {
+        let band = |band: &Band| Band {
+            method: band.method,
+            lower: padded(&band.lower, rows, f64::NAN),
+            upper: padded(&band.upper, rows, f64::NAN),
+            error: BandError {
+                total: padded(&band.error.total, rows, f64::NAN),
+                unresolved: padded(&band.error.unresolved, rows, true),
+                ..band.error.clone()
+            },
+        };
+        Self {
+            nominal: padded(&self.nominal, rows, f64::NAN),
+            bands: self.bands.iter().map(band).collect(),
+            ..self.clone()
+        }
+    }
+}
+
+impl Contribution {
+    /// The same over so many rows, unknown where these have none.
+    #[must_use]
+    pub fn padded(&self, rows: usize) -> Self {
+        Self {
+            parameter: self.parameter.clone(),
+            main: padded(&self.main, rows, f64::NAN),
+            total: padded(&self.total, rows, f64::NAN),
+            width_without: padded(&self.width_without, rows, f64::NAN),
+        }
+    }
+}
+
+impl InstructionCounts {
+    /// Adds those of another program.
+    fn add(&mut self, other: &Self) {
+        self.sample += other.sample;
+        self.step_size += other.step_size;
+        self.step += other.step;
+        self.factor += other.factor;
+        self.correct += other.correct;
+        self.advance += other.advance;
+        self.observe += other.observe;
+    }
+}
+
+impl EffectCost {
+    /// In two programs.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let apart = |cost: &Self| cost.apart.unwrap_or(cost.acting);
+        let conditional = self.apart.is_some() || other.apart.is_some();
+        Self { acting: self.acting + other.acting, apart: conditional.then(|| apart(&self) + apart(&other)) }
+    }
+}
+
+impl Explanation {
+    /// Of a model that consists of these subsystems.
+    ///
+    /// # Panics
+    /// Without any.
+    pub fn of_subsystems(subsystems: Vec<Self>) -> Self {
+        // A model has at least one: `reduce` sees to it.
+        subsystems.into_iter().reduce(Self::and).expect("a model has a subsystem")
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        for (line, more) in [(&mut self.space, other.space), (&mut self.formulation, other.formulation)] {
+            if line.split("; ").all(|known| known != more) {
+                *line += &format!("; {more}");
+            }
+        }
+        self.coordinates.extend(other.coordinates);
+        self.constraints.extend(other.constraints);
+        self.degrees_of_freedom += other.degrees_of_freedom;
+        self.redundant_constraints.extend(other.redundant_constraints);
+        self.singular_at_start.extend(other.singular_at_start);
+        self.undetermined_outputs.extend(other.undetermined_outputs);
+        for parameter in other.parameters {
+            if !self.parameters.contains(&parameter) {
+                self.parameters.push(parameter);
+            }
+        }
+        for effect in other.effects {
+            match self.effects.iter_mut().find(|known| known.name == effect.name) {
+                // Gravity acts in every subsystem.
+                Some(known) => {
+                    known.forces += effect.forces;
+                    known.expressions += effect.expressions;
+                    known.adds = known.adds.take().zip(effect.adds).map(|(ours, theirs)| ours.and(theirs));
+                }
+                None => self.effects.push(effect),
+            }
+        }
+        self.outputs.extend(other.outputs);
+        if self.apart.is_some() || other.apart.is_some() {
+            let apart = self.apart.get_or_insert_with(|| self.instructions.clone());
+            apart.add(other.apart.as_ref().unwrap_or(&other.instructions));
+        }
+        self.instructions.add(&other.instructions);
+        // The subsystems' matrices are blocks on one diagonal.
+        let (ours, theirs) = (&mut self.newton, other.newton);
+        let first = ours.size;
+        ours.pivots.extend(theirs.pivots.into_iter().map(|(row, column)| (first + row, first + column)));
+        ours.size += theirs.size;
+        ours.nonzeros += theirs.nonzeros;
+        ours.factor_nonzeros += theirs.factor_nonzeros;
+        ours.fill += theirs.fill;
+        let new = |item: &LeftOut| !self.left_out.contains(item);
+        let more: Vec<LeftOut> = other.left_out.into_iter().filter(new).collect();
+        self.left_out.extend(more);
+        self
+    }
+}

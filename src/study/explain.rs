@@ -1,0 +1,122 @@
+//! `mbint explain`: what a model is compiled to.
+
+use super::decisions::{decisions, uncertain};
+use super::effect_costs::effect_costs;
+use super::subsystems::{Prepared, prepare};
+use super::{RunError, prepare_whole};
+use crate::compile::Program;
+use crate::model::Description;
+use crate::reduce::Choices;
+use crate::results::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
+use crate::simulate::Simulator;
+
+/// What a model is compiled to, and why it is no more than that.
+///
+/// # Errors
+/// Where it cannot be built or assembled.
+pub fn explain(description: &Description) -> Result<Explanation, RunError> {
+    let (reduction, prepared) = prepare(description, Choices::default())?;
+    let of_subsystem = |Prepared { island, simulator }: &Prepared| {
+        let mut explanation = of_simulator(&description.name, simulator);
+        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&island.description, simulator)) {
+            effect.adds = adds;
+        }
+        explanation
+    };
+    let mut explanation = Explanation::of_subsystems(prepared.iter().map(of_subsystem).collect());
+    let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
+    explanation.outputs.sort_by_key(place);
+    let uncertain = uncertain(description);
+    let place = |name: &String| uncertain.iter().position(|known| known == name);
+    explanation.parameters.sort_by_key(place);
+    for number in idle(&uncertain, &prepared) {
+        let what = format!("parameter {}", uncertain[number]);
+        explanation.left_out.push(LeftOut { what, why: "nothing depends on it".to_owned() });
+    }
+    for what in &reduction.left_out {
+        explanation.left_out.push(LeftOut { what: what.clone(), why: "no output depends on it".to_owned() });
+    }
+    explanation.decisions = decisions(description, &reduction, &prepared);
+    Ok(explanation)
+}
+
+/// Uncertain parameters on which no subsystem depends.
+fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
+    let reached = |number: &usize| prepared.iter().any(|one| one.island.parameters.contains(number));
+    (0..uncertain.len()).filter(|number| !reached(number)).collect()
+}
+
+/// What a whole model is compiled to, with the parts on which no output depends, and nothing merged.
+///
+/// # Errors
+/// Where it cannot be built or assembled.
+pub fn explain_whole(description: &Description) -> Result<Explanation, RunError> {
+    Ok(of_simulator(&description.name, &prepare_whole(description)?))
+}
+
+/// What one subsystem is compiled to.
+fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
+    let (system, program) = (&simulator.system, &simulator.program);
+    let (nonzeros, factor_nonzeros) = program.nonzeros;
+    Explanation {
+        model: model.to_owned(),
+        space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
+        formulation: format!(
+            "{} coordinates: {}",
+            if system.formulation.joint { "joint" } else { "absolute" },
+            system.formulation.why
+        ),
+        coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
+        constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
+        degrees_of_freedom: simulator.mobility.degrees_of_freedom,
+        redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+        singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
+        undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+        parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        effects: system
+            .effects
+            .iter()
+            .map(|effect| EffectExplanation {
+                name: effect.name.clone(),
+                kind: effect.kind.to_owned(),
+                forces: effect.forces,
+                expressions: effect.expressions,
+                adds: None,
+            })
+            .collect(),
+        outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+        instructions: instruction_counts(program, true),
+        apart: Some(instruction_counts(program, false)).filter(|apart| *apart != instruction_counts(program, true)),
+        newton: NewtonMatrix {
+            size: program.residual.len(),
+            nonzeros,
+            factor_nonzeros,
+            fill: factor_nonzeros.saturating_sub(nonzeros),
+            pivots: program.pivots.clone(),
+        },
+        left_out: system
+            .left_out
+            .iter()
+            .map(|left_out| LeftOut { what: left_out.what.clone(), why: left_out.why.clone() })
+            .collect(),
+        decisions: Vec::new(),
+    }
+}
+
+fn constraint_names(simulator: &Simulator, constraints: &[usize]) -> Vec<String> {
+    constraints.iter().map(|&constraint| simulator.system.constraints[constraint].name.clone()).collect()
+}
+
+/// A program's instructions, with every conditional effect active, or none.
+fn instruction_counts(program: &Program, active: bool) -> InstructionCounts {
+    let count = |tape: &symdiff::Tape| tape.len_where(active);
+    InstructionCounts {
+        sample: count(program.sample()),
+        step_size: count(program.step_size()),
+        step: count(program.step()),
+        factor: count(program.factor()),
+        correct: count(program.correct()),
+        advance: count(program.advance()),
+        observe: count(program.observe()),
+    }
+}
