@@ -1,12 +1,12 @@
 //! mbint: what a mechanism can do when its parameters are only known up to tolerances.
 //!
-//! The data flow, one module a stage: [`syntax`] → `grammar` → `elements` → [`model`] → [`reduce`] → [`assemble`] → [`compile`] → [`simulate`] → [`numerics`] → [`results`] → [`export`]; [`study`] orchestrates.
+//! The data flow, one module a stage: [`syntax`] → `grammar` → [`elements`] → [`model`] → [`reduce`] → [`assemble`] → [`compile`] → [`simulate`] → [`numerics`] → [`results`] → [`export`]; [`study`] orchestrates.
 
 pub mod assemble;
 pub mod cli;
 pub mod compile;
+pub mod elements;
 pub mod export;
-pub(crate) mod elements;
 pub(crate) mod grammar;
 pub mod model;
 pub mod multibody;

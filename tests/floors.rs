@@ -10,6 +10,7 @@ const FLOORS: [&str; 14] = [
     "multibody",
     "elements",
     "numerics",
+    "elements",
     "model",
     "reduce",
     "assemble",

@@ -11,7 +11,8 @@
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{JointCoordinate, JointKind, PointRef};
+use crate::elements::joints::Mobilizer;
+use crate::grammar::{JointCoordinate, PointRef};
 
 use super::body::{ANGLE, Attitude, EULER, Turn};
 use super::error::BuildError;
@@ -70,8 +71,10 @@ fn steady(g: &Builder, p: Quaternion) -> Matrix {
 impl Mechanism<'_> {
     /// Places a body on what carries it, which is placed already.
     pub fn carry(&mut self, g: &Builder, body: usize, carrier: Carrier) -> Result<(), BuildError> {
-        let kind = &self.description.joints[carrier.joint].kind;
-        let freedoms = self.freedoms(g, kind, carrier)?;
+        let description = self.description;
+        // What the tree uses has a mobilizer; without one a body would be welded.
+        let Some(mobilizer) = description.joints[carrier.joint].kind.mobilizer() else { return Ok(()) };
+        let freedoms = self.freedoms(g, &mobilizer, carrier)?;
         let along = |g: &Builder, list: &[Expr], part: fn(&Freedom) -> Expr| {
             let parts: Vec<Expr> = freedoms.iter().map(|freedom| g.mul(part(freedom), list[freedom.index])).collect();
             g.sum(parts)
@@ -83,7 +86,7 @@ impl Mechanism<'_> {
         let displacement = along(g, &self.q, slide);
         let sliding = [along(g, &self.v, slide), along(g, &self.w, slide)];
 
-        let axis = match kind.axis_of(JointCoordinate::Angle).or(kind.axis_of(JointCoordinate::Displacement)) {
+        let axis = match mobilizer.axis() {
             Some(axis) => {
                 let axis = self.vector(g, axis, Context::Parameters)?;
                 space::unit(g, axis)
@@ -91,11 +94,9 @@ impl Mechanism<'_> {
             None => space::along(g, 2),
         };
         // The second frame may stand turned against the first, about its z; the axis is one of the first.
-        let rest = match kind {
-            JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } => {
-                self.formula(g, angle, Context::Parameters)?
-            }
-            _ => g.constant(0.0),
+        let rest = match mobilizer.twist() {
+            Some(angle) => self.formula(g, angle, Context::Parameters)?,
+            None => g.constant(0.0),
         };
         let upright = space::along(g, 2);
         let twist = rotation::about(g, upright, rest);
@@ -139,21 +140,21 @@ impl Mechanism<'_> {
     }
 
     /// The coordinates of a joint that carries; φ and s count from the body that carries.
-    fn freedoms(&mut self, g: &Builder, kind: &JointKind, carrier: Carrier) -> Result<Vec<Freedom>, BuildError> {
+    fn freedoms(&mut self, g: &Builder, mobilizer: &Mobilizer, carrier: Carrier) -> Result<Vec<Freedom>, BuildError> {
         let (zero, one) = (g.constant(0.0), g.constant(if carrier.reversed { -1.0 } else { 1.0 }));
         let mut freedoms = Vec::new();
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
-            let (turn, slide) = match (kind, coordinate) {
-                (JointKind::Screw { pitch, .. }, JointCoordinate::Angle) => {
+            let (turn, slide) = match (mobilizer.pitch(), coordinate) {
+                (Some(pitch), JointCoordinate::Angle) => {
                     let pitch = self.formula(g, pitch, Context::Parameters)?;
                     let advance = g.scale(1.0 / std::f64::consts::TAU, pitch);
                     (one, g.mul(one, advance))
                 }
-                (JointKind::Screw { .. }, JointCoordinate::Displacement) => continue,
-                (_, JointCoordinate::Angle) => (one, zero),
-                (_, JointCoordinate::Displacement) => (zero, one),
+                (Some(_), JointCoordinate::Displacement) => continue,
+                (None, JointCoordinate::Angle) => (one, zero),
+                (None, JointCoordinate::Displacement) => (zero, one),
             };
-            if kind.axis_of(coordinate).is_some() {
+            if mobilizer.axis_of(coordinate).is_some() {
                 let index = self.add_coordinate(g, Owner::Joint(carrier.joint, coordinate));
                 self.joint_coordinates.insert((carrier.joint, coordinate), index);
                 freedoms.push(Freedom { index, turn, slide });

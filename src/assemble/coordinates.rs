@@ -16,7 +16,8 @@ use std::collections::BTreeSet;
 
 use symdiff::{Builder, Expr, Formula};
 
-use crate::model::{Description, JointCoordinate, JointKind, Referent, StartValue, TimeOrder, Turning};
+use crate::grammar::JointCoordinate;
+use crate::model::{Description, Referent, StartValue, TimeOrder};
 
 use super::body::ANGLE;
 use super::error::BuildError;
@@ -38,20 +39,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
         }
     };
     for (index, joint) in description.joints.iter().enumerate() {
-        match &joint.kind {
-            JointKind::Screw { .. } => add(index, JointCoordinate::Angle),
-            JointKind::Motor { joint, coordinate, .. } => add(*joint, *coordinate),
-            JointKind::Gear { between, .. } => between.iter().for_each(|turning| {
-                if let Turning::Joint(joint) = turning {
-                    add(*joint, JointCoordinate::Angle);
-                }
-            }),
-            JointKind::Rack { pinion, rack, .. } => {
-                add(*pinion, JointCoordinate::Angle);
-                add(*rack, JointCoordinate::Displacement);
-            }
-            _ => {}
-        }
+        joint.kind.coordinates(index).into_iter().for_each(|on| add(on.joint, on.coordinate));
     }
     for effect in &description.effects {
         effect.kind.coordinates().into_iter().for_each(|on| add(on.joint, on.coordinate));
@@ -74,12 +62,8 @@ fn formulas(description: &Description) -> Vec<&Formula> {
 
 /// Formulas of constraints and effects.
 pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
-    let mut found: Vec<&Formula> = Vec::new();
-    for joint in &description.joints {
-        if let JointKind::Equation { left, right } = &joint.kind {
-            found.extend([left, right]);
-        }
-    }
+    let equations = description.joints.iter().filter_map(|joint| joint.kind.equation());
+    let mut found: Vec<&Formula> = equations.flatten().collect();
     found.extend(description.effects.iter().flat_map(|effect| effect.kind.formulas()));
     found
 }

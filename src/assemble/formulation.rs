@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Formula};
 
-use crate::model::{JointKind, Referent, StartValue, Turning};
+use crate::model::{JointKind, Reference, Referent, StartValue};
 
 use super::coordinates::formulas_of_motion;
 use super::mechanism::{Context, Mechanism};
@@ -67,12 +67,13 @@ impl Mechanism<'_> {
                 matches!(known, Some(Referent::JointCoordinate { .. } | Referent::Parameter(_) | Referent::Time))
             })
         };
-        let couples = |kind: &JointKind| match kind {
-            JointKind::Equation { left, right } => !(of_joints(left) && of_joints(right)),
-            JointKind::Gear { between, .. } => between.iter().any(|turning| matches!(turning, Turning::Body(_))),
-            _ => false,
+        let acts_on_bodies = |kind: &JointKind| {
+            let of_body = |index: Reference| matches!(index, Reference::Body(_));
+            kind.between().is_none()
+                && (kind.clone().references().into_iter().any(of_body)
+                    || !kind.equation().into_iter().flatten().all(of_joints))
         };
-        let coupling = d.joints.iter().find(|joint| couples(&joint.kind))?;
+        let coupling = d.joints.iter().find(|joint| acts_on_bodies(&joint.kind))?;
         let joint = reaction(d.outputs.iter().map(|output| &output.formula).collect())?;
         Some(format!(
             "an output is the reaction of joint `{joint}`, which carries a body, and what `{}` adds to it is not known",

@@ -5,9 +5,9 @@ use std::fmt;
 
 use symdiff::{Builder, Expr, Formula, Scalar};
 
+use crate::elements::joints::Mobilizer;
 use crate::model::{
-    self, Coordinate, Description, JointCoordinate, JointKind, Measure, ParameterValue, PointRef, Referent, Rotation,
-    TimeOrder,
+    self, Coordinate, Description, JointCoordinate, Measure, ParameterValue, PointRef, Referent, Rotation, TimeOrder,
 };
 
 use super::body::{ANGLE, Body, EULER, FREEDOMS, MaterialPoint, Turn};
@@ -167,7 +167,7 @@ impl<'d> Mechanism<'d> {
             mechanism.parameters.push(expr);
         }
         if carry {
-            mechanism.tree = Tree::spanning(description, |kind| mechanism.is_steady(g, kind));
+            mechanism.tree = Tree::spanning(description, |mobilizer| mechanism.is_time_independent(g, mobilizer));
         }
         for (index, body) in description.bodies.iter().enumerate() {
             let body = mechanism.body(g, index, body)?;
@@ -188,18 +188,9 @@ impl<'d> Mechanism<'d> {
         Ok(mechanism)
     }
 
-    /// Whether nothing of a joint is driven by t.
-    fn is_steady(&self, g: &Builder, kind: &JointKind) -> bool {
-        let mut formulas: Vec<&Formula> = Vec::new();
-        for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
-            formulas.extend(kind.axis_of(coordinate).into_iter().flatten());
-        }
-        match kind {
-            JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } => formulas.push(angle),
-            JointKind::Screw { pitch, .. } => formulas.push(pitch),
-            _ => {}
-        }
-        formulas.into_iter().all(|formula| self.formula(g, formula, Context::Parameters).is_ok())
+    /// Whether a mobilizer does not depend on t.
+    fn is_time_independent(&self, g: &Builder, mobilizer: &Mobilizer) -> bool {
+        mobilizer.formulas().all(|formula| self.formula(g, formula, Context::Parameters).is_ok())
     }
 
     fn body(&mut self, g: &Builder, index: usize, body: &model::Body) -> Result<Body, BuildError> {

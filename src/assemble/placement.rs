@@ -16,7 +16,8 @@ use std::collections::VecDeque;
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{Coordinate, JointCoordinate, JointKind, LineMass, PointRef};
+use crate::elements::joints::{Orientation, Separation};
+use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef};
 
 use super::body;
 use super::error::BuildError;
@@ -62,13 +63,13 @@ impl Link {
 }
 
 /// Poses of all bodies.
-pub struct Placement {
+pub struct PlanarPoses {
     links: Vec<Vec<Link>>,
     given: Vec<[Option<f64>; FREEDOMS]>,
     poses: Vec<Option<[f64; FREEDOMS]>>,
 }
 
-impl Placement {
+impl PlanarPoses {
     /// Places all bodies; `known` are the coordinates with a value at the start.
     pub fn of(g: &Builder, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
         let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
@@ -223,16 +224,13 @@ fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
             let expr = m.formula(g, formula, Context::Time)?;
             Ok(m.nominal(g, &[expr])[0])
         };
-        let (between, kind) = match &joint.kind {
-            JointKind::Revolute { between, .. } => (between, LinkKind::Pin),
-            JointKind::Fixed { between, angle, .. } => (between, LinkKind::Weld(value(angle)?)),
-            JointKind::Prismatic { between, angle, .. } => (between, LinkKind::Slide(value(angle)?)),
-            JointKind::PinInSlot { between, .. }
-            | JointKind::PointOnLine { between, .. }
-            | JointKind::PointOnPlane { between, .. } => (between, LinkKind::Loose(0.0)),
-            JointKind::Distance { between, length } => (between, LinkKind::Loose(value(length)?)),
-            // Couplings say nothing of places, and the others are of space.
-            _ => continue,
+        let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
+        let kind = match (placement.separation, placement.orientation) {
+            (Separation::Coincident, Orientation::Fixed(angle)) => LinkKind::Weld(value(angle)?),
+            (_, Orientation::Fixed(angle)) => LinkKind::Slide(value(angle)?),
+            (Separation::Coincident, _) => LinkKind::Pin,
+            (Separation::Unknown, _) => LinkKind::Loose(0.0),
+            (Separation::Distance(length), _) => LinkKind::Loose(value(length)?),
         };
         let [here, there] = between.map(|point| local(g, m, point));
         let link = Link { here, there, other: between[1].body, kind };

@@ -14,9 +14,10 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Expr, Formula};
 
-use crate::model::{JointCoordinate, JointKind, PointRef};
+use crate::elements::joints::{Orientation, Separation};
+use crate::grammar::{JointCoordinate, PointRef};
 
 use super::body::{ANGLE, Body, EULER, Turn};
 use super::error::BuildError;
@@ -132,7 +133,7 @@ impl<'m, 'd> Poses<'m, 'd> {
         })
     }
 
-    fn direction(&self, g: &Builder, axis: &[symdiff::Formula; 3]) -> Result<Vector3<f64>, BuildError> {
+    fn direction(&self, g: &Builder, axis: &[Formula; 3]) -> Result<Vector3<f64>, BuildError> {
         let axis = self.mechanism.vector(g, axis, Context::Time)?;
         let values = self.mechanism.nominal(g, &axis);
         Ok(Vector3::from_column_slice(&values).normalize())
@@ -145,15 +146,17 @@ impl<'m, 'd> Poses<'m, 'd> {
     fn find_links(&mut self, g: &Builder) -> Result<(), BuildError> {
         let m = self.mechanism;
         for (index, joint) in m.description.joints.iter().enumerate() {
-            let Some(between) = joint.kind.between() else { continue };
-            let kind = match &joint.kind {
-                JointKind::Spherical { .. } => LinkKind::Ball,
-                JointKind::PointOnLine { .. } | JointKind::PointOnPlane { .. } => LinkKind::Loose(0.0),
-                JointKind::Distance { length, .. } => {
-                    let length = m.formula(g, length, Context::Time)?;
-                    LinkKind::Loose(m.nominal(g, &[length])[0])
+            let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
+            let kind = match (placement.orientation, placement.separation) {
+                (Orientation::Free, Separation::Coincident) => LinkKind::Ball,
+                (Orientation::Free, Separation::Unknown) => LinkKind::Loose(0.0),
+                (Orientation::Free, Separation::Distance(length)) => LinkKind::Loose(self.nominal(g, length)?),
+                (Orientation::AboutAxis, _) => LinkKind::Axis(self.across(g, index, UnitQuaternion::identity())?),
+                (Orientation::Fixed(angle), _) => {
+                    let angle = self.nominal(g, angle)?;
+                    let twist = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+                    LinkKind::Axis(self.across(g, index, twist)?)
                 }
-                kind => LinkKind::Axis(self.across(g, index, kind)?),
             };
             let [here, there] = between.map(|point| local(g, m, point));
             let link = Link { here, there, other: between[1].body, kind };
@@ -168,14 +171,15 @@ impl<'m, 'd> Poses<'m, 'd> {
         Ok(())
     }
 
-    /// A joint's second frame against the first, its coordinates zero where they are not known.
-    fn across(&self, g: &Builder, joint: usize, kind: &JointKind) -> Result<Pose, BuildError> {
-        let mut pose = Pose::at(Vector3::zeros(), UnitQuaternion::identity());
-        if let JointKind::Prismatic { angle, .. } | JointKind::Fixed { angle, .. } = kind {
-            let angle = self.mechanism.formula(g, angle, Context::Time)?;
-            let angle = self.mechanism.nominal(g, &[angle])[0];
-            pose.orientation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
-        }
+    fn nominal(&self, g: &Builder, formula: &Formula) -> Result<f64, BuildError> {
+        let value = self.mechanism.formula(g, formula, Context::Time)?;
+        Ok(self.mechanism.nominal(g, &[value])[0])
+    }
+
+    /// A joint's second frame against the first: turned by `twist`, the joint's coordinates zero where they are not known.
+    fn across(&self, g: &Builder, joint: usize, twist: UnitQuaternion<f64>) -> Result<Pose, BuildError> {
+        let kind = &self.mechanism.description.joints[joint].kind;
+        let mut pose = Pose::at(Vector3::zeros(), twist);
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
             let place = self.mechanism.joint_coordinates.get(&(joint, coordinate));
             let value = place.and_then(|&place| self.values[place]);

@@ -21,7 +21,7 @@
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{JointCoordinate, JointKind};
+use crate::grammar::JointCoordinate;
 
 use super::body::{Body, EULER, Turn};
 use super::effects::Loads;
@@ -235,11 +235,12 @@ impl Mechanism<'_> {
             let kind = &self.description.joints[carried.joint].kind;
             let free = |coordinate| kind.axis_of(coordinate).is_some();
             let (slides, turns) = (free(JointCoordinate::Displacement), free(JointCoordinate::Angle));
+            let is_helix = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
             let mut torque = if turns { across(g, torque, axis) } else { torque };
             let mut force = force;
-            match (kind, carried.freedoms.as_slice()) {
+            match carried.freedoms.as_slice() {
                 // A thread pushes along its axis, and turns by as much as does no work with that.
-                (JointKind::Screw { .. }, [freedom]) => {
+                [freedom] if is_helix => {
                     let push = space::dot(g, force, axis);
                     let advance = g.mul(freedom.turn, freedom.slide);
                     let turning = g.mul(advance, push);

@@ -2,12 +2,14 @@
 
 use symdiff::{Builder, Expr, Formula};
 
-use crate::model::{Coordinate, JointCoordinate, JointKind, StartValue, TimeOrder};
+use crate::elements::joints::{Placement, Separation};
+use crate::grammar::JointCoordinate;
+use crate::model::{Coordinate, StartValue, TimeOrder};
 
 use super::body::EULER;
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism, Owner, freedom};
-use super::placement::Placement;
+use super::placement::PlanarPoses;
 use super::pose::Poses;
 use super::rotation;
 use super::system::Start;
@@ -24,7 +26,7 @@ pub struct CarrierAngle<'d> {
 
 impl Mechanism<'_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
-    /// where the joints put the bodies when they are walked from the ground ([`Placement`], [`Poses`]), with the nominal
+    /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the nominal
     /// parameters.
     pub fn start(&self, g: &Builder) -> Result<Start, BuildError> {
         let description = self.description;
@@ -44,7 +46,7 @@ impl Mechanism<'_> {
         if self.is_spatial() {
             return Poses::of(g, self, known)?.coordinates(g);
         }
-        let placement = Placement::of(g, self, known)?;
+        let placement = PlanarPoses::of(g, self, known)?;
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(g, self, joint, coordinate),
@@ -137,7 +139,7 @@ impl Mechanism<'_> {
             lengths.extend(&body.position[..3]);
         }
         for joint in &self.description.joints {
-            if let JointKind::Distance { length, .. } = &joint.kind {
+            if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
                 lengths.push(self.formula(g, length, Context::Time)?);
             }
         }

@@ -6,7 +6,9 @@
 
 use std::collections::VecDeque;
 
-use crate::model::{Description, JointKind, PointRef, StartValue};
+use crate::elements::joints::Mobilizer;
+use crate::grammar::PointRef;
+use crate::model::{Description, StartValue};
 
 /// A joint that carries a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +44,7 @@ impl Tree {
 
     /// As much as can be carried, near the roots first. `steady` says of a joint whether what it is made of stays as it
     /// is.
-    pub fn spanning(description: &Description, mut steady: impl FnMut(&JointKind) -> bool) -> Self {
+    pub fn spanning(description: &Description, mut steady: impl FnMut(&Mobilizer) -> bool) -> Self {
         let bodies = &description.bodies;
         let mut tree = Self {
             carriers: vec![None; bodies.len()],
@@ -53,9 +55,9 @@ impl Tree {
         let (mut joints, mut welds) = (vec![Vec::new(); bodies.len()], vec![Vec::new(); bodies.len()]);
         for (index, joint) in description.joints.iter().enumerate() {
             let Some([first, second]) = joint.kind.between() else { continue };
-            let list = match &joint.kind {
-                kind if merges(kind) => &mut welds,
-                kind if carries(kind) && steady(kind) => &mut joints,
+            let list = match joint.kind.mobilizer() {
+                Some(_) if joint.merged => &mut welds,
+                Some(mobilizer) if steady(&mobilizer) => &mut joints,
                 _ => continue,
             };
             list[first.body].push(Carrier { joint: index, parent: first, child: second, reversed: false });
@@ -155,21 +157,4 @@ fn named_at_start(description: &Description) -> Vec<usize> {
         StartValue::Joint { .. } => None,
     };
     description.initial.iter().chain(&description.guess).filter_map(body).collect()
-}
-
-/// Whether a joint makes its bodies one.
-fn merges(kind: &JointKind) -> bool {
-    matches!(kind, JointKind::Fixed { merged: true, .. })
-}
-
-/// Whether a joint's freedoms are angles about and displacements along an axis.
-fn carries(kind: &JointKind) -> bool {
-    matches!(
-        kind,
-        JointKind::Revolute { .. }
-            | JointKind::Prismatic { .. }
-            | JointKind::Fixed { .. }
-            | JointKind::Cylindrical { .. }
-            | JointKind::Screw { .. }
-    )
 }

@@ -5,10 +5,10 @@ use crate::grammar::{Coordinate, PointRef};
 use symdiff::{Binary, Formula};
 
 use super::description::{Description, Effect};
+use super::file;
 use crate::elements::effects::Beam;
 use crate::elements::effects::beam::Flexible;
 use crate::grammar::Direction;
-use super::file;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::model::names::Reader;

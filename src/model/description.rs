@@ -3,8 +3,8 @@
 use symdiff::Formula;
 
 use super::bounds_request::BoundsRequest;
+use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
-use super::kinds::JointKind;
 use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
@@ -235,6 +235,15 @@ pub struct Joint {
     pub name: String,
     /// What it constrains.
     pub kind: JointKind,
+    /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
+    pub merged: bool,
+}
+
+impl Joint {
+    /// A joint whose bodies move as two.
+    pub fn new(name: String, kind: JointKind) -> Self {
+        Self { name, kind, merged: false }
+    }
 }
 
 /// A named effect.

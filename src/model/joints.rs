@@ -5,7 +5,7 @@ use symdiff::Formula;
 
 use super::description::Joint;
 use super::file;
-use super::kinds::JointKind;
+use crate::elements::joints::*;
 use crate::grammar::mapping::Grammar;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
@@ -18,8 +18,8 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name(entry, "a joint");
         // The kind is put in its place by `read`.
-        let kind = JointKind::Equation { left: Formula::number(0.0), right: Formula::number(0.0) };
-        reader.model.joints.push(Joint { name: entry.key.clone(), kind });
+        let kind = Equation { left: Formula::number(0.0), right: Formula::number(0.0) };
+        reader.model.joints.push(Joint::new(entry.key.clone(), kind.into()));
     }
 }
 
@@ -91,22 +91,22 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
         "revolute" => {
             let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
-            Some(JointKind::Revolute { between: between?, axis: axis? })
+            Some(Revolute { between: between?, axis: axis? }.into())
         }
         "cylindrical" => {
             let details = Details::read_short::<file::AboutAxis>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
-            Some(JointKind::Cylindrical { between: between?, axis: axis? })
+            Some(Cylindrical { between: between?, axis: axis? }.into())
         }
         "screw" => {
             let details = Details::read::<file::Screw>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis_or_z(reader, &details, "axis"));
             let pitch = pitch(reader, &details);
-            Some(JointKind::Screw { between: between?, axis: axis?, pitch: pitch? })
+            Some(Screw { between: between?, axis: axis?, pitch: pitch? }.into())
         }
         "spherical" => {
             let details = Details::read_short::<file::Between>(reader, kind)?;
-            Some(JointKind::Spherical { between: points(reader, &details)? })
+            Some(Spherical { between: points(reader, &details)? }.into())
         }
         "universal" => {
             let details = Details::read_short::<file::Universal>(reader, kind)?;
@@ -118,38 +118,38 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
                 None => Some([Some(along(0)), Some(along(1))]),
             };
             let [first, second] = axes?;
-            Some(JointKind::Universal { between: between?, axes: [first?, second?] })
+            Some(Universal { between: between?, axes: [first?, second?] }.into())
         }
         "planar" => {
             let details = Details::read_short::<file::InPlane>(reader, kind)?;
             let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
-            Some(JointKind::Planar { between: between?, normal: normal? })
+            Some(Planar { between: between?, normal: normal? }.into())
         }
         "point_on_plane" => {
             let details = Details::read_short::<file::InPlane>(reader, kind)?;
             let (between, normal) = (points(reader, &details), axis_or_z(reader, &details, "normal"));
-            Some(JointKind::PointOnPlane { between: between?, normal: normal? })
+            Some(PointOnPlane { between: between?, normal: normal? }.into())
         }
         "point_on_line" => {
             let details = Details::read::<file::PinInSlot>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis(reader, &details));
-            Some(JointKind::PointOnLine { between: between?, axis: axis? })
+            Some(PointOnLine { between: between?, axis: axis? }.into())
         }
         "prismatic" => {
             let details = Details::read::<file::Prismatic>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis(reader, &details));
             let angle = number(reader, &details, "angle", Dimension::ANGLE);
-            Some(JointKind::Prismatic { between: between?, axis: axis?, angle: angle? })
+            Some(Prismatic { between: between?, axis: axis?, angle: angle? }.into())
         }
         "fixed" => {
             let details = Details::read_short::<file::Fixed>(reader, kind)?;
             let (between, angle) = (points(reader, &details), number(reader, &details, "angle", Dimension::ANGLE));
-            Some(JointKind::Fixed { between: between?, angle: angle?, merged: false })
+            Some(Fixed { between: between?, angle: angle? }.into())
         }
         "pin_in_slot" => {
             let details = Details::read::<file::PinInSlot>(reader, kind)?;
             let (between, axis) = (points(reader, &details), axis(reader, &details));
-            Some(JointKind::PinInSlot { between: between?, axis: axis? })
+            Some(PinInSlot { between: between?, axis: axis? }.into())
         }
         "distance" => {
             let details = Details::read::<file::Distance>(reader, kind)?;
@@ -158,14 +158,14 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
                 let positive = |value| value > 0.0;
                 reader.formula_that(node, Context::Constant, Dimension::LENGTH, positive, "must be positive")
             });
-            Some(JointKind::Distance { between: between?, length: length? })
+            Some(Distance { between: between?, length: length? }.into())
         }
         "gear" => {
             let details = Details::read::<file::Gear>(reader, kind)?;
             let between = details.between(reader).and_then(|node| reader.turning(node));
             let ratio = ratio(reader, &details, "ratio", Dimension::NUMBER);
             let offset = number(reader, &details, "offset", Dimension::ANGLE);
-            Some(JointKind::Gear { between: between?, ratio: ratio?, offset: offset? })
+            Some(Gear { between: between?, ratio: ratio?, offset: offset? }.into())
         }
         "rack" => {
             let details = Details::read::<file::Rack>(reader, kind)?;
@@ -177,7 +177,7 @@ fn joint(reader: &mut Reader, entry: &Entry) -> Option<JointKind> {
             let rack = joint("rack", JointCoordinate::Displacement);
             let radius = ratio(reader, &details, "radius", Dimension::LENGTH);
             let offset = number(reader, &details, "offset", Dimension::LENGTH);
-            Some(JointKind::Rack { pinion: pinion?, rack: rack?, radius: radius?, offset: offset? })
+            Some(Rack { pinion: pinion?, rack: rack?, radius: radius?, offset: offset? }.into())
         }
         "motor" => super::motors::read(reader, &kind.value, kind.key_span.clone()),
         // `only` lets through the kinds of the grammar; this is the last.
@@ -268,5 +268,5 @@ fn equation(reader: &mut Reader, node: &Node) -> Option<JointKind> {
     if !moves {
         reader.error(node.span.clone(), "the equation constrains nothing: no coordinate stands in it", None);
     }
-    Some(JointKind::Equation { left, right })
+    Some(Equation { left, right }.into())
 }

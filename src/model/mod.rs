@@ -5,7 +5,6 @@
 
 mod bounds_request;
 mod description;
-mod kinds;
 mod names;
 mod references;
 
@@ -28,14 +27,14 @@ mod tables;
 mod tests;
 mod urdf;
 
+pub use crate::elements::JointKind;
+pub use crate::elements::effects::*;
 pub use crate::grammar::{
-    Coordinate, EnergyKind, FrictionMode, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
-    Rotation, TimeOrder, Turning,
+    Coordinate, EnergyKind, FrictionMode, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference,
+    Referent, Rotation, TimeOrder, Turning,
 };
 pub use bounds_request::*;
 pub use description::*;
-pub use crate::elements::effects::*;
 pub use file::schema;
-pub use kinds::*;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use symdiff::{Builder, Formula};
 
 use super::file;
-use super::kinds::{JointKind, Prescribed, Profile};
+use crate::elements::joints::{JointKind, Motor, Prescribed, Profile};
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
@@ -28,7 +28,7 @@ pub fn read(reader: &mut Reader, node: &Node, at: Span) -> Option<JointKind> {
         crate::grammar::motions::dimensions_of(on.map_or(JointCoordinate::Angle, |on| on.coordinate));
     let motion = prescribed(reader, &fields, place, speed);
     let on = on?;
-    Some(JointKind::Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? })
+    Some(Motor { joint: on.joint, coordinate: on.coordinate, motion: motion? }.into())
 }
 
 fn prescribed(reader: &mut Reader, fields: &Fields, place: Dimension, speed: Dimension) -> Option<Prescribed> {

@@ -3,7 +3,7 @@
 use symdiff::Formula;
 
 use super::description::Description;
-use super::kinds::JointKind;
+use crate::elements::joints::Mobilizer;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{self, FrictionMode, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
 
@@ -71,18 +71,16 @@ impl SymbolTable for Description {
     }
 
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {
-        match self.joints[joint].kind {
-            JointKind::Revolute { .. } => Some(FrictionMode::Turning),
-            JointKind::Prismatic { .. } => Some(FrictionMode::Sliding),
-            JointKind::Cylindrical { .. } => Some(FrictionMode::Both),
+        match self.joints[joint].kind.mobilizer()? {
+            Mobilizer::Rotation { .. } => Some(FrictionMode::Turning),
+            Mobilizer::Translation { .. } => Some(FrictionMode::Sliding),
+            Mobilizer::RotationAndTranslation { .. } => Some(FrictionMode::Both),
             _ => None,
         }
     }
 
     fn equated(&self, joint: usize) -> Option<&Formula> {
-        match &self.joints[joint].kind {
-            JointKind::Equation { left, .. } => Some(left),
-            _ => None,
-        }
+        let [left, _] = self.joints[joint].kind.equation()?;
+        Some(left)
     }
 }

@@ -3,16 +3,16 @@
 use symdiff::Formula;
 
 use super::description::{Body, StartValue};
-use super::kinds::JointKind;
+use crate::elements::joints::*;
 use crate::grammar::{PointRef, Reference, Rotation, Turning};
 
 fn points(between: &mut [PointRef; 2]) -> Vec<Reference<'_>> {
     between.iter_mut().map(Reference::Point).collect()
 }
 
-fn turnings(between: &mut [Turning; 2]) -> Vec<Reference<'_>> {
-    fn one(turning: &mut Turning) -> Reference<'_> {
-        match turning {
+fn angles(between: &mut [Turning; 2]) -> Vec<Reference<'_>> {
+    fn one(angle_of: &mut Turning) -> Reference<'_> {
+        match angle_of {
             Turning::Body(body) => Reference::Body(body),
             Turning::Joint(joint) => Reference::Joint(joint),
         }
@@ -24,43 +24,45 @@ impl JointKind {
     /// Every index in it; what its formulas name is not among them.
     pub fn references(&mut self) -> Vec<Reference<'_>> {
         match self {
-            Self::Revolute { between, .. }
-            | Self::Prismatic { between, .. }
-            | Self::Fixed { between, .. }
-            | Self::PinInSlot { between, .. }
-            | Self::Cylindrical { between, .. }
-            | Self::Screw { between, .. }
-            | Self::Spherical { between }
-            | Self::Universal { between, .. }
-            | Self::Planar { between, .. }
-            | Self::PointOnLine { between, .. }
-            | Self::PointOnPlane { between, .. }
-            | Self::Distance { between, .. } => points(between),
-            Self::Gear { between, .. } => turnings(between),
-            Self::Rack { pinion, rack, .. } => vec![Reference::Joint(pinion), Reference::Joint(rack)],
-            Self::Motor { joint, .. } => vec![Reference::Joint(joint)],
-            Self::Equation { .. } => Vec::new(),
+            Self::Revolute(Revolute { between, .. })
+            | Self::Prismatic(Prismatic { between, .. })
+            | Self::Fixed(Fixed { between, .. })
+            | Self::PinInSlot(PinInSlot { between, .. })
+            | Self::Cylindrical(Cylindrical { between, .. })
+            | Self::Screw(Screw { between, .. })
+            | Self::Spherical(Spherical { between, .. })
+            | Self::Universal(Universal { between, .. })
+            | Self::Planar(Planar { between, .. })
+            | Self::PointOnLine(PointOnLine { between, .. })
+            | Self::PointOnPlane(PointOnPlane { between, .. })
+            | Self::Distance(Distance { between, .. }) => points(between),
+            Self::Gear(Gear { between, .. }) => angles(between),
+            Self::Rack(Rack { pinion, rack, .. }) => vec![Reference::Joint(pinion), Reference::Joint(rack)],
+            Self::Motor(Motor { joint, .. }) => vec![Reference::Joint(joint)],
+            Self::Equation(_) => Vec::new(),
         }
     }
 
     /// Every formula in it.
     pub fn formulas(&self) -> Vec<&Formula> {
         match self {
-            Self::Revolute { axis, .. }
-            | Self::PinInSlot { axis, .. }
-            | Self::Cylindrical { axis, .. }
-            | Self::Planar { normal: axis, .. }
-            | Self::PointOnLine { axis, .. }
-            | Self::PointOnPlane { normal: axis, .. } => axis.iter().collect(),
-            Self::Prismatic { axis, angle: number, .. } | Self::Screw { axis, pitch: number, .. } => {
+            Self::Revolute(Revolute { axis, .. })
+            | Self::PinInSlot(PinInSlot { axis, .. })
+            | Self::Cylindrical(Cylindrical { axis, .. })
+            | Self::Planar(Planar { normal: axis, .. })
+            | Self::PointOnLine(PointOnLine { axis, .. })
+            | Self::PointOnPlane(PointOnPlane { normal: axis, .. }) => axis.iter().collect(),
+            Self::Prismatic(Prismatic { axis, angle: number, .. }) | Self::Screw(Screw { axis, pitch: number, .. }) => {
                 axis.iter().chain([number]).collect()
             }
-            Self::Fixed { angle: number, .. } | Self::Distance { length: number, .. } => vec![number],
-            Self::Spherical { .. } => Vec::new(),
-            Self::Universal { axes, .. } => axes.iter().flatten().collect(),
-            Self::Gear { ratio, offset, .. } | Self::Rack { radius: ratio, offset, .. } => vec![ratio, offset],
-            Self::Motor { motion, .. } => motion.formulas(),
-            Self::Equation { left, right } => vec![left, right],
+            Self::Fixed(Fixed { angle: number, .. }) | Self::Distance(Distance { length: number, .. }) => vec![number],
+            Self::Spherical(_) => Vec::new(),
+            Self::Universal(Universal { axes, .. }) => axes.iter().flatten().collect(),
+            Self::Gear(Gear { ratio, offset, .. }) | Self::Rack(Rack { radius: ratio, offset, .. }) => {
+                vec![ratio, offset]
+            }
+            Self::Motor(Motor { motion, .. }) => motion.formulas(),
+            Self::Equation(Equation { left, right }) => vec![left, right],
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The whole way from text to description.
 
 use super::*;
+use crate::elements::joints::*;
 use crate::grammar::Direction;
 use symdiff::Formula;
 
@@ -50,9 +51,11 @@ fn the_slider_crank_is_what_its_file_says() {
     assert!(model.bodies[0].coordinates.is_empty());
     assert_eq!(model.bodies[1].coordinates, [Coordinate::X, Coordinate::Y, Coordinate::Angle]);
     assert_eq!(model.bodies[3].coordinates, [Coordinate::X]);
-    let JointKind::Revolute { between, .. } = &model.joints[2].kind else { panic!("revolute") };
+    let JointKind::Revolute(Revolute { between, .. }) = &model.joints[2].kind else { panic!("revolute") };
     assert_eq!(*between, [PointRef { body: 2, point: Some(1) }, PointRef { body: 3, point: None }]);
-    let EffectKind::SpringDamper(SpringDamper { along: Some(Direction([x, y, _])), free_length, .. }) = &model.effects[1].kind else {
+    let EffectKind::SpringDamper(SpringDamper { along: Some(Direction([x, y, _])), free_length, .. }) =
+        &model.effects[1].kind
+    else {
         panic!("a spring along x")
     };
     assert_eq!((x.as_number(), y.as_number()), (Some(1.0), Some(0.0)));
@@ -174,9 +177,9 @@ guess: { bar.y: 2 }"#,
         .replace("bodies:\n", "bodies:\n  ground: { points: { O: [0, 1] } }\n  arm: { inertia: 1, coordinates: [angle], held: { x: 1 } }\n");
     let model = good(&text);
     assert_eq!((model.joints.len(), model.effects.len()), (8, 6));
-    let JointKind::Equation { left, right } = &model.joints[7].kind else { panic!("an equation") };
+    let JointKind::Equation(Equation { left, right }) = &model.joints[7].kind else { panic!("an equation") };
     assert_eq!((left, right.terms().len()), (&Formula::parse("bar.angle ").unwrap(), 8));
-    let JointKind::Prismatic { angle, .. } = &model.joints[1].kind else { panic!("prismatic") };
+    let JointKind::Prismatic(Prismatic { angle, .. }) = &model.joints[1].kind else { panic!("prismatic") };
     assert!((angle.as_number().unwrap() - std::f64::consts::PI / 6.0).abs() < 1e-15);
     assert_eq!(model.bodies[0].points[0].name, "O");
     assert!(model.bodies[1].mass.is_none());

@@ -125,7 +125,7 @@ mod tests {
         let second = a * a / 8.0;
         let both = b * b * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
         let variance = first + second + both;
-        let found = shares(&SparseGrid::tensor(&[32, 32, 4]), f).unwrap();
+        let found = indices(&SparseGrid::tensor(&[32, 32, 4]), f).unwrap();
         let expected = [(first, first + both), (second, second), (0.0, both)];
         for ((main, total), expected) in found.main.iter().zip(&found.total).zip(expected) {
             assert!((main - expected.0 / variance).abs() < 1e-9 && (total - expected.1 / variance).abs() < 1e-9);
@@ -155,7 +155,7 @@ mod tests {
         fn sums_have_no_interactions(weights in prop::collection::vec(0.1..1.0_f64, 4)) {
             // The variance of w ξ² is 4w²/45, that of w ξ is w²/3.
             let f = |xi: &[f64]| weights[0] * xi[0] + weights[1] * xi[1] + weights[2] * xi[2] * xi[2] + weights[3] * xi[3] * xi[3];
-            let found = shares(&SparseGrid::tensor(&[2, 2, 2, 2]), f).unwrap();
+            let found = indices(&SparseGrid::tensor(&[2, 2, 2, 2]), f).unwrap();
             let parts: Vec<f64> = weights.iter().zip([3.0, 3.0, 11.25, 11.25]).map(|(w, by)| w * w / by).collect();
             let variance: f64 = parts.iter().sum();
             for ((main, total), part) in found.main.iter().zip(&found.total).zip(&parts) {

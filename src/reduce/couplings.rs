@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, Effect, Joint, JointKind, Reference, Referent, Scope};
+use crate::model::{Description, Effect, Joint, Reference, Referent, Scope};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -195,7 +195,7 @@ impl Couplings {
 fn still(description: &Description) -> Vec<Option<usize>> {
     let mut welds = vec![Vec::new(); description.bodies.len()];
     for (index, joint) in description.joints.iter().enumerate() {
-        if let JointKind::Fixed { between: [a, b], merged: true, .. } = joint.kind {
+        if let (true, Some([a, b])) = (joint.merged, joint.kind.between()) {
             welds[a.body].push((index, b.body));
             welds[b.body].push((index, a.body));
         }

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, JointKind, LineMass, Referent, StartValue};
+use crate::model::{Description, LineMass, Referent, StartValue};
 
 /// A fixed joint, and why its bodies stay two; or that they became one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub fn merge(description: &mut Description) -> Vec<Weld> {
         held.iter().zip(named(description, &description.initial)).map(|(held, named)| *held || named).collect();
     let mut welds = Vec::new();
     for (joint, (known, &observed)) in description.joints.iter().zip(&observed).enumerate() {
-        let JointKind::Fixed { between, angle, .. } = &known.kind else { continue };
+        let (Some(angle), Some(between)) = (known.kind.weld(), known.kind.between()) else { continue };
         let bends = between.iter().any(|point| nodes[point.body]);
         let [a, b] = between.map(|point| sets.of(point.body));
         let obstacle = if observed {
@@ -50,9 +50,7 @@ pub fn merge(description: &mut Description) -> Vec<Weld> {
     }
     keep_guesses(description, &mut sets, &mut welds);
     for weld in &welds {
-        if let JointKind::Fixed { merged, .. } = &mut description.joints[weld.joint].kind {
-            *merged = weld.obstacle.is_none();
-        }
+        description.joints[weld.joint].merged = weld.obstacle.is_none();
     }
     welds
 }

@@ -4,7 +4,7 @@ use symdiff::{Formula, Input, lower};
 
 use super::formulation::{as_chosen, compiled, instructions};
 use super::subsystems::{Prepared, prepare};
-use crate::model::{ChebyshevRequest, Degree, Description, JointKind, Output, ParameterValue, ScanRequest};
+use crate::model::{ChebyshevRequest, Degree, Description, Output, ParameterValue, ScanRequest};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};
 
@@ -215,9 +215,7 @@ fn unasked(prepared: &[Prepared]) -> Option<Decision> {
         let reactions = description
             .joints
             .iter()
-            .filter(|joint| {
-                joint.kind.between().is_some() && !matches!(joint.kind, JointKind::Fixed { merged: true, .. })
-            })
+            .filter(|joint| joint.kind.between().is_some() && !joint.merged)
             .flat_map(|joint| [format!("{}.force", joint.name), format!("{}.torque", joint.name)]);
         let measures = description.effects.iter().flat_map(|effect| {
             effect.kind.measures().into_iter().map(|(measure, _)| format!("{}.{}", effect.name, measure.name()))

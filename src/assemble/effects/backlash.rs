@@ -16,8 +16,8 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder, Turning};
 
-use super::positive_part::PositivePart;
 use super::Loads;
+use super::positive_part::PositivePart;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
     let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);
@@ -25,7 +25,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
     let (play, corner) = (number(g, &gear.backlash)?, number(g, &gear.transition)?);
     let (stiffness, damping) = (number(g, &gear.stiffness)?, number(g, &gear.damping)?);
     let between = |order: TimeOrder| {
-        let [first, second] = gear.between.map(|turning| turned(g, m, turning, order));
+        let [first, second] = gear.between.map(|angle_of| turned(g, m, angle_of, order));
         let wanted = g.mul(ratio, first);
         g.sub(second, wanted)
     };
@@ -60,8 +60,8 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
 }
 
 /// An angle, or its rate.
-fn turned(g: &Builder, m: &Mechanism, turning: Turning, order: TimeOrder) -> Expr {
-    match turning {
+fn turned(g: &Builder, m: &Mechanism, angle_of: Turning, order: TimeOrder) -> Expr {
+    match angle_of {
         Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
         Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
     }

@@ -15,8 +15,8 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
 use crate::model::{Cable, Measure};
 
-use super::positive_part::{PositivePart, clipped};
 use super::Loads;
+use super::positive_part::{PositivePart, clipped};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Result<(), BuildError> {
     let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);

@@ -22,9 +22,9 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
 use crate::model::{Contact, Measure, PointRef};
 
+use super::Loads;
 use super::dry_friction::DryFriction;
 use super::impact::Impact;
-use super::Loads;
 
 /// ε over R − r.
 const CENTRED: f64 = 1e-4;
@@ -70,7 +70,11 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, contact: &Contact) -
         (None, None, None) => return Ok(()),
     };
     let impact = Impact::of(g, m, &contact.impact)?;
-    let friction = contact.friction.as_ref().map(|friction| DryFriction::of(g, m, &friction.coefficient, &friction.speed)).transpose()?;
+    let friction = contact
+        .friction
+        .as_ref()
+        .map(|friction| DryFriction::of(g, m, &friction.coefficient, &friction.speed))
+        .transpose()?;
     Touch { between: contact.between, shape, radius, axis, impact, friction }.apply(g, m, loads);
     Ok(())
 }

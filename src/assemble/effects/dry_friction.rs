@@ -26,12 +26,7 @@ pub struct DryFriction {
 }
 
 impl DryFriction {
-    pub fn of(
-        g: &Builder,
-        m: &Mechanism,
-        coefficient: &Formula,
-        law: &model::DryFriction,
-    ) -> Result<Self, BuildError> {
+    pub fn of(g: &Builder, m: &Mechanism, coefficient: &Formula, law: &model::DryFriction) -> Result<Self, BuildError> {
         let stribeck = law.stribeck_velocity.as_ref().map(|speed| m.formula(g, speed, Context::Motion)).transpose()?;
         Ok(Self {
             coefficient: m.formula(g, coefficient, Context::Motion)?,

@@ -18,10 +18,10 @@ use crate::assemble::error::BuildError;
 use crate::assemble::joints;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
-use crate::model::{JointCoordinate, JointFriction, Measure, FrictionMode};
+use crate::model::{FrictionMode, JointCoordinate, JointFriction, Measure};
 
-use super::dry_friction::DryFriction;
 use super::Loads;
+use super::dry_friction::DryFriction;
 
 /// ε, N
 const NO_LOAD: f64 = 1e-6;

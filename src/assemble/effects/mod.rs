@@ -67,7 +67,8 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -
         EffectKind::Bushing(bushing) => {
             let full = [&bushing.stiffness_matrix, &bushing.damping_matrix];
             let [full_stiffness, full_damping] = full.map(|matrix| matrix.as_ref().map(|matrix| &*matrix.0));
-            let stiffness = bushing::Law::new(g, m, [&bushing.stiffness, &bushing.torsional_stiffness], full_stiffness)?;
+            let stiffness =
+                bushing::Law::new(g, m, [&bushing.stiffness, &bushing.torsional_stiffness], full_stiffness)?;
             let damping = bushing::Law::new(g, m, [&bushing.damping, &bushing.torsional_damping], full_damping)?;
             bushing::apply(g, m, loads, bushing.between, &stiffness, &damping)
         }

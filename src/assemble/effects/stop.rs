@@ -12,8 +12,8 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Measure, Stop, TimeOrder};
 
-use super::impact::Impact;
 use super::Loads;
+use super::impact::Impact;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Result<(), BuildError> {
     let on = stop.on;

@@ -61,22 +61,22 @@ pub struct Reaction {
 /// A joint's rows.
 pub fn rows(g: &Builder, m: &Mechanism, joint: usize) -> Result<Vec<Row>, BuildError> {
     match &m.description.joints[joint].kind {
-        JointKind::Revolute { between, axis } => revolute::rows(g, m, *between, axis),
-        JointKind::Prismatic { between, axis, angle } => prismatic::rows(g, m, *between, axis, angle),
-        JointKind::Fixed { between, angle, .. } => fixed::rows(g, m, *between, angle),
-        JointKind::PinInSlot { between, axis } => pin_in_slot::rows(g, m, *between, axis),
-        JointKind::Cylindrical { between, axis } => cylindrical::rows(g, m, *between, axis),
-        JointKind::Screw { between, axis, pitch } => screw::rows(g, m, joint, *between, axis, pitch),
-        JointKind::Spherical { between } => Ok(spherical::rows(g, m, *between)),
-        JointKind::Universal { between, axes } => universal::rows(g, m, *between, axes),
-        JointKind::Planar { between, normal } => planar::rows(g, m, *between, normal),
-        JointKind::PointOnLine { between, axis } => point_on_line::rows(g, m, *between, axis),
-        JointKind::PointOnPlane { between, normal } => point_on_plane::rows(g, m, *between, normal),
-        JointKind::Distance { between, length } => distance::rows(g, m, *between, length),
-        JointKind::Gear { between, ratio, offset } => gear::rows(g, m, *between, ratio, offset),
-        JointKind::Rack { pinion, rack, radius, offset } => rack::rows(g, m, [*pinion, *rack], radius, offset),
-        JointKind::Motor { joint, coordinate, motion } => motor::rows(g, m, *joint, *coordinate, motion),
-        JointKind::Equation { left, right } => equation::rows(g, m, left, right),
+        JointKind::Revolute(it) => revolute::rows(g, m, it.between, &it.axis),
+        JointKind::Prismatic(it) => prismatic::rows(g, m, it.between, &it.axis, &it.angle),
+        JointKind::Fixed(it) => fixed::rows(g, m, it.between, &it.angle),
+        JointKind::PinInSlot(it) => pin_in_slot::rows(g, m, it.between, &it.axis),
+        JointKind::Cylindrical(it) => cylindrical::rows(g, m, it.between, &it.axis),
+        JointKind::Screw(it) => screw::rows(g, m, joint, it.between, &it.axis, &it.pitch),
+        JointKind::Spherical(it) => Ok(spherical::rows(g, m, it.between)),
+        JointKind::Universal(it) => universal::rows(g, m, it.between, &it.axes),
+        JointKind::Planar(it) => planar::rows(g, m, it.between, &it.normal),
+        JointKind::PointOnLine(it) => point_on_line::rows(g, m, it.between, &it.axis),
+        JointKind::PointOnPlane(it) => point_on_plane::rows(g, m, it.between, &it.normal),
+        JointKind::Distance(it) => distance::rows(g, m, it.between, &it.length),
+        JointKind::Gear(it) => gear::rows(g, m, it.between, &it.ratio, &it.offset),
+        JointKind::Rack(it) => rack::rows(g, m, [it.pinion, it.rack], &it.radius, &it.offset),
+        JointKind::Motor(it) => motor::rows(g, m, it.joint, it.coordinate, &it.motion),
+        JointKind::Equation(it) => equation::rows(g, m, &it.left, &it.right),
     }
 }
 
@@ -115,8 +115,8 @@ pub fn reaction(g: &Builder, kind: &JointKind, kept: &[(Row, Expr)]) -> Reaction
             along.push(*lambda);
         }
     }
-    let magnitude = match (kind, kept, along.as_slice()) {
-        (JointKind::Equation { .. }, [(_, lambda)], _) => *lambda,
+    let magnitude = match (kind.equation(), kept, along.as_slice()) {
+        (Some(_), [(_, lambda)], _) => *lambda,
         // One unit vector: no root is needed, which would have no derivative where the force vanishes.
         (_, _, [lambda]) => g.unary(symdiff::Unary::Abs, *lambda),
         _ => space::norm(g, force),

@@ -25,7 +25,9 @@ use symdiff::{Binary, Builder, Expr};
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
-use crate::model::{JointCoordinate, Prescribed, Profile, TimeOrder};
+use crate::elements::joints::{Prescribed, Profile};
+use crate::grammar::JointCoordinate;
+use crate::model::TimeOrder;
 
 use super::{Row, axis_in_ground};
 

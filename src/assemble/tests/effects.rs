@@ -5,8 +5,8 @@ use crate::model::bushing::SixBySix;
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{
-    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Force, Friction, Impact, Preload, RestitutionLaw,
-    SpringDamper, Torque, TorsionalSpringDamper, Turning,
+    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Force, Friction, Impact, Preload,
+    RestitutionLaw, SpringDamper, Torque, TorsionalSpringDamper, Turning,
 };
 
 use super::model::{Model, formula, pair, vector};

@@ -1,4 +1,5 @@
 use crate::assemble::{self, System};
+use crate::elements::joints::*;
 use crate::model::{JointKind, Turning};
 
 use super::model::{Model, formula, pair, vector};
@@ -22,12 +23,16 @@ fn value(system: &System, state: &State, name: &str) -> f64 {
 fn kinds(m: &Model) -> Vec<JointKind> {
     let between = m.between("a.P", "b.P");
     vec![
-        JointKind::Revolute { between, axis: vector(["0", "0", "1"]) },
-        JointKind::Prismatic { between, axis: pair("1", "2"), angle: formula("0.3") },
-        JointKind::Fixed { between, angle: formula("0.3"), merged: false },
-        JointKind::PinInSlot { between, axis: pair("1", "2") },
-        JointKind::Distance { between, length: formula("d") },
-        JointKind::Gear { between: [Turning::Body(1), Turning::Body(2)], ratio: formula("-2"), offset: formula("0.1") },
+        JointKind::Revolute(Revolute { between, axis: vector(["0", "0", "1"]) }),
+        JointKind::Prismatic(Prismatic { between, axis: pair("1", "2"), angle: formula("0.3") }),
+        JointKind::Fixed(Fixed { between, angle: formula("0.3") }),
+        JointKind::PinInSlot(PinInSlot { between, axis: pair("1", "2") }),
+        JointKind::Distance(Distance { between, length: formula("d") }),
+        JointKind::Gear(Gear {
+            between: [Turning::Body(1), Turning::Body(2)],
+            ratio: formula("-2"),
+            offset: formula("0.1"),
+        }),
     ]
 }
 
@@ -40,7 +45,7 @@ fn reactions_are_what_the_multipliers_do() {
         m.joint("j", kind.clone());
         let mut system = m.build();
         let mut state = State::random(&system, 7);
-        if let JointKind::Revolute { .. } | JointKind::Fixed { .. } = kind {
+        if let JointKind::Revolute(_) | JointKind::Fixed(_) = kind {
             // Points coincide, so that action and reaction do.
             let gap = state.values(&system.graph, &system.constraint[..2]);
             for (place, gap) in system.q[3..5].iter().zip(gap) {
@@ -53,7 +58,7 @@ fn reactions_are_what_the_multipliers_do() {
         let arm = ["b.P.x - b.x", "b.P.y - b.y"].map(|name| value(&system, &state, name));
         assert_all_close(&pull[3..5], &force, 1e-13);
         assert_close(pull[5], torque + arm[0] * force[1] - arm[1] * force[0], 1e-13);
-        if let JointKind::Gear { .. } = kind {
+        if let JointKind::Gear(_) = kind {
             assert_all_close(&pull[..3], &[0.0, 0.0, 2.0 * torque], 1e-13);
             continue;
         }
@@ -61,7 +66,7 @@ fn reactions_are_what_the_multipliers_do() {
         let q = state.list(&system.q);
         let about_ground = |body: usize| pull[body + 2] + q[body] * pull[body + 1] - q[body + 1] * pull[body];
         assert_close(about_ground(0) + about_ground(3), 0.0, 1e-13);
-        if !matches!(kind, JointKind::Distance { .. }) {
+        if !matches!(kind, JointKind::Distance(_)) {
             assert_close(value(&system, &state, "j.force"), force[0].hypot(force[1]), 1e-13);
         }
     }
@@ -80,11 +85,11 @@ fn rows_vanish_where_the_joint_is_closed() {
         m.joint("j", kind.clone());
         let system = m.build();
         let (gap, angle) = match kind {
-            JointKind::Revolute { .. } => ([0.0, 0.0], 1.3),
-            JointKind::Fixed { .. } => ([0.0, 0.0], second),
-            JointKind::Prismatic { .. } => (slide.map(|s| -0.6 * s), second),
-            JointKind::PinInSlot { .. } => (slide.map(|s| 0.6 * s), -1.1),
-            JointKind::Distance { .. } => ([0.8 * 0.6, -0.8 * 0.8], 2.0),
+            JointKind::Revolute(_) => ([0.0, 0.0], 1.3),
+            JointKind::Fixed(_) => ([0.0, 0.0], second),
+            JointKind::Prismatic(_) => (slide.map(|s| -0.6 * s), second),
+            JointKind::PinInSlot(_) => (slide.map(|s| 0.6 * s), -1.1),
+            JointKind::Distance(_) => ([0.8 * 0.6, -0.8 * 0.8], 2.0),
             _ => ([5.0, 5.0], -2.0 * first + 0.1),
         };
         let arm = turn([-0.2, 0.6], angle);
@@ -115,7 +120,7 @@ fn rows_are_named_after_what_they_fix() {
 fn an_equation_may_drive() {
     let mut m = Model::new();
     m.body("a", "2", "0.1", "a", &[]);
-    m.joint("drive", JointKind::Equation { left: formula("a.angle"), right: formula("0.5*t^2") });
+    m.joint("drive", JointKind::Equation(Equation { left: formula("a.angle"), right: formula("0.5*t^2") }));
     m.output("drive.force");
     m.output("drive.torque");
     let mut system = m.build();
@@ -130,7 +135,7 @@ fn an_equation_may_drive() {
 fn a_rod_in_tension_has_a_positive_multiplier() {
     let mut m = Model::new();
     m.body("bob", "2", "0", "xy", &[]);
-    m.joint("rod", JointKind::Distance { between: m.between("ground", "bob"), length: formula("0.5") });
+    m.joint("rod", JointKind::Distance(Distance { between: m.between("ground", "bob"), length: formula("0.5") }));
     m.gravity();
     m.output("rod.force.y");
     let mut system = m.build();
@@ -148,8 +153,11 @@ fn rows_that_always_hold_are_left_out() {
     m.ground_point("G", "0", "2*h");
     m.body("cross", "1", "1", "x", &[("P", "0", "h")]);
     m.hold('y', "h");
-    let guide =
-        JointKind::Prismatic { between: m.between("ground.G", "cross.P"), axis: pair("1", "0"), angle: formula("0") };
+    let guide = JointKind::Prismatic(Prismatic {
+        between: m.between("ground.G", "cross.P"),
+        axis: pair("1", "0"),
+        angle: formula("0"),
+    });
     m.joint("guide", guide);
     m.output("guide.force");
     m.output("guide.torque");
@@ -180,7 +188,7 @@ fn a_row_that_nothing_can_close_is_an_error() {
 fn a_constraint_may_not_speak_of_velocities() {
     let mut m = Model::new();
     m.body("a", "1", "1", "x", &[]);
-    m.joint("rolling", JointKind::Equation { left: formula("a.vx"), right: formula("1") });
+    m.joint("rolling", JointKind::Equation(Equation { left: formula("a.vx"), right: formula("1") }));
     let error = assemble::build(&m.0).unwrap_err().to_string();
     assert_eq!(error, "`a.vx` cannot stand in a formula of parameters, t and positions");
 }

@@ -3,6 +3,7 @@
 use symdiff::Formula;
 
 use crate::assemble::{self, System};
+use crate::elements::joints::Revolute;
 use crate::grammar::{Components, Direction};
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
@@ -122,12 +123,12 @@ impl Model {
     }
 
     pub fn joint(&mut self, name: &str, kind: JointKind) {
-        self.0.joints.push(Joint { name: name.to_owned(), kind });
+        self.0.joints.push(Joint::new(name.to_owned(), kind));
     }
 
     pub fn revolute(&mut self, name: &str, first: &str, second: &str) {
         let between = self.between(first, second);
-        self.joint(name, JointKind::Revolute { between, axis: vector(["0", "0", "1"]) });
+        self.joint(name, JointKind::Revolute(Revolute { between, axis: vector(["0", "0", "1"]) }));
     }
 
     pub fn effect(&mut self, kind: impl Into<EffectKind>) {

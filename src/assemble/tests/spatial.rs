@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, Quaternion, Unit, UnitQuaternion, Vector3};
 use symdiff::Expr;
 
 use crate::assemble::System;
+use crate::elements::joints::*;
 use crate::grammar::{BodyRef, Components, Direction, PerAxis};
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
@@ -117,18 +118,18 @@ fn kinds(m: &Model) -> Vec<(JointKind, usize)> {
     let axis = || vector(["1", "-2", "0.5"]);
     let (pitch, length) = (formula("0.3"), formula("d"));
     vec![
-        (JointKind::Revolute { between, axis: axis() }, 5),
-        (JointKind::Prismatic { between, axis: axis(), angle: formula("0.3") }, 5),
-        (JointKind::Fixed { between, angle: formula("0.3"), merged: false }, 6),
-        (JointKind::PinInSlot { between, axis: vector(["1", "-2", "0"]) }, 4),
-        (JointKind::Cylindrical { between, axis: axis() }, 4),
-        (JointKind::Screw { between, axis: axis(), pitch }, 5),
-        (JointKind::Spherical { between }, 3),
-        (JointKind::Universal { between, axes: [vector(["1", "2", "0"]), vector(["2", "-1", "3"])] }, 4),
-        (JointKind::Planar { between, normal: axis() }, 3),
-        (JointKind::PointOnLine { between, axis: axis() }, 2),
-        (JointKind::PointOnPlane { between, normal: axis() }, 1),
-        (JointKind::Distance { between, length }, 1),
+        (JointKind::Revolute(Revolute { between, axis: axis() }), 5),
+        (JointKind::Prismatic(Prismatic { between, axis: axis(), angle: formula("0.3") }), 5),
+        (JointKind::Fixed(Fixed { between, angle: formula("0.3") }), 6),
+        (JointKind::PinInSlot(PinInSlot { between, axis: vector(["1", "-2", "0"]) }), 4),
+        (JointKind::Cylindrical(Cylindrical { between, axis: axis() }), 4),
+        (JointKind::Screw(Screw { between, axis: axis(), pitch }), 5),
+        (JointKind::Spherical(Spherical { between }), 3),
+        (JointKind::Universal(Universal { between, axes: [vector(["1", "2", "0"]), vector(["2", "-1", "3"])] }), 4),
+        (JointKind::Planar(Planar { between, normal: axis() }), 3),
+        (JointKind::PointOnLine(PointOnLine { between, axis: axis() }), 2),
+        (JointKind::PointOnPlane(PointOnPlane { between, normal: axis() }), 1),
+        (JointKind::Distance(Distance { between, length }), 1),
     ]
 }
 
@@ -140,21 +141,21 @@ fn closed(kind: &JointKind) -> (Vector3<f64>, UnitQuaternion<f64>, f64) {
     let any = about(Vector3::new(0.3, 0.8, -0.5), 2.1);
     let (none, turn) = (UnitQuaternion::identity(), 2.5);
     match kind {
-        JointKind::Revolute { .. } => (Vector3::zeros(), about(axis, turn), turn),
-        JointKind::Prismatic { .. } => (0.7 * axis, about(Vector3::z(), 0.3), 0.0),
-        JointKind::Fixed { .. } => (Vector3::zeros(), about(Vector3::z(), 0.3), 0.0),
-        JointKind::PinInSlot { .. } => (-0.4 * Vector3::new(1.0, -2.0, 0.0), about(Vector3::z(), turn), 0.0),
-        JointKind::Cylindrical { .. } => (0.7 * axis, about(axis, turn), turn),
-        JointKind::Screw { .. } => (0.3 * turn / std::f64::consts::TAU * axis, about(axis, turn), turn),
-        JointKind::Spherical { .. } => (Vector3::zeros(), any, 0.0),
+        JointKind::Revolute(_) => (Vector3::zeros(), about(axis, turn), turn),
+        JointKind::Prismatic(_) => (0.7 * axis, about(Vector3::z(), 0.3), 0.0),
+        JointKind::Fixed(_) => (Vector3::zeros(), about(Vector3::z(), 0.3), 0.0),
+        JointKind::PinInSlot(_) => (-0.4 * Vector3::new(1.0, -2.0, 0.0), about(Vector3::z(), turn), 0.0),
+        JointKind::Cylindrical(_) => (0.7 * axis, about(axis, turn), turn),
+        JointKind::Screw(_) => (0.3 * turn / std::f64::consts::TAU * axis, about(axis, turn), turn),
+        JointKind::Spherical(_) => (Vector3::zeros(), any, 0.0),
         // (1, 2, 0) and (2, −1, 3) are perpendicular, and stay so when turned about the one, then the other.
-        JointKind::Universal { .. } => {
+        JointKind::Universal(_) => {
             let cross = about(Vector3::new(1.0, 2.0, 0.0), 0.8) * about(Vector3::new(2.0, -1.0, 3.0), -0.6);
             (Vector3::zeros(), cross, 0.0)
         }
-        JointKind::Planar { .. } => (0.6 * across, about(axis, turn), turn),
-        JointKind::PointOnLine { .. } => (-0.3 * axis, any, 0.0),
-        JointKind::PointOnPlane { .. } => (across - 0.2 * axis.cross(&across), any, 0.0),
+        JointKind::Planar(_) => (0.6 * across, about(axis, turn), turn),
+        JointKind::PointOnLine(_) => (-0.3 * axis, any, 0.0),
+        JointKind::PointOnPlane(_) => (across - 0.2 * axis.cross(&across), any, 0.0),
         _ => (0.8 * axis, none, 0.0),
     }
 }

@@ -1,4 +1,5 @@
 use crate::assemble::System;
+use crate::elements::joints::*;
 use crate::model::{JointKind, StartValue, TimeOrder};
 
 use super::model::{Model, formula, pair, slider_crank};
@@ -73,8 +74,11 @@ fn a_slider_with_all_coordinates_comes_after_its_rod() {
     link(&mut m, "crank", "1");
     link(&mut m, "rod", "3");
     m.body("slider", "1", "1", "xya", &[]);
-    let guide =
-        JointKind::Prismatic { between: m.between("ground", "slider"), axis: pair("1", "0"), angle: formula("0") };
+    let guide = JointKind::Prismatic(Prismatic {
+        between: m.between("ground", "slider"),
+        axis: pair("1", "0"),
+        angle: formula("0"),
+    });
     m.joint("guide", guide);
     m.revolute("pivot", "ground", "crank.A");
     m.revolute("pin", "crank.B", "rod.A");
@@ -93,8 +97,8 @@ fn welds_and_rods_are_guessed_closed() {
     m.body("bob", "1", "1", "xy", &[]);
     m.revolute("shoulder", "ground", "arm.A");
     // The second body of this joint is the one that is placed first.
-    m.joint("wrist", JointKind::Fixed { between: m.between("hand.A", "arm.B"), angle: formula("pi/4"), merged: false });
-    m.joint("string", JointKind::Distance { between: m.between("hand.B", "bob"), length: formula("0.7") });
+    m.joint("wrist", JointKind::Fixed(Fixed { between: m.between("hand.A", "arm.B"), angle: formula("pi/4") }));
+    m.joint("string", JointKind::Distance(Distance { between: m.between("hand.B", "bob"), length: formula("0.7") }));
     m.initial("arm", 'a', TimeOrder::Position, "0.3");
     assert_all_close(&gaps(&m.build()), &[0.0; 6], 1e-15);
 }

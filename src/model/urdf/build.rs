@@ -15,8 +15,8 @@ use symdiff::Formula;
 
 use super::algebra::{self, Quaternion, Value, Vector};
 use super::robot::{Joint as UrdfJoint, Kind, Number, Robot};
+use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
 use crate::model::description::{Body, Inertia, Joint, Output, Point, RobotTree, StartValue, TreeJoint, TreeLink};
-use crate::model::kinds::JointKind;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 
@@ -294,12 +294,12 @@ fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> O
     points.push(at);
     let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
     let axis = unit(joint.axis).map(Formula::number);
-    let kind = match joint.kind {
-        Kind::Prismatic => JointKind::Prismatic { between, axis, angle: Formula::number(0.0) },
-        Kind::Planar => JointKind::Planar { between, normal: axis },
-        _ => JointKind::Revolute { between, axis },
+    let kind: JointKind = match joint.kind {
+        Kind::Prismatic => Prismatic { between, axis, angle: Formula::number(0.0) }.into(),
+        Kind::Planar => Planar { between, normal: axis }.into(),
+        _ => Revolute { between, axis }.into(),
     };
-    reader.model.joints.push(Joint { name: joint.name.clone(), kind });
+    reader.model.joints.push(Joint::new(joint.name.clone(), kind));
     Some(reader.model.joints.len() - 1)
 }
 
@@ -326,23 +326,23 @@ fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) {
         return;
     };
     let kind = if joint.kind.turns() && leader.kind.turns() && mimic.multiplier != 0.0 {
-        JointKind::Gear {
+        JointKind::from(Gear {
             between: [Turning::Joint(other), Turning::Joint(this)],
             ratio: Formula::number(mimic.multiplier),
             offset: Formula::number(mimic.offset),
-        }
+        })
     } else {
         let text = format!("({:e})*{}.{followed} + ({:e})", mimic.multiplier, leader.name, mimic.offset);
-        JointKind::Equation {
+        JointKind::from(Equation {
             left: formula(reader, &Value::Text(format!("{}.{position}", joint.name))),
             right: formula(reader, &Value::Text(text)),
-        }
+        })
     };
     let mut name = format!("{}_mimic", joint.name);
     while reader.model.joints.iter().any(|joint| joint.name == name) {
         name.push('_');
     }
-    reader.model.joints.push(Joint { name, kind });
+    reader.model.joints.push(Joint::new(name, kind));
 }
 
 /// The zero configuration, for what the model says nothing of.

@@ -9,9 +9,9 @@ use symdiff::Formula;
 
 use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
-use crate::model::description::Effect;
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
+use crate::model::description::Effect;
 use crate::model::file;
 use crate::model::names::Reader;
 use crate::model::scenes::{self, LeftOut};
@@ -109,8 +109,7 @@ fn stop<'r>(
     impact: Impact,
 ) -> RobotEffect<'r> {
     let [lower, upper] = [&limits.lower, &limits.upper].map(|number| Some(formula(reader, &source.value(number))));
-    let effect =
-        Effect { name: format!("{}.limit", joint.name), kind: Stop { on, lower, upper, impact }.into() };
+    let effect = Effect { name: format!("{}.limit", joint.name), kind: Stop { on, lower, upper, impact }.into() };
     RobotEffect { effect, numbers: vec![&limits.lower, &limits.upper] }
 }
 

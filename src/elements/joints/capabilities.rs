@@ -1,0 +1,144 @@
+//! What the stages ask of a joint, whatever its kind.
+
+use std::fmt::Debug;
+
+use symdiff::Formula;
+
+use crate::grammar::{JointCoordinate, OnJoint, PointRef};
+
+/// A joint, as the stages see it. What a kind does not say has the default: it has not that capability.
+pub trait Joint: Debug {
+    /// The points A and B that it is between; `None` where it acts on coordinates alone.
+    fn between(&self) -> Option<[PointRef; 2]> {
+        None
+    }
+
+    /// The relative motion, where that is a rotation about and a translation along one axis, so that the joint can
+    /// give a body its place in joint coordinates.
+    fn mobilizer(&self) -> Option<Mobilizer<'_>> {
+        None
+    }
+
+    /// What a first guess can use to place a body on it; `None` where it does not place bodies.
+    fn placement(&self) -> Option<Placement<'_>> {
+        None
+    }
+
+    /// The coordinates of joints that its constraints are written in; `own` is its own index.
+    fn coordinates(&self, own: usize) -> Vec<OnJoint> {
+        let _ = own;
+        Vec::new()
+    }
+
+    /// The two sides, where the joint equates two formulas of the motion. It has no second body then, and its
+    /// multiplier stands for the reaction's force.
+    fn equation(&self) -> Option<[&Formula; 2]> {
+        None
+    }
+
+    /// The axis about which, or along which, the joint has the coordinate; `None` where it has it not.
+    fn axis_of(&self, coordinate: JointCoordinate) -> Option<&[Formula; 3]> {
+        self.mobilizer()?.axis_of(coordinate)
+    }
+
+    /// The angle of the second frame against the first, where the joint welds its bodies together.
+    fn weld(&self) -> Option<&Formula> {
+        match self.mobilizer()? {
+            Mobilizer::Weld { twist } => Some(twist),
+            _ => None,
+        }
+    }
+}
+
+/// The relative motions that a recursion over a tree of bodies knows.
+///
+/// `twist` is the angle by which the second frame is turned about the first's z where the coordinates are zero, rad.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs)]
+pub enum Mobilizer<'a> {
+    /// None.
+    Weld { twist: &'a Formula },
+    /// Rotation about the axis.
+    Rotation { axis: &'a [Formula; 3] },
+    /// Translation along the axis.
+    Translation { axis: &'a [Formula; 3], twist: &'a Formula },
+    /// Rotation about the axis and translation along it.
+    RotationAndTranslation { axis: &'a [Formula; 3] },
+    /// Rotation about the axis with a translation of `pitch` in a turn, m.
+    Helix { axis: &'a [Formula; 3], pitch: &'a Formula },
+}
+
+impl<'a> Mobilizer<'a> {
+    /// The axis; `None` of a weld.
+    pub fn axis(&self) -> Option<&'a [Formula; 3]> {
+        match *self {
+            Self::Weld { .. } => None,
+            Self::Rotation { axis }
+            | Self::Translation { axis, .. }
+            | Self::RotationAndTranslation { axis }
+            | Self::Helix { axis, .. } => Some(axis),
+        }
+    }
+
+    /// The axis, where the motion has the coordinate.
+    pub fn axis_of(&self, coordinate: JointCoordinate) -> Option<&'a [Formula; 3]> {
+        let absent = match self {
+            Self::Rotation { .. } => Some(JointCoordinate::Displacement),
+            Self::Translation { .. } => Some(JointCoordinate::Angle),
+            Self::Weld { .. } | Self::RotationAndTranslation { .. } | Self::Helix { .. } => None,
+        };
+        self.axis().filter(|_| absent != Some(coordinate))
+    }
+
+    /// The angle at rest; `None` where it is zero.
+    pub fn twist(&self) -> Option<&'a Formula> {
+        match *self {
+            Self::Weld { twist } | Self::Translation { twist, .. } => Some(twist),
+            Self::Rotation { .. } | Self::RotationAndTranslation { .. } | Self::Helix { .. } => None,
+        }
+    }
+
+    /// The advance in a turn, m, of a helix.
+    pub fn pitch(&self) -> Option<&'a Formula> {
+        match *self {
+            Self::Helix { pitch, .. } => Some(pitch),
+            _ => None,
+        }
+    }
+
+    /// Every formula in it.
+    pub fn formulas(&self) -> impl Iterator<Item = &'a Formula> {
+        self.axis().into_iter().flatten().chain(self.twist()).chain(self.pitch())
+    }
+}
+
+/// Where a joint puts one of its bodies when the other is placed.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<'a> {
+    /// Of the points.
+    pub separation: Separation<'a>,
+    /// Of the frames.
+    pub orientation: Orientation<'a>,
+}
+
+/// How far apart a joint's points are.
+#[derive(Clone, Copy, Debug)]
+pub enum Separation<'a> {
+    /// The points coincide.
+    Coincident,
+    /// Somewhere on a line or in a plane.
+    Unknown,
+    /// At a distance, m.
+    Distance(&'a Formula),
+}
+
+/// How a joint's frames are turned against one another.
+#[derive(Clone, Copy, Debug)]
+pub enum Orientation<'a> {
+    /// Anyhow.
+    Free,
+    /// About axes of the joint, so that parallel frames are near enough.
+    AboutAxis,
+    /// By an angle about the first frame's z, rad.
+    Fixed(&'a Formula),
+}
