@@ -8,6 +8,7 @@ const FLOORS: [&str; 14] = [
     "syntax",
     "grammar",
     "multibody",
+    "elements",
     "numerics",
     "elements",
     "model",

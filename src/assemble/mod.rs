@@ -37,7 +37,6 @@ mod tree;
 use crate::multibody::{error, rotation, space};
 
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use effects::{SHEETS, Sheet};
 pub use error::BuildError;
 pub use mechanism::Context;
 pub use system::{

@@ -122,7 +122,7 @@ pub trait FromNumber {
 }
 
 /// What the number of a key must be.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Quantity {
     /// As one writes it; several units are divided by ` or `.
     pub unit: &'static str,
@@ -132,11 +132,16 @@ pub struct Quantity {
     pub context: Context,
     /// What must hold at every corner of the parameters.
     pub requirement: Option<Requirement>,
+    /// Instead of the unit's, where that depends on other keys.
+    pub dimension: Option<Dimension>,
 }
 
 impl Quantity {
     /// What its unit measures.
     pub fn dimension(&self) -> Dimension {
+        if let Some(dimension) = self.dimension {
+            return dimension;
+        }
         let units: Vec<&str> = self.unit.split(" or ").collect();
         let unit = units.get(self.choice).or(units.first()).copied().unwrap_or_default();
         // A test parses every unit of every element.
@@ -217,6 +222,23 @@ pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
         schema.insert("required".to_owned(), required.into());
     }
     schema
+}
+
+/// One of several kinds, each by its word, its description and its schema.
+pub fn kinds_schema(description: &str, kinds: Vec<(&'static str, &'static str, Schema)>) -> Schema {
+    let mut properties = serde_json::Map::new();
+    for (word, description, mut schema) in kinds {
+        schema.insert("description".to_owned(), description.into());
+        properties.insert(word.to_owned(), schema.to_value());
+    }
+    schemars::json_schema!({
+        "description": description,
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": false,
+        "minProperties": 1,
+        "maxProperties": 1
+    })
 }
 
 /// An example as JSON.

@@ -30,8 +30,9 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let parts: Vec<Part> =
         fields.named.iter().map(|field| Ok(Part { field, key: Key::read(field)? })).collect::<Result<_>>()?;
     let ident = &input.ident;
-    let (names, keys) = (key_names(&parts), keys(&parts));
     let read = read(&about, &parts);
+    let parts: Vec<Part> = parts.into_iter().filter(|part| !part.key.is_derived).collect();
+    let (names, keys) = (key_names(&parts), keys(&parts));
     let (formulas, references) = (visit(&parts, "formulas"), visit(&parts, "references"));
     let leaves = leaves_plane(&parts);
     let role = match (&about.keyword, &about.what) {
@@ -153,6 +154,9 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
 
 fn read_field(part: &Part) -> TokenStream {
     let (ident, name, ty, key) = (&part.field.ident, part.name(), &part.field.ty, &part.key);
+    if key.is_derived {
+        return quote!(let #ident: Option<#ty> = Some(Default::default()););
+    }
     if key.is_group {
         return quote! {
             let #ident = <#ty as crate::grammar::Group>::read(reader, fields, units);
@@ -165,12 +169,17 @@ fn read_field(part: &Part) -> TokenStream {
         Some(requirement) => quote!(Some(#requirement)),
         None => quote!(None),
     };
+    let dimension = match &key.dimension {
+        Some(dimension) => quote!(Some(#dimension)),
+        None => quote!(None),
+    };
     let quantity = quote! {
         &crate::grammar::Quantity {
             unit: #unit,
             choice: units,
             context: crate::grammar::Context::#context,
             requirement: #requirement,
+            dimension: #dimension,
         }
     };
     let value = quote!(crate::grammar::Value::read(reader, node, fields.key_span(#name), #quantity));

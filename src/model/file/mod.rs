@@ -8,21 +8,19 @@ use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
 mod bodies;
-mod effects;
 mod joints;
 mod model;
 mod run;
 mod values;
 
 pub use bodies::*;
-pub use effects::*;
 pub use joints::*;
 pub use model::*;
 pub use run::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
-use crate::grammar::values::{Components, Direction, Number, PerAxis, Rotation, TorqueValue};
+use crate::grammar::values::{Components, Direction, Number, Rotation};
 
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
@@ -88,12 +86,6 @@ mod tests {
         same_keys::<Prismatic>();
         same_keys::<Screw>();
         same_keys::<Rotation>();
-        same_keys::<Bushing>();
-        same_keys::<Effect>();
-        same_keys::<SpringDamper>();
-        same_keys::<JointFriction>();
-        same_keys::<Contact>();
-        same_keys::<Impact>();
         same_keys::<Simulation>();
         same_keys::<Bounds>();
         same_keys::<Budget>();
