@@ -11,12 +11,13 @@ use crate::model::{
 
 use super::body::{ANGLE, Body, EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
-pub use crate::multibody::{Context, Frame};
 use super::joints::Reaction;
 use super::rotation::{self, Quaternion};
 use super::space::{self, Vector};
 use super::system::UncertainParameter;
 use super::tree::Tree;
+use crate::multibody::Pair;
+pub use crate::multibody::{Context, Frame};
 
 impl Context {
     /// The smallest context in which something is known.
@@ -360,6 +361,12 @@ impl<'d> Mechanism<'d> {
             None => orientation,
         };
         Frame { point: self.point(g, point), orientation }
+    }
+
+    /// The frames at two points.
+    pub fn pair(&self, g: &Builder, between: [PointRef; 2]) -> Pair {
+        let [first, second] = between.map(|point| self.frame(g, point));
+        Pair { first, second }
     }
 
     /// Whether only parameters and t stand in the expressions.

@@ -11,7 +11,9 @@ use super::space::{self, Vector};
 /// The frames at the first and the second point.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
+    /// F₁.
     pub first: Frame,
+    /// F₂.
     pub second: Frame,
 }
 

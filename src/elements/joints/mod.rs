@@ -14,6 +14,8 @@ pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, R
 pub use motor::Profile;
 pub use rows::{Kinematics, Row, Rows};
 
+pub use registry::JointDocs;
+
 use registry::joints;
 
 joints! {

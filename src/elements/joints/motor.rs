@@ -22,7 +22,7 @@ use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 use mbint_derive::{Choice, Element};
-use symdiff::{Formula, Graph, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable};
 use crate::multibody::{BuildError, Vector};
@@ -219,10 +219,10 @@ impl Checked for Motor {
     }
 }
 
-/// Whether a formula of parameters and t has an integral over t ([`Graph::integral`]).
+/// Whether a formula of parameters and t has an integral over t ([`Scalar::integral`]).
 fn is_integrable(speed: &Formula) -> bool {
-    let mut graph = Graph::new();
-    let time = graph.symbol("t");
-    let built = speed.build(&mut graph, |graph, name| Ok::<_, Infallible>(graph.symbol(name)));
-    built.is_ok_and(|speed| graph.integral(speed, time).is_some())
+    let graph = Builder::new();
+    let time = graph.variable("t");
+    let built = speed.build(&graph, |name| Ok::<_, Infallible>(graph.variable(name)));
+    built.is_ok_and(|speed| speed.integral(time).is_some())
 }
