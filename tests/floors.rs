@@ -10,7 +10,6 @@ const FLOORS: [&str; 14] = [
     "multibody",
     "elements",
     "numerics",
-    "elements",
     "model",
     "reduce",
     "assemble",

@@ -116,7 +116,7 @@ pub fn reaction(g: &Builder, joint: &dyn Joint, kept: &[(Row, Expr)]) -> Reactio
         force = space::add(g, force, part);
         let part = space::scale(g, *lambda, row.torque.exprs());
         torque = space::add(g, torque, part);
-        if !row.force.exprs().iter().all(|&component| g.is_zero(component)) {
+        if !row.force.is_zero() {
             along.push(*lambda);
         }
     }

@@ -40,6 +40,6 @@ pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
 pub use error::BuildError;
 pub use mechanism::Context;
 pub use system::{
-    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, Start, StartCondition, System,
-    UncertainParameter,
+    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, ResidualUnit, Start,
+    StartCondition, System, UncertainParameter,
 };
