@@ -8,7 +8,6 @@ const FLOORS: [&str; 14] = [
     "syntax",
     "grammar",
     "multibody",
-    "elements",
     "numerics",
     "model",
     "reduce",

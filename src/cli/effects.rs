@@ -111,20 +111,21 @@ mod tests {
         let plain = anstream::adapter::strip_str(&text().unwrap()).to_string();
         let stop = plain.split("\n\n").find(|part| part.starts_with("stop ")).unwrap();
         insta::assert_snapshot!(stop, @r"
-        stop  Stops at the ends of a joint's way.
+        stop  Stops at the ends of a joint's range.
           f = K ⟨δ⟩ⁿ ⟨1 + χ δ̇⟩, δ = lower − s or s − upper
           Source: Hunt & Crossley, J. Appl. Mech. 42 (1975) 440; Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369.
-            coordinate         Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
-            impact *           How it pushes back.
-              dissipation      s/m or s/rad; by default 0: nothing is lost.
-              exponent         n, from 1 to 3; by default 1.5.
-              impact_velocity  Speed of the impact for which the restitution holds, m/s or rad/s.
-              law              Whose formula makes dissipation of restitution; by default Hunt and Crossley's.
-              restitution      Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
-              stiffness *      K, N/m^n or N*m/rad^n
-            lower              m or rad
+          Example: { on: hinge, lower: -1.5, upper: 0.8, impact: { stiffness: 1e4, restitution: 0.5, impact_velocity: 2 } }
             on *               A revolute, prismatic, cylindrical or screw joint.
-            upper              m or rad
+            coordinate         Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+            lower              Smallest value of the coordinate, m or rad.
+            upper              Largest value of the coordinate, m or rad.
+            impact *           How it pushes back.
+              exponent         n, from 1 to 3: 1 is a linear spring, 1.5 Hertz's contact of curved surfaces; by default 1.5.
+              stiffness *      K, N/m^n or N*m/rad^n.
+              dissipation      χ, what is lost, s/m or s/rad; by default 0: nothing is lost.
+              restitution      Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
+              impact_velocity  Speed of the impact for which the restitution holds, m/s or rad/s.
+              law              Whose formula makes dissipation of restitution; by default hunt_crossley.
         ");
     }
 }

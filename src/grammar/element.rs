@@ -167,6 +167,23 @@ impl Requirement {
     pub const NONZERO: Self = Self { holds: |value| value != 0.0, message: "must not be zero" };
 }
 
+/// Reports where two keys are there and the second is not larger than the first.
+pub fn ordered<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    fields: &Fields<'_>,
+    (low, first): (&str, Option<&impl Value>),
+    (high, second): (&str, Option<&impl Value>),
+) {
+    let (mut lower, mut upper) = (Vec::new(), Vec::new());
+    if let (Some(first), Some(second), true, true) = (first, second, fields.get(low).is_some(), fields.get(high).is_some()) {
+        first.formulas(&mut lower);
+        second.formulas(&mut upper);
+    }
+    if let ([lower], [upper]) = (lower.as_slice(), upper.as_slice()) {
+        reader.ordered(fields, (low, lower), (high, upper));
+    }
+}
+
 /// A key, for people and for the schema.
 #[derive(Clone, Debug)]
 pub struct Key {

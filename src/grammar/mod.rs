@@ -20,7 +20,7 @@ pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
     Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, kinds_schema,
-    object_schema, short_or_full,
+    object_schema, ordered, short_or_full,
 };
 pub use kinds::{Axis, BodyRef, Components, Direction, PerAxis, SlidingJoint, TurningJoint};
 pub use names::Context;

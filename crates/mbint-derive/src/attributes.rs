@@ -66,6 +66,10 @@ pub struct Key {
     pub dimension: Option<Expr>,
     pub unit: Option<LitStr>,
     pub absent: Absent,
+    /// What holds of an `Option` that is not there, in words.
+    pub otherwise: Option<LitStr>,
+    /// A key before it that must be smaller.
+    pub above: Option<syn::Ident>,
     /// The name of a `grammar::Context`.
     pub context: &'static str,
     pub requirement: Option<TokenStream>,
@@ -82,6 +86,8 @@ impl Key {
             dimension: None,
             unit: None,
             absent,
+            otherwise: None,
+            above: None,
             context: "Effect",
             requirement: None,
         };
@@ -109,6 +115,8 @@ impl Key {
         match name.as_str() {
             "unit" => self.unit = Some(meta.value()?.parse()?),
             "dimension" => self.dimension = Some(meta.value()?.parse()?),
+            "otherwise" => self.otherwise = Some(meta.value()?.parse()?),
+            "above" => self.above = Some(meta.value()?.parse()?),
             "constant" => self.context = "Constant",
             "time" => self.context = "Time",
             "positive" => self.requirement = requirement("POSITIVE"),
@@ -136,7 +144,7 @@ impl Key {
             }
             _ => {
                 return Err(meta.error(
-                    "a key has unit, dimension, default, default_with, constant, time, positive, nonnegative, nonzero, requires",
+                    "a key has unit, dimension, above, otherwise, default, default_with, constant, time, positive, nonnegative, nonzero, requires",
                 ));
             }
         }

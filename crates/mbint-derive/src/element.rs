@@ -105,7 +105,10 @@ fn keys(parts: &[Part]) -> TokenStream {
         let (default, words) = match &key.absent {
             Absent::Default(value) => (quote!(<#ty as crate::grammar::Value>::to_json(&#value)), quote!(None)),
             Absent::Computed(words, _) => (quote!(None), quote!(Some(#words))),
-            Absent::Required | Absent::Nothing => (quote!(None), quote!(None)),
+            Absent::Required | Absent::Nothing => match &key.otherwise {
+                Some(words) => (quote!(None), quote!(Some(#words))),
+                None => (quote!(None), quote!(None)),
+            },
         };
         quote! {
             keys.push(crate::grammar::Key {
@@ -125,6 +128,11 @@ fn keys(parts: &[Part]) -> TokenStream {
 
 fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     let fields = parts.iter().map(read_field);
+    let ordered = parts.iter().filter_map(|part| {
+        let (ident, high, low) = (&part.field.ident, part.name(), part.key.above.as_ref()?);
+        let low_name = LitStr::new(&low.to_string(), low.span());
+        Some(quote!(crate::grammar::ordered(reader, fields, (#low_name, #low.as_ref()), (#high, #ident.as_ref()));))
+    });
     // Defaults that are computed may use the fields before them, which are there by then.
     let there = parts.iter().map(|part| {
         let ident = &part.field.ident;
@@ -145,6 +153,7 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     quote! {
         #before
         #(#fields)*
+        #(#ordered)*
         #(#there)*
         let found = Self { #(#idents),* };
         #after

@@ -37,7 +37,8 @@ pub struct ClearanceJoint {
     pub axis: Axis,
     /// How the surfaces push each other apart.
     pub impact: Impact,
-    /// By default none.
+    /// How they resist sliding.
+    #[key(otherwise = "not at all")]
     pub friction: Option<Friction>,
 }
 

@@ -39,17 +39,19 @@ pub struct Contact {
     /// Instead of `plane`: radius of a circle, sphere or cylinder.
     #[quantity(unit = "m", constant, positive)]
     pub circle: Option<Formula>,
-    /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
-    #[quantity(unit = "m", constant, positive)]
-    pub hollow: Option<Formula>,
     /// Of the second; with 0 it is a point.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     pub radius: Formula,
-    /// In space: axis of two parallel cylinders, in the first point's frame; by default they are spheres.
+    /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
+    #[quantity(unit = "m", constant, positive, above = radius)]
+    pub hollow: Option<Formula>,
+    /// In space: axis of two parallel cylinders, in the first point's frame.
+    #[key(otherwise = "they are spheres")]
     pub axis: Option<Axis>,
     /// How the surfaces push each other apart.
     pub impact: Impact,
-    /// By default none.
+    /// How they resist sliding.
+    #[key(otherwise = "not at all")]
     pub friction: Option<Friction>,
 }
 
@@ -78,12 +80,6 @@ impl Checked for Contact {
                 let message = "`plane`, `circle` and `hollow` exclude one another";
                 reader.error(fields.key_span(second), message, None);
             }
-        }
-    }
-
-    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if let Some(hollow) = self.hollow.as_ref().filter(|_| fields.get("radius").is_some()) {
-            reader.ordered(fields, ("radius", &self.radius), ("hollow", hollow));
         }
     }
 }

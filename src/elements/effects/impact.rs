@@ -42,8 +42,8 @@ pub struct Impact {
         positive
     )]
     pub stiffness: Formula,
-    /// By default 0: nothing is lost.
-    #[quantity(unit = "s/m or s/rad", constant, nonnegative)]
+    /// χ, what is lost.
+    #[quantity(unit = "s/m or s/rad", constant, nonnegative, otherwise = "0: nothing is lost")]
     pub dissipation: Option<Formula>,
     /// Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
     #[quantity(unit = "1", constant, requires = RESTITUTION)]

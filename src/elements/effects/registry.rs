@@ -35,12 +35,14 @@ macro_rules! effects {
                 let (node, at) = (&entry.value, entry.key_span.clone());
                 let kind = match entry.key.as_str() {
                     $(<$name as Element>::KEYWORD => {
-                        reader.own = Some((own.to_owned(), <$name as ForceElement>::SENSORS.to_vec()));
+                        reader.unread.push((own.to_owned(), <$name as ForceElement>::SENSORS.to_vec()));
                         <$name as Element>::read_node(reader, node, at).map(Self::$name)
                     })*
                     _ => None,
                 };
-                reader.own = None;
+                if kind.is_some() {
+                    reader.unread.pop();
+                }
                 kind
             }
 

@@ -36,8 +36,8 @@ pub struct Servo {
     /// Force by rate of error.
     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)]
     pub derivative: Formula,
-    /// Largest force or torque; by default none.
-    #[quantity(unit = "N or N*m", constant, positive)]
+    /// Largest force or torque.
+    #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
     pub limit: Option<Formula>,
 }
 

@@ -33,7 +33,8 @@ use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, Symb
 pub struct SpringDamper {
     /// Two points, each `body.point` or `body`.
     pub between: [PointRef; 2],
-    /// Direction in the ground's frame; by default the line between the points.
+    /// Direction in the ground's frame.
+    #[key(otherwise = "the line between the points")]
     pub along: Option<Direction>,
     /// Tension by stretch.
     #[quantity(unit = "N/m", default = 0)]

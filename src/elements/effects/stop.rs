@@ -31,7 +31,7 @@ pub struct Stop {
     #[quantity(unit = "m or rad", constant)]
     pub lower: Option<Formula>,
     /// Largest value of the coordinate.
-    #[quantity(unit = "m or rad", constant)]
+    #[quantity(unit = "m or rad", constant, above = lower)]
     pub upper: Option<Formula>,
     /// How it pushes back.
     pub impact: Impact,
@@ -53,12 +53,6 @@ impl Checked for Stop {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         if fields.get("lower").is_none() && fields.get("upper").is_none() {
             reader.error(fields.at.clone(), "a stop needs `lower` or `upper`", None);
-        }
-    }
-
-    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if let (Some(lower), Some(upper)) = (&self.lower, &self.upper) {
-            reader.ordered(fields, ("lower", lower), ("upper", upper));
         }
     }
 }

@@ -32,7 +32,8 @@ use crate::syntax::yaml;
 pub struct Torque {
     /// The body it acts on, or the joint: then on its second body about its axis, and back on its first.
     pub on: TorqueOn,
-    /// The body its reaction acts on; by default the ground.
+    /// The body its reaction acts on.
+    #[key(otherwise = "the ground")]
     pub from: Option<BodyRef>,
     /// The torque, one number about z; may depend on t, positions and velocities.
     #[quantity(unit = "N*m")]

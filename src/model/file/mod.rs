@@ -20,9 +20,13 @@ use values::*;
 use crate::grammar::mapping::grammar;
 use crate::grammar::values::{Components, Number, Rotation};
 
+/// What the schema is called by those that refer to it.
+const SCHEMA_ID: &str = "https://mbint.dev/schemas/mbint.schema.json";
+
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(File);
+    schema.insert("$id".to_owned(), SCHEMA_ID.into());
     schema.insert("title".to_owned(), "mbint model".into());
     RecursiveTransform(without_null).transform(&mut schema);
     // A schema is a tree of JSON values: writing it out cannot fail.
