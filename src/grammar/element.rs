@@ -175,7 +175,9 @@ pub fn ordered<S: SymbolTable>(
     (high, second): (&str, Option<&impl Value>),
 ) {
     let (mut lower, mut upper) = (Vec::new(), Vec::new());
-    if let (Some(first), Some(second), true, true) = (first, second, fields.get(low).is_some(), fields.get(high).is_some()) {
+    if let (Some(first), Some(second), true, true) =
+        (first, second, fields.get(low).is_some(), fields.get(high).is_some())
+    {
         first.formulas(&mut lower);
         second.formulas(&mut upper);
     }

@@ -3,7 +3,6 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
-mod bounds_request;
 mod description;
 mod names;
 mod references;
@@ -32,7 +31,6 @@ pub use crate::grammar::{
     Coordinate, EnergyKind, FrictionMode, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference,
     Referent, Rotation, TimeOrder, Turning,
 };
-pub use bounds_request::*;
 pub use description::*;
 pub use file::schema;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};

@@ -3,6 +3,7 @@
 use super::*;
 use crate::elements::joints::*;
 use crate::grammar::Direction;
+use crate::methods::Degree;
 use symdiff::Formula;
 
 const SLIDER_CRANK: &str = include_str!("../../models/slider_crank.yaml");
