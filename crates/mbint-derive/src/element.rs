@@ -31,7 +31,8 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
         fields.named.iter().map(|field| Ok(Part { field, key: Key::read(field)? })).collect::<Result<_>>()?;
     let ident = &input.ident;
     let read = read(&about, &parts);
-    let parts: Vec<Part> = parts.into_iter().filter(|part| !part.key.is_derived).collect();
+    let (derived, parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| part.key.is_derived);
+    let derived = derived.iter().map(|part| &part.field.ident);
     let (names, keys) = (key_names(&parts), keys(&parts));
     let (formulas, references) = (visit(&parts, "formulas"), visit(&parts, "references"));
     let leaves = leaves_plane(&parts);
@@ -67,6 +68,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
 
             fn formulas<'a>(&'a self, found: &mut Vec<&'a symdiff::Formula>) {
                 #formulas
+                #(self.#derived.iter().for_each(|derived| found.extend(derived.formulas()));)*
             }
 
             fn references<'a>(&'a mut self, found: &mut Vec<crate::grammar::Reference<'a>>) {

@@ -66,6 +66,13 @@ pub struct Flexible {
     pub mass_per_length: Formula,
 }
 
+impl Flexible {
+    /// Every formula in it.
+    fn formulas(&self) -> [&Formula; 1] {
+        [&self.mass_per_length]
+    }
+}
+
 impl ForceElement for Beam {
     const SENSORS: &'static [Sensor] = &[
         (Measure::Length, Dimension::LENGTH),

@@ -21,7 +21,7 @@ use crate::grammar::mapping::grammar;
 use crate::grammar::values::{Components, Number, Rotation};
 
 /// What the schema is called by those that refer to it.
-const SCHEMA_ID: &str = "https://mbint.dev/schemas/mbint.schema.json";
+const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
 
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
