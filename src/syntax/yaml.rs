@@ -74,7 +74,6 @@ impl Scalar {
 
 impl Node {
     /// The value of a key of a mapping.
-
     pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Mapping(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.value),
