@@ -39,6 +39,16 @@ mod tests {
     fn a_joint_reads_well() {
         let plain = anstream::adapter::strip_str(&text()).to_string();
         let gear = plain.split("\n\n").find(|part| part.starts_with("gear ")).unwrap();
-        insta::assert_snapshot!(gear, @"");
+        insta::assert_snapshot!(gear, @r"
+        gear  Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
+          φ₂ − ratio φ₁ − offset = 0
+          Source: Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4.
+          Example: { between: [pinion, wheel], ratio: -0.5 }
+            between *  Two bodies (their angles about z) or two joints.
+            ratio *    Angle of the second per angle of the first; negative for external gears.
+            offset     Angle of the second where that of the first is zero, rad; by default 0.
+          Constraints and their multipliers:
+            its constraint, rad  λ: N m: −λ is the torque on the second, +ratio λ that on the first
+        ");
     }
 }
