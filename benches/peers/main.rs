@@ -8,7 +8,7 @@ mod scalar;
 use std::time::Instant;
 
 use mbint::results::Method;
-use mbint::simulate::{Fleet, JetRun, Observed, Schedule, Simulator};
+use mbint::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator};
 use mbint::study;
 use models::STEP;
 use serde_json::{Value, json};
@@ -66,7 +66,8 @@ fn samples(simulator: &Simulator, count: usize) -> Vec<Vec<f64>> {
 
 /// A whole run, assembly included: the outputs of all rows.
 fn run(simulator: &Simulator, count: usize, schedule: &Schedule) -> Vec<f64> {
-    let mut fleet = Fleet::start(simulator, &samples(simulator, count), STEP).expect("all samples can be assembled");
+    let mut fleet =
+        EnsembleRun::start(simulator, &samples(simulator, count), STEP).expect("all samples can be assembled");
     let mut values = Vec::new();
     let stops = fleet.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
     assert!(stops.is_empty(), "all samples reach the end");

@@ -11,7 +11,7 @@ use super::error::BuildError;
 use super::joints::{self, Row};
 use super::mechanism::Mechanism;
 use super::recursion;
-use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, System};
+use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, ResidualUnit, System};
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
 /// only.
@@ -72,7 +72,8 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
     let mut constraints = Constraints::default();
     for (body, built) in description.bodies.iter().zip(&mechanism.bodies) {
         if let Some(value) = normalisation(g, built) {
-            constraints.add(g, ConstraintInfo { name: format!("{}.norm", body.name), joint: body.name.clone() }, value);
+            let (name, joint) = (format!("{}.norm", body.name), body.name.clone());
+            constraints.add(g, ConstraintInfo { name, joint, unit: ResidualUnit::Number }, value);
         }
     }
     for (index, joint) in description.joints.iter().enumerate() {
@@ -86,7 +87,7 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         let mut kept = Vec::with_capacity(rows.len());
         for row in rows {
             let name = if row.name.is_empty() { joint.name.clone() } else { format!("{}.{}", joint.name, row.name) };
-            let info = ConstraintInfo { name, joint: joint.name.clone() };
+            let info = ConstraintInfo { name, joint: joint.name.clone(), unit: residual_unit(g, &row) };
             if is_effective(g, &mechanism, length, &info, row)? {
                 kept.push((row, constraints.add(g, info, row.value)));
             } else {
@@ -99,7 +100,8 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         closures.push(index);
         for (coordinate, value) in mechanism.definitions(g, index)? {
             let name = format!("{}.{coordinate}", joint.name);
-            constraints.add(g, ConstraintInfo { name, joint: joint.name.clone() }, value);
+            let unit = if coordinate == "angle" { ResidualUnit::Angle } else { ResidualUnit::Length };
+            constraints.add(g, ConstraintInfo { name, joint: joint.name.clone(), unit }, value);
         }
     }
 
@@ -234,6 +236,16 @@ impl Constraints {
         self.values.push(value);
         self.lambda.push(lambda);
         lambda
+    }
+}
+
+/// Unit of a row's Φ: m where its multiplier is a force, rad where it is a torque alone.
+fn residual_unit(g: &Builder, row: &Row) -> ResidualUnit {
+    let is_zero = |vector: &[Expr; 3]| vector.iter().all(|&component| g.is_zero(component));
+    match (is_zero(&row.force), is_zero(&row.torque)) {
+        (false, _) => ResidualUnit::Length,
+        (true, false) => ResidualUnit::Angle,
+        (true, true) => ResidualUnit::Number,
     }
 }
 

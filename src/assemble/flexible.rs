@@ -29,7 +29,7 @@ use super::effects::Loads;
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism};
 use super::space::{self, Vector};
-use super::system::{ConstraintInfo, StartCondition};
+use super::system::{ConstraintInfo, ResidualUnit, StartCondition};
 
 /// m over μL/420.
 const MASS: [[f64; 4]; 4] =
@@ -164,14 +164,14 @@ impl Mechanism<'_> {
             let along = space::dot(g, line, element.axes[0]);
             let angles = [first, second].map(|body| self.bodies[body].position[super::body::ANGLE]);
             let rows = [
-                ("x", g.sub(along, element.length)),
-                ("y", space::dot(g, line, across)),
-                ("angle", g.sub(angles[1], angles[0])),
+                ("x", ResidualUnit::Length, g.sub(along, element.length)),
+                ("y", ResidualUnit::Length, space::dot(g, line, across)),
+                ("angle", ResidualUnit::Angle, g.sub(angles[1], angles[0])),
             ];
             let joint = owner(&self.description.effects[index].name);
             let node = &self.description.bodies[second].name;
-            conditions.extend(rows.map(|(name, value)| StartCondition {
-                info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone() },
+            conditions.extend(rows.map(|(name, unit, value)| StartCondition {
+                info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone(), unit },
                 value,
                 position,
                 velocity,

@@ -42,6 +42,6 @@ pub use effects::{SHEETS, Sheet};
 pub use error::BuildError;
 pub use mechanism::Context;
 pub use system::{
-    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, Start, StartCondition, System,
-    UncertainParameter,
+    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, ResidualUnit, Start,
+    StartCondition, System, UncertainParameter,
 };

@@ -117,6 +117,19 @@ pub struct ConstraintInfo {
     pub name: String,
     /// Name of the joint.
     pub joint: String,
+    /// Unit of its residual.
+    pub unit: ResidualUnit,
+}
+
+/// Unit of a constraint's residual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResidualUnit {
+    /// m
+    Length,
+    /// rad
+    Angle,
+    /// A pure number, or the unit of an equation's sides.
+    Number,
 }
 
 /// Something observed.

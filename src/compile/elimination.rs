@@ -1,55 +1,58 @@
 //! The Newton matrix's factors as a step uses them: frozen between factorisations, in one version or in two.
 //!
-//! Effects that act only sometimes (contacts, stops) couple coordinates that nothing else couples, so that elimination has more
-//! to do, and what was constant changes with the iterate. Where this is worth it, the matrix is eliminated twice: as it is
-//! where something touches, and as it is where nothing does. A lane's own iterate, when its matrix is factorised, decides which
-//! of the two solves for its corrections, so its numbers do not depend on who shares its tile; and what no lane of a tile needs
-//! is not computed.
+//! Conditional effects (contacts, stops) couple coordinates that nothing else couples, so that elimination has more to do,
+//! and entries that were constant change with the iterate. Where it saves enough, the matrix is eliminated twice: with
+//! conditional effects active, and with them inactive. The iterate of each lane at its factorisation decides which version
+//! solves for its corrections, so its numbers do not depend on the lanes that share its tile. Values that no lane of a tile
+//! needs are not computed.
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 
 use super::newton_matrix::ITERATION;
-use super::sparse_lu::{Factors, NoFactors, Numbers, PROBES, Pivoting, factorise};
-use super::step::{Mode, Watched, WatchedPivot};
+use super::program::{Mode, Watched, WatchedPivot};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 
-/// Where numbers grow more than this in the elimination, pivots are chosen anew, fewer of them.
+/// Largest growth factor of freely chosen pivots; above it only pivots that cannot vanish are allowed.
 const MOST_GROWTH: f64 = 1e4;
 
-/// A pivot may fall this far below its size at the probes: the corrections then still have some six digits, which is
-/// all that Newton's iteration needs of them.
+/// A pivot may fall this far below its size at the pivot samples: the corrections then still have some six digits, which
+/// is all that Newton's iteration needs of them.
 const PIVOT_LOSS: f64 = 1e-10;
 
-/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. What the constraint asks for
-/// the others see to, so its multiplier stays near the zero from which every step starts it.
+/// Regularisation of a redundant constraint's multiplier, relative to the size of its row. The other constraints imply this
+/// one, so its multiplier stays near the zero from which every step starts it.
 const REDUNDANT_WEIGHT: f64 = 1.0;
 
-/// A second version has at most this share of the first one's operations in the iteration; lanes of a tile that do not agree
-/// pay for both.
-const WORTH_A_VERSION: f64 = 0.8;
+/// Largest share of the first version's operations in the iteration at which a second version is worthwhile; tiles whose
+/// lanes need both versions compute both.
+const WORTHWHILE: f64 = 0.8;
 
 /// How pivots are chosen.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Choice<'a> {
+pub(super) struct PivotChoice<'a> {
     /// Constraints that others imply.
     pub redundant: &'a [usize],
     /// Pivots that cannot vanish.
     pub symmetric: Pivoting<'a>,
-    /// Whether only these will do.
+    /// Whether only those are allowed.
     pub spatial: bool,
     /// Number of coordinates.
     pub n: usize,
 }
 
-/// A matrix's factors, with the scaling of its rows and columns by which pivots were compared.
+/// A matrix's factors, and the scaling of its rows and columns by which pivots were compared.
 #[derive(Clone, Debug)]
 pub(super) struct Version {
     pub factors: Factors,
     pub equilibration: Vec<f64>,
 }
 
-impl Choice<'_> {
-    /// Factorises a Newton matrix, whose entries have these numbers at the probes.
+impl PivotChoice<'_> {
+    /// Factorises a Newton matrix, whose entries have these numbers at the pivot samples.
+    ///
+    /// # Errors
+    /// Where the matrix has no acceptable pivots, and where the graph is full.
     pub fn factorise(
         &self,
         graph: &mut Graph,
@@ -63,23 +66,24 @@ impl Choice<'_> {
             let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
                 factorise(graph, &regular, numbers, &equilibration, Stages::new(inputs), ITERATION, pivoting)
             };
-            // A start in a singular configuration has no pivots of its own: then states in general position decide.
+            // A singular start has no pivots of its own: then the states in general position decide.
             factorised(graph, &numbers).or_else(|_| {
-                let mut apart = numbers.clone();
-                apart.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
-                factorised(graph, &apart)
+                let mut without_start = numbers.clone();
+                without_start.iter_mut().for_each(|numbers| numbers[0] = numbers[1]);
+                factorised(graph, &without_start)
             })
         };
         let factors = match plan(graph, if self.spatial { self.symmetric } else { Pivoting::Any }) {
             Ok(factors) if factors.growth <= MOST_GROWTH || self.spatial => Ok(factors),
-            // In a long chain free choice hands errors on from body to body, each time larger.
+            // In a long chain, freely chosen pivots amplify errors from body to body.
             free => plan(graph, self.symmetric).or(free),
         }?;
-        // Factors that were only kept because others took too long are not those that were looked for.
+        // A full graph means that the symmetric attempt was cut short: the factors at hand are not the ones wanted.
         if graph.is_full() { Err(NoFactors::TooLong) } else { Ok(Version { factors, equilibration }) }
     }
 
-    /// A redundant constraint's pivot would be zero; its multiplier is regularised in the matrix, not in the residual.
+    /// The matrix and its numbers with the multipliers of redundant constraints regularised, whose pivots would be zero. The
+    /// residual stays as it is.
     fn regularised(
         &self,
         graph: &mut Graph,
@@ -99,85 +103,85 @@ impl Choice<'_> {
                 "a constraint's row ends before its own multiplier"
             );
             regular.rows[row].push((row, value));
-            numbers.insert(place + offset, [-weight; PROBES]);
+            numbers.insert(place + offset, [-weight; PIVOT_SAMPLES]);
         }
         (regular, numbers)
     }
 }
 
-/// Factors in one version or two, seen by the corrections through symbols of their own.
+/// Frozen factors in one version or two; the corrections refer to them by symbols of their own.
 pub(super) struct Elimination {
-    /// What the factorisation computes: the frozen values and their slots.
+    /// The values that the factorisation computes, and the slots in which they are kept.
     pub frozen: Vec<(Expr, Option<u32>)>,
-    /// Which of them matter only in one version.
+    /// Values that only one version needs.
     pub guards: FxHashMap<Expr, Guard>,
     /// Pivots that can become small.
     pub watched: Vec<Watched>,
-    /// The matrix's factors; where there are two versions, where something touches.
-    pub all: Version,
-    /// Over frozen values.
-    substituted: Factors,
-    /// What decides, frozen too, and the factors where nothing touches.
-    apart: Option<(Expr, Factors)>,
+    /// The matrix's factors; of two versions, those of active conditional effects.
+    pub active: Version,
+    /// The same over frozen values.
+    frozen_active: Factors,
+    /// The frozen condition, and the frozen factors of inactive conditional effects.
+    inactive: Option<(Expr, Factors)>,
 }
 
 impl Elimination {
-    /// Freezes factors, and with what tells them apart (which the iteration changes) those of where nothing touches. Slots are taken from `next` on.
+    /// Freezes one version of factors, or two with the condition that decides between them. Slots are taken from `next` on.
     pub fn new(
         graph: &mut Graph,
         inputs: &mut Vec<Input>,
         next: &mut u32,
-        all: Version,
-        apart: Option<(Expr, Version)>,
+        active: Version,
+        inactive: Option<(Expr, Version)>,
     ) -> Self {
         let mut freezer = Freezer::new(graph, inputs, next);
-        let Some((touching, apart)) = apart else {
-            let substituted = freezer.freeze(&all.factors, None);
-            let watched = vec![Watched { mode: None, pivots: freezer.watch(&all) }];
+        let Some((condition, inactive)) = inactive else {
+            let frozen_active = freezer.freeze(&active.factors, None);
+            let watched = vec![Watched { mode: None, pivots: freezer.watch(&active) }];
             let Freezer { frozen, guards, .. } = freezer;
-            return Self { frozen, guards, watched, all, substituted, apart: None };
+            return Self { frozen, guards, watched, active, frozen_active, inactive: None };
         };
-        let guards = [false, true].map(|elsewhere| Guard { condition: touching, elsewhere });
-        let substituted = freezer.freeze(&all.factors, Some(guards[0]));
-        let apart_substituted = freezer.freeze(&apart.factors, Some(guards[1]));
-        let mode = freezer.frozen_value(touching);
-        let (_, slot) = freezer.symbol_of[&touching];
-        let watched = [(&all, false), (&apart, true)].map(|(version, elsewhere)| {
-            let mode = Some(Mode { slot: slot as usize, elsewhere });
+        let guards = [false, true].map(|elsewhere| Guard { condition, elsewhere });
+        let frozen_active = freezer.freeze(&active.factors, Some(guards[0]));
+        let frozen_inactive = freezer.freeze(&inactive.factors, Some(guards[1]));
+        let frozen_condition = freezer.frozen_value(condition);
+        let (_, slot) = freezer.symbol_of[&condition];
+        let watched = [(&active, false), (&inactive, true)].map(|(version, inactive)| {
+            let mode = Some(Mode { slot: slot as usize, inactive });
             Watched { mode, pivots: freezer.watch(version) }
         });
         let watched = watched.into();
         let Freezer { frozen, guards, .. } = freezer;
-        Self { frozen, guards, watched, all, substituted, apart: Some((mode, apart_substituted)) }
+        Self { frozen, guards, watched, active, frozen_active, inactive: Some((frozen_condition, frozen_inactive)) }
     }
 
     /// The solution of matrix · x = `right`.
     pub fn solve(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
-        let mut solution = self.substituted.solve(graph, right);
-        if let Some((mode, factors)) = &self.apart {
-            let apart = factors.solve(graph, right);
-            for (value, apart) in solution.iter_mut().zip(apart) {
-                *value = graph.select(*mode, *value, apart);
+        let mut solution = self.frozen_active.solve(graph, right);
+        if let Some((condition, factors)) = &self.inactive {
+            let inactive = factors.solve(graph, right);
+            for (value, inactive) in solution.iter_mut().zip(inactive) {
+                *value = graph.select(*condition, *value, inactive);
             }
         }
         solution
     }
 }
 
-/// Whether a version of its own is worth it where nothing touches.
-pub(super) fn is_worth_it(graph: &Graph, inputs: &[Input], all: &Version, apart: &Version) -> bool {
+/// Whether a version of its own saves enough where conditional effects are inactive.
+pub(super) fn is_worthwhile(graph: &Graph, inputs: &[Input], active: &Version, inactive: &Version) -> bool {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
-    let [all, apart] = [all, apart].map(|version| {
+    let [active, inactive] = [active, inactive].map(|version| {
         let values: Vec<Expr> = version.factors.values().collect();
         let changing = graph.reachable(&values).into_iter().filter(|&expr| stages.of(expr) == Some(ITERATION)).count();
         // A solution takes an operation for each value, whether it changes or not.
         (changing + values.len()) as f64
     });
-    apart <= WORTH_A_VERSION * all
+    inactive <= WORTHWHILE * active
 }
 
-/// Makes symbols of factors that the iteration can change.
+/// Replaces factors that the iteration can change by symbols for their values at the factorisation.
 struct Freezer<'g> {
     graph: &'g mut Graph,
     inputs: &'g mut Vec<Input>,
@@ -200,7 +204,7 @@ impl<'g> Freezer<'g> {
         self.stages.of(value) == Some(ITERATION)
     }
 
-    /// A value as it was when the matrix was factorised.
+    /// The value at the factorisation, as a symbol if the iteration can change it.
     fn frozen_value(&mut self, value: Expr) -> Expr {
         if !self.changes(value) {
             return value;
@@ -223,7 +227,7 @@ impl<'g> Freezer<'g> {
             let symbol = self.frozen_value(value);
             match guard {
                 Some(guard) if !known && symbol != value => _ = self.guards.insert(value, guard),
-                // Both versions have it, or there is one.
+                // Both versions have the value, or there is one version.
                 _ if self.guards.get(&value) != guard.as_ref() => _ = self.guards.remove(&value),
                 _ => {}
             }

@@ -1,17 +1,15 @@
-//! The equations themselves as tapes, with no scheme and no elimination in them: what an enclosure of a solution is
-//! verified with.
+//! The equations as tapes, without a scheme and without elimination: an enclosure of a solution is verified with them.
 
-use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Tape, lower};
+use symdiff::{Expr, Graph, Lowered, SparseMatrix, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
-use super::start::inputs;
 use crate::assemble::System;
 
 /// A matrix's entries: (row, column, slot).
 pub type Entries = Vec<(usize, usize, usize)>;
 
-/// Tapes over the parameters, t, q, v, w, λ, which stand where [`Layout`] says.
+/// Tapes over the parameters, t, q, v, w and λ in the slots of [`Layout`].
 #[derive(Clone, Debug)]
 pub struct EquationsProgram {
     /// Shared with the step's program.
@@ -22,20 +20,20 @@ pub struct EquationsProgram {
     pub constraint: Vec<usize>,
     /// Slots of Φ̇ and of Φ̈, m each, after [`rates`](Self::rates).
     pub constraint_rates: [Vec<usize>; 2],
-    /// Derivatives of the motion's equations after [`slopes`](Self::slopes): by q, v, w and λ.
+    /// Derivatives of the motion's equations after [`jacobian`](Self::jacobian): by q, v, w and λ.
     pub motion_by: [Entries; 4],
-    /// Φ_q after [`slopes`](Self::slopes).
+    /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
     /// Slots of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
-    /// Slots and places of the positions, and of the velocities, that are kept at the start, after [`given`](Self::given).
+    /// (coordinate, slot) of the positions, and of the velocities, that are given at the start, after [`given`](Self::given).
     pub kept: [Vec<(usize, usize)>; 2],
     lowered: Lowered,
 }
 
 const RESIDUAL: usize = 0;
 const RATES: usize = 1;
-const SLOPES: usize = 2;
+const JACOBIAN: usize = 2;
 const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
 
@@ -50,7 +48,7 @@ impl EquationsProgram {
         &self.lowered.constants
     }
 
-    /// Once a box of parameters.
+    /// Once for a box of parameters.
     pub fn sample(&self) -> &Tape {
         &self.lowered.stages[0]
     }
@@ -66,8 +64,8 @@ impl EquationsProgram {
     }
 
     /// All first derivatives.
-    pub fn slopes(&self) -> &Tape {
-        &self.lowered.kernels[SLOPES]
+    pub fn jacobian(&self) -> &Tape {
+        &self.lowered.kernels[JACOBIAN]
     }
 
     /// The outputs.
@@ -75,7 +73,7 @@ impl EquationsProgram {
         &self.lowered.kernels[OBSERVE]
     }
 
-    /// What is kept at the start.
+    /// Given positions and velocities of the start.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]
     }
@@ -85,13 +83,13 @@ impl EquationsProgram {
 pub fn compile_equations(system: &System) -> EquationsProgram {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let mut graph = system.graph.clone();
-    let (motion, slopes) = equations_of_motion(system, &mut graph);
+    let (motion, jacobian) = equations_of_motion(system, &mut graph);
     let rate = time_derivative(system, &mut graph, &system.constraint);
     let rate_of_rate = time_derivative(system, &mut graph, &rate);
     let by = |graph: &mut Graph, symbols: &[Expr]| graph.jacobian(&motion, symbols);
     let mut matrices: Vec<SparseMatrix> =
         [&system.q, &system.v, &system.w, &system.lambda].map(|symbols| by(&mut graph, symbols)).into();
-    matrices.push(slopes);
+    matrices.push(jacobian);
     let kept = [&system.start.position, &system.start.velocity];
     let given: Vec<Expr> = kept.iter().flat_map(|values| values.iter().flatten().copied()).collect();
     let free = |values: &[Expr]| values.iter().map(|&value| (value, None)).collect::<Vec<_>>();
@@ -102,12 +100,11 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         free(&given),
     ];
-    let inputs: Vec<Input> = inputs(system, &layout);
-    let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
+    let lowered = lower(&graph, &layout.inputs(system), 1, layout.slots() as u32, &kernels);
 
     let (n, m) = (system.q.len(), system.lambda.len());
     let slots = |kernel: usize| lowered.outputs[kernel].iter().map(|&slot| slot as usize);
-    let mut derivatives = slots(SLOPES);
+    let mut derivatives = slots(JACOBIAN);
     let mut entries = |matrix: &SparseMatrix| -> Entries {
         matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), slot)| (row, column, slot)).collect()
     };

@@ -7,17 +7,17 @@ use crate::assemble::System;
 /// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();
-    // What acts only sometimes comes last: without it the rows are those of a system that does not have it.
+    // Conditional forces come last: without them the rows are those of a system that has none.
     let force = match system.touching {
         Some(touching) => graph.assume(&system.force, touching, false),
         None => system.force.clone(),
     };
     let mut rows: Vec<Expr> = force.into_iter().map(|force| graph.neg(force)).collect();
     debug_assert_eq!(rows.len(), n);
-    let slopes = graph.jacobian(&system.constraint, &system.q);
-    for (constraint, coordinate, slope) in slopes.entries() {
-        let pull = graph.mul(slope, system.lambda[constraint]);
-        rows[coordinate] = graph.add(rows[coordinate], pull);
+    let jacobian = graph.jacobian(&system.constraint, &system.q);
+    for (constraint, coordinate, derivative) in jacobian.entries() {
+        let force = graph.mul(derivative, system.lambda[constraint]);
+        rows[coordinate] = graph.add(rows[coordinate], force);
     }
     for (row, &inertia) in rows.iter_mut().zip(&system.inertia) {
         *row = graph.add(*row, inertia);
@@ -28,16 +28,16 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
             *row = graph.select(touching, all, *row);
         }
     }
-    (rows, slopes)
+    (rows, jacobian)
 }
 
-/// d/dt of expressions of t, q and v, along v and w.
+/// d/dt of expressions of t, q and v, with q̇ = v and v̇ = w.
 pub fn time_derivative(system: &System, graph: &mut Graph, of: &[Expr]) -> Vec<Expr> {
     let along = [(&system.q, &system.v), (&system.v, &system.w)];
     let mut rates: Vec<Expr> = of.iter().map(|&value| graph.derivative(value, system.time)).collect();
     for (coordinates, speeds) in along {
-        for (row, column, slope) in graph.jacobian(of, coordinates).entries() {
-            let change = graph.mul(slope, speeds[column]);
+        for (row, column, derivative) in graph.jacobian(of, coordinates).entries() {
+            let change = graph.mul(derivative, speeds[column]);
             rates[row] = graph.add(rates[row], change);
         }
     }

@@ -1,9 +1,13 @@
-//! Where a program's memory holds what.
+//! The layout of a program's memory.
 
 use std::ops::Range;
 
-/// The slots that integration reads and writes; a program's own values stand above them. Two programs of one system
-/// share this part, so that a state can be handed from one to the other.
+use symdiff::{Expr, Input};
+
+use crate::assemble::System;
+
+/// The slots that integration reads and writes; a program's own values stand above them. All programs of a system share
+/// this part, so that a state can be copied from one to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Uncertain parameters, k.
@@ -58,5 +62,25 @@ impl Layout {
     /// The slots that make up a state: q, v, a, w, λ.
     pub fn state(&self) -> Range<usize> {
         self.q.start..self.lambda.end
+    }
+
+    /// The system's symbols as inputs: parameters at stage 0, everything else at stage 1.
+    pub(super) fn inputs(&self, system: &System) -> Vec<Input> {
+        let mut inputs = Vec::new();
+        let mut add = |symbols: &[Expr], start: usize, stage: usize| {
+            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input {
+                symbol,
+                stage,
+                slot: slot as u32,
+            }));
+        };
+        let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+        add(&parameters, self.parameters.start, 0);
+        add(&[system.time], self.time, 1);
+        add(&system.q, self.q.start, 1);
+        add(&system.v, self.v.start, 1);
+        add(&system.w, self.w.start, 1);
+        add(&system.lambda, self.lambda.start, 1);
+        inputs
     }
 }

@@ -1,10 +1,18 @@
-//! System → [`Program`]: tapes for the start, for one step of a scheme, and for what is observed.
+//! System → [`Program`]: tapes for the start, for one step of a scheme, and for the outputs.
+//!
+//! - `equations`: the equations of motion and the constraints' rates as expressions;
+//! - `scheme`: the integration schemes' coefficients;
+//! - `newton_matrix`: residual, Newton matrix and new state of a step;
+//! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start; `equation_tapes`: the equations alone;
+//! - `layout`: the memory that all of them share.
 
 mod elimination;
 mod equation_tapes;
 mod equations;
 mod layout;
 mod newton_matrix;
+mod program;
 mod scheme;
 mod sparse_lu;
 mod start;
@@ -12,7 +20,8 @@ mod step;
 
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
 pub use layout::Layout;
+pub use program::{Mode, PivotSample, Program, Watched, WatchedPivot};
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
-pub use sparse_lu::{NoFactors, PROBES};
+pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
-pub use step::{Mode, Probe, Program, Watched, WatchedPivot, compile};
+pub use step::compile;

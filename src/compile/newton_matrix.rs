@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Other schemes have other numbers in the same places ([`Coefficients`]): a₊ = g w₊ + e w − d a. With x = w₊: q₊ = q̂ + b x
-//! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂, v̂ are known when the step begins. The constraint is divided
+//! and v₊ = v̂ + c x, b = βh²g, c = γhg (HHT: g = 1+α), where q̂ and v̂ do not change in the iteration. The constraint is divided
 //! by b so that the matrix does not degenerate as h → 0; a scheme of index 2 has Φ̇(q₊,v₊,t₊)/c = 0 in its place.
 
 use rustc_hash::FxHashMap;
@@ -22,13 +22,13 @@ use super::layout::Layout;
 use super::scheme::{Coefficients, ConstraintLevel};
 use crate::assemble::System;
 
-/// Stage of what changes with the sample only.
+/// Stage of values that change with the sample only.
 pub const SAMPLE: usize = 0;
-/// Stage of what changes with the step size.
+/// Stage of values that change with the step size.
 pub const STEP_SIZE: usize = 1;
-/// Stage of what changes from step to step.
+/// Stage of values that change from step to step.
 pub const STEP: usize = 2;
-/// Stage of what changes in Newton's iteration.
+/// Stage of values that change in Newton's iteration.
 pub const ITERATION: usize = 3;
 
 /// A step's equations over the symbols of [`step_inputs`].
@@ -46,13 +46,13 @@ pub struct NewtonSystem {
     pub algorithmic: Vec<Expr>,
     /// w₊, n: the iterate itself.
     pub acceleration: Vec<Expr>,
-    /// M(q₊) (a₊ − a), n: what local errors are made of.
+    /// M(q₊) (a₊ − a), n, from which local errors are estimated.
     pub inertial_change: Vec<Expr>,
-    /// Where it is not positive, nothing acts that acts only sometimes.
-    pub touching: Option<Expr>,
+    /// Where it is not positive, no conditional effect is active; `None` where there is no conditional effect.
+    pub active_condition: Option<Expr>,
 }
 
-/// The symbols of a step that the system does not have: the state at its beginning, h and the iterate.
+/// The symbols that a step adds to the system's: the state at its beginning, h and the iterate.
 struct StepSymbols {
     q: Vec<Expr>,
     v: Vec<Expr>,
@@ -88,7 +88,7 @@ impl StepSymbols {
         add(&self.a, layout.a.start, STEP);
         add(&self.w, layout.w.start, STEP);
         add(&self.x, layout.iterate.start, ITERATION);
-        // The system's own symbols stand for the state wherever a kernel looks at it between steps.
+        // Kernels that run between steps read the state by the system's own symbols.
         add(&system.lambda, layout.lambda.start, ITERATION);
         add(&[system.time], layout.time, ITERATION);
         add(&system.q, layout.q.start, ITERATION);
@@ -98,6 +98,21 @@ impl StepSymbols {
     }
 }
 
+/// The gains of a step: what a change of w₊ does to q₊ (b) and to v₊ (c).
+#[derive(Clone, Copy)]
+struct Gains {
+    h2: Expr,
+    b: Expr,
+    c: Expr,
+}
+
+/// The state at the end of a step.
+struct NewState {
+    position: Vec<Expr>,
+    velocity: Vec<Expr>,
+    algorithmic: Vec<Expr>,
+}
+
 /// The equations of a step and their inputs.
 pub fn newton_system(
     system: &System,
@@ -105,38 +120,83 @@ pub fn newton_system(
     layout: &Layout,
     coefficients: Coefficients,
 ) -> (NewtonSystem, Vec<Input>) {
-    let (n, m) = (system.q.len(), system.lambda.len());
+    let symbols = StepSymbols::new(graph, system.q.len());
+    let h2 = graph.mul(symbols.h, symbols.h);
+    let b = graph.scale(coefficients.beta * coefficients.of_new(), h2);
+    let c = graph.scale(coefficients.gamma * coefficients.of_new(), symbols.h);
+    let gains = Gains { h2, b, c };
+    let state = new_state(graph, &symbols, coefficients, gains);
+    let (residual, mut matrix) = residual_and_matrix(system, graph, coefficients.level, gains);
+
+    // Everything at t₊: the system's symbols become the step's expressions.
+    let mut at_end: FxHashMap<Expr, Expr> = FxHashMap::default();
+    at_end.insert(system.time, symbols.t);
+    for i in 0..system.q.len() {
+        at_end.insert(system.q[i], state.position[i]);
+        at_end.insert(system.v[i], state.velocity[i]);
+        at_end.insert(system.w[i], symbols.x[i]);
+    }
+    let residual = graph.substitute(&residual, &at_end);
+    let inertial_change = inertial_change(system, graph, &symbols, &state, &at_end);
+    let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+    let mut values = graph.substitute(&values, &at_end).into_iter();
+    for entry in matrix.rows.iter_mut().flatten() {
+        entry.1 = values.next().expect("one value an entry");
+    }
+    let active_condition = system.touching.map(|condition| graph.substitute(&[condition], &at_end)[0]);
+    let inputs = symbols.inputs(layout, system);
+    let NewState { position, velocity, algorithmic } = state;
+    let acceleration = symbols.x;
+    let newton = NewtonSystem {
+        residual,
+        matrix,
+        position,
+        velocity,
+        algorithmic,
+        acceleration,
+        inertial_change,
+        active_condition,
+    };
+    (newton, inputs)
+}
+
+/// q₊, v₊ and a₊, summed in the order of Negrut et al.
+fn new_state(graph: &mut Graph, symbols: &StepSymbols, coefficients: Coefficients, gains: Gains) -> NewState {
     let Coefficients { beta, gamma, .. } = coefficients;
     let (of_new, of_old, of_algorithmic) =
         (coefficients.of_new(), coefficients.of_old(), coefficients.of_algorithmic());
-    let symbols = StepSymbols::new(graph, n);
-    let h = symbols.h;
-    let h2 = graph.mul(h, h);
-    let b = graph.scale(beta * of_new, h2);
-    let c = graph.scale(gamma * of_new, h);
-
-    // q₊ and v₊, step by step in the paper's order.
-    let (mut position, mut velocity, mut algorithmic) = (Vec::new(), Vec::new(), Vec::new());
+    let (h, Gains { h2, b, c }) = (symbols.h, gains);
+    let mut state = NewState { position: Vec::new(), velocity: Vec::new(), algorithmic: Vec::new() };
     let (q_a, q_w) = (graph.scale(0.5 - beta * (1.0 + of_algorithmic), h2), graph.scale(beta * of_old, h2));
     let (v_a, v_w) = (graph.scale(1.0 - gamma * (1.0 + of_algorithmic), h), graph.scale(gamma * of_old, h));
-    for i in 0..n {
+    for i in 0..symbols.q.len() {
         let (q, v, a, w, x) = (symbols.q[i], symbols.v[i], symbols.a[i], symbols.w[i], symbols.x[i]);
         let drift = graph.mul(h, v);
         let predicted = graph.add(q, drift);
         let (from_a, from_w, from_x) = (graph.mul(q_a, a), graph.mul(q_w, w), graph.mul(b, x));
         let known = graph.add(predicted, from_a);
         let known = graph.add(known, from_w);
-        position.push(graph.add(known, from_x));
+        state.position.push(graph.add(known, from_x));
         let (from_a, from_w, from_x) = (graph.mul(v_a, a), graph.mul(v_w, w), graph.mul(c, x));
         let known = graph.add(v, from_a);
         let known = graph.add(known, from_w);
-        velocity.push(graph.add(known, from_x));
+        state.velocity.push(graph.add(known, from_x));
         let (new, old, before) = (graph.scale(of_new, x), graph.scale(of_old, w), graph.scale(of_algorithmic, a));
-        let true_ones = graph.add(new, old);
-        algorithmic.push(graph.sub(true_ones, before));
+        let sum = graph.add(new, old);
+        state.algorithmic.push(graph.sub(sum, before));
     }
+    state
+}
 
-    let (motion, slopes) = equations_of_motion(system, graph);
+/// The residual and its derivatives by (w₊, λ₊), over the system's own symbols.
+fn residual_and_matrix(
+    system: &System,
+    graph: &mut Graph,
+    level: ConstraintLevel,
+    Gains { b, c, .. }: Gains,
+) -> (Vec<Expr>, SparseMatrix) {
+    let (n, m) = (system.q.len(), system.lambda.len());
+    let (motion, constraint_jacobian) = equations_of_motion(system, graph);
     let by_position = graph.jacobian(&motion, &system.q);
     let by_velocity = graph.jacobian(&motion, &system.v);
     let by_acceleration = graph.jacobian(&motion, &system.w);
@@ -156,52 +216,43 @@ pub fn newton_system(
     for (row, column, value) in by_multiplier.entries() {
         matrix.add(graph, row, n + column, value);
     }
-    for (row, column, value) in slopes.entries() {
+    for (row, column, value) in constraint_jacobian.entries() {
         matrix.add(graph, n + row, column, value);
     }
     let mut residual = motion;
-    match coefficients.level {
-        ConstraintLevel::Position => residual.extend(system.constraint.iter().map(|&gap| graph.div(gap, b))),
+    match level {
+        ConstraintLevel::Position => residual.extend(system.constraint.iter().map(|&value| graph.div(value, b))),
         ConstraintLevel::Velocity => {
             let rates = time_derivative(system, graph, &system.constraint);
-            // ∂Φ̇/∂v₊ = Φ_q stands there already.
+            // ∂Φ̇/∂v₊ = Φ_q is in the matrix already.
             let ratio = graph.div(b, c);
-            for (row, column, slope) in graph.jacobian(&rates, &system.q).entries() {
-                let value = graph.mul(ratio, slope);
+            for (row, column, derivative) in graph.jacobian(&rates, &system.q).entries() {
+                let value = graph.mul(ratio, derivative);
                 matrix.add(graph, n + row, column, value);
             }
             residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
         }
     }
+    (residual, matrix)
+}
 
-    // Everything at t₊: the system's symbols become the step's expressions.
-    let mut at_end: FxHashMap<Expr, Expr> = FxHashMap::default();
-    at_end.insert(system.time, symbols.t);
-    for i in 0..n {
-        at_end.insert(system.q[i], position[i]);
-        at_end.insert(system.v[i], velocity[i]);
-        at_end.insert(system.w[i], symbols.x[i]);
-    }
-    let residual = graph.substitute(&residual, &at_end);
+/// M(q₊) (a₊ − a).
+fn inertial_change(
+    system: &System,
+    graph: &mut Graph,
+    symbols: &StepSymbols,
+    state: &NewState,
+    at_end: &FxHashMap<Expr, Expr>,
+) -> Vec<Expr> {
     let masses: Vec<Expr> = system.mass.iter().map(|&(_, _, mass)| mass).collect();
-    let masses = graph.substitute(&masses, &at_end);
-    let mut inertial_change = vec![graph.constant(0.0); n];
+    let masses = graph.substitute(&masses, at_end);
+    let mut changes = vec![graph.constant(0.0); system.q.len()];
     for (&(row, column, _), mass) in system.mass.iter().zip(masses) {
-        let change = graph.sub(algorithmic[column], symbols.a[column]);
+        let change = graph.sub(state.algorithmic[column], symbols.a[column]);
         let change = graph.mul(mass, change);
-        inertial_change[row] = graph.add(inertial_change[row], change);
+        changes[row] = graph.add(changes[row], change);
     }
-    let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-    let mut values = graph.substitute(&values, &at_end).into_iter();
-    for entry in matrix.rows.iter_mut().flatten() {
-        entry.1 = values.next().expect("one value an entry");
-    }
-    let touching = system.touching.map(|touching| graph.substitute(&[touching], &at_end)[0]);
-    let inputs = symbols.inputs(layout, system);
-    let acceleration = symbols.x;
-    let system =
-        NewtonSystem { residual, matrix, position, velocity, algorithmic, acceleration, inertial_change, touching };
-    (system, inputs)
+    changes
 }
 
 #[cfg(test)]
@@ -215,7 +266,7 @@ mod tests {
 
     /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
     #[test]
-    fn the_matrix_is_the_residuals_slope_where_forces_depend_on_reactions() {
+    fn the_matrix_is_the_residuals_jacobian_where_forces_depend_on_reactions() {
         let mut m = Model::new();
         m.body("rod", "2", "0.1", "xya", &[("pin", "-0.3", "0.1"), ("tip", "0.4", "0")]);
         m.body("bob", "1", "0.1", "xya", &[]);
@@ -269,11 +320,14 @@ mod tests {
                 residual(&moved)
             });
             for (row, (ahead, behind)) in ends[0].iter().zip(&ends[1]).enumerate() {
-                let slope = (ahead - behind) / 2e-6;
+                let difference = (ahead - behind) / 2e-6;
                 let entry = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (row, column));
                 let entry = entry.map_or(0.0, |(_, number)| *number);
-                assert!((slope - entry).abs() < 1e-6 * (1.0 + slope.abs()), "({row}, {column}): {entry}, not {slope}");
-                // The constraints' slopes are the columns' other half; the rest is friction's.
+                assert!(
+                    (difference - entry).abs() < 1e-6 * (1.0 + difference.abs()),
+                    "({row}, {column}): {entry}, not {difference}"
+                );
+                // Φ_qᵀ has the entries of Φ_q; friction adds the rest.
                 if row < n && column >= n {
                     let transposed = entries.iter().zip(&numbers).find(|((r, c, _), _)| (*r, *c) == (column, row));
                     by_friction += usize::from((entry - transposed.map_or(0.0, |(_, number)| *number)).abs() > 1e-6);

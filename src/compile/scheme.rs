@@ -1,4 +1,4 @@
-//! The integration schemes: HHT, generalised-α and the trapezoidal rule are one family, and differ in numbers only.
+//! The integration schemes: HHT, generalised-α and the trapezoidal rule are one family, and differ in coefficients only.
 //!
 //! Chung & Hulbert, J. Appl. Mech. 60 (1993) 371, in the form of Arnold & Brüls, Multibody Syst. Dyn. 18 (2007) 185, with
 //! the algorithmic acceleration a apart from the true one, w = v̇:
@@ -10,7 +10,7 @@
 //!
 //! γ = ½ − Δ with Δ = α_m − α_f makes it of second order, and then a ≈ w(t + Δh); β = (γ + ½)²/4 damps high frequencies most.
 //!
-//! | scheme | α_m | α_f | ρ∞: what a step leaves of the highest frequencies |
+//! | scheme | α_m | α_f | ρ∞: amplification of the highest frequencies |
 //! |---|---|---|---|
 //! | HHT | 0 | −α | (1+α)/(1−α) |
 //! | generalised-α | (2ρ∞−1)/(ρ∞+1) | ρ∞/(ρ∞+1) | as chosen |
@@ -25,15 +25,15 @@ pub enum Scheme {
         alpha: f64,
     },
     /// Generalised-α (Chung & Hulbert 1993), index 3: positions fulfil the constraints. The nearer ρ∞ to 1, the smaller the
-    /// error and the sooner coarse steps fail: with 0.9 the slider crank is lost at h = 2e-3 where HHT of ρ∞ = 0.9 goes on.
+    /// error and the sooner long steps fail: with 0.9 the slider crank fails at h = 2e-3, where HHT of ρ∞ = 0.9 does not.
     GeneralisedAlpha {
         /// ρ∞ ∈ [0, 1); 1 diverges on constraints.
         spectral_radius: f64,
     },
     /// The trapezoidal rule (Newmark's with β = ¼, γ = ½), index 2: velocities fulfil the constraints, positions drift from
-    /// them by O(h²): 5e-6 of a pendulum's length squared in 10 s at h = 1e-3. Nothing is damped: an error that a step
-    /// makes in reactions and accelerations alternates from then on, O(h²), 8e-7 of the pendulum's tension.
-    /// Near singular positions its energy may jump, and its order is lost.
+    /// them by O(h²): 5e-6 of a pendulum's length squared in 10 s at h = 1e-3. The rule damps nothing: an error of a step in
+    /// reactions and accelerations alternates from then on, O(h²), 8e-7 of the pendulum's tension. Near singular positions
+    /// the energy may jump, and the order is lost.
     TrapezoidalIndex2,
 }
 
@@ -46,19 +46,23 @@ pub enum ConstraintLevel {
     Velocity,
 }
 
-/// A scheme's numbers.
+/// A scheme's coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Coefficients {
+    /// Share of a in the balance of accelerations.
     pub alpha_m: f64,
+    /// Share of w in the balance of accelerations.
     pub alpha_f: f64,
+    /// Newmark's β.
     pub beta: f64,
+    /// Newmark's γ.
     pub gamma: f64,
+    /// The derivative of the constraints that a step makes zero.
     pub level: ConstraintLevel,
 }
 
 impl Scheme {
-    /// Its numbers.
+    /// The scheme's coefficients.
     pub fn coefficients(self) -> Coefficients {
         let level = ConstraintLevel::Position;
         match self {
@@ -83,7 +87,7 @@ impl Scheme {
         }
     }
 
-    /// ρ∞: what a step leaves of the amplitude of the highest frequencies.
+    /// ρ∞: the factor by which a step multiplies the amplitude of the highest frequencies.
     pub fn spectral_radius(self) -> f64 {
         match self {
             Self::Hht { alpha } => (1.0 + alpha) / (1.0 - alpha),
@@ -94,17 +98,17 @@ impl Scheme {
 }
 
 impl Coefficients {
-    /// What a₊ has of w₊: (1−α_f)/(1−α_m).
+    /// Coefficient of w₊ in a₊: (1−α_f)/(1−α_m).
     pub fn of_new(self) -> f64 {
         (1.0 - self.alpha_f) / (1.0 - self.alpha_m)
     }
 
-    /// What a₊ has of w: α_f/(1−α_m).
+    /// Coefficient of w in a₊: α_f/(1−α_m).
     pub fn of_old(self) -> f64 {
         self.alpha_f / (1.0 - self.alpha_m)
     }
 
-    /// What a₊ has of −a: α_m/(1−α_m).
+    /// Coefficient of −a in a₊: α_m/(1−α_m).
     pub fn of_algorithmic(self) -> f64 {
         self.alpha_m / (1.0 - self.alpha_m)
     }
@@ -114,17 +118,17 @@ impl Coefficients {
         self.alpha_m - self.alpha_f
     }
 
-    /// b = βh²(1−α_f)/(1−α_m): what a change of w₊ does to q₊.
+    /// b = βh²(1−α_f)/(1−α_m): change of q₊ per change of w₊.
     pub fn position_gain(self, h: f64) -> f64 {
         self.beta * h * h * self.of_new()
     }
 
-    /// c = γh(1−α_f)/(1−α_m): what a change of w₊ does to v₊.
+    /// c = γh(1−α_f)/(1−α_m): change of v₊ per change of w₊.
     pub fn velocity_gain(self, h: f64) -> f64 {
         self.gamma * h * self.of_new()
     }
 
-    /// What the step's constraints are divided by, so that its matrix does not degenerate as h → 0: b or c.
+    /// Divisor of the step's constraints, which keeps its matrix from degenerating as h → 0: b or c.
     pub fn constraint_gain(self, h: f64) -> f64 {
         match self.level {
             ConstraintLevel::Position => self.position_gain(h),

@@ -1,5 +1,5 @@
-//! The start as tapes: Gauss–Newton corrections that bring positions, velocities, accelerations and multipliers onto the
-//! constraints.
+//! The start as tapes: Gauss–Newton corrections of positions, velocities, accelerations and multipliers that make them fulfil
+//! the constraints.
 //!
 //! ```text
 //! positions       [ D  Φ_qᵀ ] [δq]   [ 0 ]        velocities      the same matrix,  right side −(Φ_q v + Φ_t)
@@ -8,14 +8,14 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
-//! Q_λ is there where friction depends on reactions; the corrections are then Newton's.
+//! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
-//! A coordinate without inertia has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
+//! A massless coordinate has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
 //! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
 //!
-//! For positions and velocities, Φ has further rows: what holds at the start alone ([`crate::assemble::StartCondition`]).
+//! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
-//! D = diag(1/scale²) makes the change of the coordinates that are not kept smallest; kept ones have no column. ε > 0 makes
+//! D = diag(1/scale²) minimises the change of the coordinates that are not given; given ones have no column. ε > 0 makes
 //! the matrices quasi-definite (Vanderbei, SIAM J. Optim. 5 (1995) 100): every diagonal elimination order exists, also
 //! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
 //! exact.
@@ -24,16 +24,16 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
-use super::sparse_lu::{NoFactors, Numbers, PROBES, Pivoting, factorise};
+use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use crate::assemble::{StartCondition, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
 
-/// The same for constraints known to be redundant: the others do their work, and their multipliers stay near zero.
+/// The same for constraints known to be redundant: the others imply them, and their multipliers stay near zero.
 const RELAXATION: f64 = 1e6;
 
-/// Tapes for the start of a tile of samples; states stand where [`Layout`] says, corrections too.
+/// Tapes for the start of a tile of samples; states and corrections are in the slots of [`Layout`].
 #[derive(Clone, Debug)]
 pub struct StartProgram {
     /// Shared with the step's program.
@@ -44,8 +44,8 @@ pub struct StartProgram {
     pub constraint_rate: Vec<usize>,
     /// Slots of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
-    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::slopes`].
-    pub slope_entries: Vec<(usize, usize, usize)>,
+    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::jacobian`].
+    pub jacobian_entries: Vec<(usize, usize, usize)>,
     lowered: Lowered,
 }
 
@@ -54,7 +54,7 @@ const GUESS: usize = 1;
 const POSITION: usize = 2;
 const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
-const SLOPES: usize = 5;
+const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
 
 impl StartProgram {
@@ -73,7 +73,7 @@ impl StartProgram {
         &self.lowered.stages[0]
     }
 
-    /// Sets the positions and velocities that are kept.
+    /// Sets the positions and velocities that are given.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]
     }
@@ -104,108 +104,112 @@ impl StartProgram {
     }
 
     /// Φ_q.
-    pub fn slopes(&self) -> &Tape {
-        &self.lowered.kernels[SLOPES]
+    pub fn jacobian(&self) -> &Tape {
+        &self.lowered.kernels[JACOBIAN]
     }
 }
 
-/// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `probe` is a state near the one that is looked for (values of the layout's slots).
+/// A value to compute, and the slot that it must have, if any.
+type Target = (Expr, Option<u32>);
+
+/// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `sample` is a state near
+/// the start (values of the layout's slots).
 ///
 /// # Errors
-/// Where the equations have no finite values at the probe (rows: motion, constraints, then start conditions), and where
+/// Where the equations have no finite values at the sample (rows: motion, constraints, then start conditions), and where
 /// the graph is full.
-pub fn compile_start(system: &System, redundant: &[usize], probe: &[f64]) -> Result<StartProgram, NoFactors> {
+pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Result<StartProgram, NoFactors> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
-    let inputs = inputs(system, &layout);
+    let inputs = layout.inputs(system);
     let mut graph = system.graph.clone();
-    let (motion, slopes) = equations_of_motion(system, &mut graph);
-    let rate = time_derivative(system, &mut graph, &system.constraint);
-    let rate_of_rate = time_derivative(system, &mut graph, &rate);
-    let (of_position, of_velocity): (Kind, Kind) = (|condition| condition.position, |condition| condition.velocity);
-    let (further, place_slopes) = with_conditions(system, &mut graph, &slopes, of_position);
-    let closure = [&system.constraint[..], &further].concat();
-    let (further, motion_slopes) = with_conditions(system, &mut graph, &slopes, of_velocity);
-    let rates = [rate, time_derivative(system, &mut graph, &further)].concat();
-
-    let mut builder = Builder { system, graph, inputs: &inputs, redundant, probe };
-    let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
-    let diagonal: Vec<(usize, usize, Expr)> =
-        metric.iter().enumerate().map(|(i, &weight)| (i, i, builder.graph.constant(weight))).collect();
-    let kept = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
-    let zero = vec![builder.graph.constant(0.0); system.q.len()];
-    let none = SparseMatrix::zero(system.q.len(), system.lambda.len());
-    let position = builder
-        .correction(&diagonal, &none, &place_slopes, &kept(&system.start.position), &zero, &closure)
-        .map_err(|none| numbered(system, none, of_position))?;
-    let velocity = builder
-        .correction(&diagonal, &none, &motion_slopes, &kept(&system.start.velocity), &zero, &rates)
-        .map_err(|none| numbered(system, none, of_velocity))?;
-    let by_multiplier = builder.graph.jacobian(&system.force, &system.lambda);
-    let (mass, motion) = builder.with_defined_coordinates(&slopes, motion, &rate_of_rate);
-    let free = vec![false; system.q.len()];
-    let acceleration = builder.correction(&mass, &by_multiplier, &slopes, &free, &motion, &rate_of_rate)?;
+    let equations = Equations::new(system, &mut graph);
+    let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
+    let [position, velocity, acceleration] = builder.corrections(&equations)?;
     let graph = builder.graph;
 
-    let at = |values: &[Expr], start: usize| -> Vec<(Expr, Option<u32>)> {
+    let at = |values: &[Expr], start: usize| -> Vec<Target> {
         values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
     };
-    let mut given = Vec::new();
-    for (values, block) in [(&system.start.position, &layout.q), (&system.start.velocity, &layout.v)] {
-        given
-            .extend(values.iter().zip(block.clone()).filter_map(|(value, slot)| value.map(|v| (v, Some(slot as u32)))));
-    }
-    let guess = at(&system.start.guess, layout.q.start);
     let with = |correction: &[Expr], further: &[Expr]| {
-        let mut outputs = at(correction, layout.correction.start);
-        outputs.extend(further.iter().map(|&value| (value, None)));
-        outputs
+        let mut targets = at(correction, layout.correction.start);
+        targets.extend(further.iter().map(|&value| (value, None)));
+        targets
     };
     let n = system.q.len();
+    let jacobian = &equations.jacobian;
     let kernels = [
-        given,
-        guess,
-        with(&position[..n], &closure),
-        with(&velocity[..n], &rates),
+        given_values(system, &layout),
+        at(&system.start.guess, layout.q.start),
+        with(&position[..n], &equations.closure),
+        with(&velocity[..n], &equations.closure_rate),
         with(&acceleration, &[]),
-        slopes.entries().map(|(_, _, value)| (value, None)).collect(),
+        jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
         lowered.outputs[kernel].iter().skip(skip).map(|&slot| slot as usize).collect::<Vec<_>>()
     };
-    let slope_entries =
-        slopes.entries().zip(tail(SLOPES, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
+    let jacobian_entries =
+        jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
     Ok(StartProgram {
         constraint: tail(POSITION, n),
         constraint_rate: tail(VELOCITY, n),
         outputs: tail(OBSERVE, 0),
-        slope_entries,
+        jacobian_entries,
         layout,
         lowered,
     })
 }
 
-/// Parameters at stage 0, everything else at stage 1.
-pub(super) fn inputs(system: &System, layout: &Layout) -> Vec<Input> {
-    let mut inputs = Vec::new();
-    let mut add = |symbols: &[Expr], start: usize, stage: usize| {
-        inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input { symbol, stage, slot: slot as u32 }));
-    };
-    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
-    add(&parameters, layout.parameters.start, 0);
-    add(&[system.time], layout.time, 1);
-    add(&system.q, layout.q.start, 1);
-    add(&system.v, layout.v.start, 1);
-    add(&system.w, layout.w.start, 1);
-    add(&system.lambda, layout.lambda.start, 1);
-    inputs
+/// Positions and velocities that are given at the start, in the slots of the state.
+fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
+    let mut given = Vec::new();
+    for (values, block) in [(&system.start.position, &layout.q), (&system.start.velocity, &layout.v)] {
+        given
+            .extend(values.iter().zip(block.clone()).filter_map(|(value, slot)| value.map(|v| (v, Some(slot as u32)))));
+    }
+    given
+}
+
+/// The equations that hold at the start.
+struct Equations {
+    /// M w + Φ_qᵀ λ − Q.
+    motion: Vec<Expr>,
+    /// Φ_q.
+    jacobian: SparseMatrix,
+    /// Φ, then the conditions on positions; and its derivatives by q.
+    closure: Vec<Expr>,
+    closure_jacobian: SparseMatrix,
+    /// Φ̇, then the rates of the conditions on velocities; and its derivatives by v.
+    closure_rate: Vec<Expr>,
+    closure_rate_jacobian: SparseMatrix,
+    /// Φ̈.
+    rate_of_rate: Vec<Expr>,
+}
+
+/// Conditions on positions.
+const OF_POSITION: Kind = |condition| condition.position;
+/// Conditions on velocities.
+const OF_VELOCITY: Kind = |condition| condition.velocity;
+
+impl Equations {
+    fn new(system: &System, graph: &mut Graph) -> Self {
+        let (motion, jacobian) = equations_of_motion(system, graph);
+        let rate = time_derivative(system, graph, &system.constraint);
+        let rate_of_rate = time_derivative(system, graph, &rate);
+        let (further, closure_jacobian) = with_conditions(system, graph, &jacobian, OF_POSITION);
+        let closure = [&system.constraint[..], &further].concat();
+        let (further, closure_rate_jacobian) = with_conditions(system, graph, &jacobian, OF_VELOCITY);
+        let closure_rate = [rate, time_derivative(system, graph, &further)].concat();
+        Self { motion, jacobian, closure, closure_jacobian, closure_rate, closure_rate_jacobian, rate_of_rate }
+    }
 }
 
 /// Conditions on positions, or those on velocities.
 type Kind = fn(&StartCondition) -> bool;
 
-/// Rows of conditions of some kind, which stand behind the constraints, by their numbers among all conditions.
+/// Renumbers the rows of conditions of a kind, which follow the constraints, by their numbers among all conditions.
 fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
     let NoFactors::Singular { rows } = none else { return none };
     let first = system.q.len() + system.constraint.len();
@@ -215,11 +219,16 @@ fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
     NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
 }
 
-/// The conditions of some kind, and Φ_q with theirs below it.
-fn with_conditions(system: &System, graph: &mut Graph, slopes: &SparseMatrix, kind: Kind) -> (Vec<Expr>, SparseMatrix) {
+/// The conditions of a kind, and Φ_q with their derivatives below it.
+fn with_conditions(
+    system: &System,
+    graph: &mut Graph,
+    jacobian: &SparseMatrix,
+    kind: Kind,
+) -> (Vec<Expr>, SparseMatrix) {
     let conditions = system.start.conditions.iter().filter(|condition| kind(condition));
     let values: Vec<Expr> = conditions.map(|condition| condition.value).collect();
-    let mut all = slopes.clone();
+    let mut all = jacobian.clone();
     all.rows.extend(graph.jacobian(&values, &system.q).rows);
     (values, all)
 }
@@ -229,34 +238,60 @@ struct Builder<'s> {
     graph: Graph,
     inputs: &'s [Input],
     redundant: &'s [usize],
-    probe: &'s [f64],
+    sample: &'s [f64],
 }
 
 impl Builder<'_> {
-    /// Solution of [metric Φ_qᵀ − `loaded`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; kept coordinates have δ = 0.
+    /// The corrections of positions, of velocities, and of accelerations with multipliers.
+    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors> {
+        let system = self.system;
+        let n = system.q.len();
+        let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
+        let diagonal: Vec<(usize, usize, Expr)> =
+            metric.iter().enumerate().map(|(i, &weight)| (i, i, self.graph.constant(weight))).collect();
+        let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
+        let zero = vec![self.graph.constant(0.0); n];
+        let none = SparseMatrix::zero(n, system.lambda.len());
+        let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
+        let position = self
+            .correction(&diagonal, &none, closure_jacobian, &given(&system.start.position), &zero, closure)
+            .map_err(|none| numbered(system, none, OF_POSITION))?;
+        let velocity = self
+            .correction(&diagonal, &none, closure_rate_jacobian, &given(&system.start.velocity), &zero, closure_rate)
+            .map_err(|none| numbered(system, none, OF_VELOCITY))?;
+        let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
+        let Equations { jacobian, rate_of_rate, .. } = equations;
+        let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate);
+        let free = vec![false; n];
+        let acceleration = self.correction(&mass, &by_multiplier, jacobian, &free, &motion, rate_of_rate)?;
+        Ok([position, velocity, acceleration])
+    }
+
+    /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have
+    /// δ = 0.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
-        loaded: &SparseMatrix,
-        slopes: &SparseMatrix,
-        kept: &[bool],
+        by_multiplier: &SparseMatrix,
+        jacobian: &SparseMatrix,
+        given: &[bool],
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, NoFactors> {
-        let (n, m) = (self.system.q.len(), slopes.rows.len());
+        let (n, m) = (self.system.q.len(), jacobian.rows.len());
         let (one, mut matrix) = (self.graph.constant(1.0), SparseMatrix::zero(n + m, n + m));
-        for &(row, column, value) in metric.iter().filter(|(row, column, _)| !kept[*row] && !kept[*column]) {
+        for &(row, column, value) in metric.iter().filter(|(row, column, _)| !given[*row] && !given[*column]) {
             matrix.add(&mut self.graph, row, column, value);
         }
-        for (row, column, value) in slopes.entries().filter(|(_, column, _)| !kept[*column]) {
+        for (row, column, value) in jacobian.entries().filter(|(_, column, _)| !given[*column]) {
             matrix.add(&mut self.graph, n + row, column, value);
             matrix.add(&mut self.graph, column, n + row, value);
         }
-        for (row, column, value) in loaded.entries() {
+        for (row, column, value) in by_multiplier.entries() {
             let value = self.graph.neg(value);
             matrix.add(&mut self.graph, row, n + column, value);
         }
-        for coordinate in (0..n).filter(|&coordinate| kept[coordinate]) {
+        for coordinate in (0..n).filter(|&coordinate| given[coordinate]) {
             matrix.add(&mut self.graph, coordinate, coordinate, one);
         }
         let numbers = self.numbers(&matrix);
@@ -279,54 +314,54 @@ impl Builder<'_> {
             factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, Pivoting::Diagonal { constraints: n })?;
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);
-        kept.iter().zip(&mut right).filter(|(kept, _)| **kept).for_each(|(_, value)| *value = zero);
+        given.iter().zip(&mut right).filter(|(given, _)| **given).for_each(|(_, value)| *value = zero);
         Ok(factors.solve(&mut self.graph, &right))
     }
 
-    /// M and the equations of motion, augmented by the constraints that define coordinates without inertia. μ makes the
-    /// defined coordinate about as heavy as those that define it.
+    /// M and the equations of motion, augmented by the constraints that define massless coordinates. μ gives the defined
+    /// coordinate about the mass of those that define it.
     fn with_defined_coordinates(
         &mut self,
-        slopes: &SparseMatrix,
+        jacobian: &SparseMatrix,
         mut motion: Vec<Expr>,
         rate_of_rate: &[Expr],
     ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {
         let mut mass = self.system.mass.clone();
         let mut diagonal = vec![0.0; self.system.q.len()];
         let entries: Vec<Expr> = mass.iter().map(|&(_, _, value)| value).collect();
-        for (&(row, column, _), value) in mass.iter().zip(self.at_probe(&entries)) {
+        for (&(row, column, _), value) in mass.iter().zip(self.at_sample(&entries)) {
             if row == column {
                 diagonal[row] = value;
             }
         }
-        for (constraint, slopes) in slopes.rows.iter().enumerate() {
-            let defines = slopes.iter().any(|&(column, _)| diagonal[column] == 0.0);
-            let weight = slopes.iter().fold(0.0, |heaviest: f64, &(column, _)| heaviest.max(diagonal[column]));
+        for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
+            let defines = derivatives.iter().any(|&(column, _)| diagonal[column] == 0.0);
+            let weight = derivatives.iter().fold(0.0, |largest: f64, &(column, _)| largest.max(diagonal[column]));
             if !defines || weight == 0.0 {
                 continue;
             }
-            for &(row, slope) in slopes {
-                let pull = self.graph.scale(weight, slope);
-                let residual = self.graph.mul(pull, rate_of_rate[constraint]);
+            for &(row, derivative) in derivatives {
+                let weighted = self.graph.scale(weight, derivative);
+                let residual = self.graph.mul(weighted, rate_of_rate[constraint]);
                 motion[row] = self.graph.add(motion[row], residual);
-                for &(column, other) in slopes {
-                    mass.push((row, column, self.graph.mul(pull, other)));
+                for &(column, other) in derivatives {
+                    mass.push((row, column, self.graph.mul(weighted, other)));
                 }
             }
         }
         (mass, motion)
     }
 
-    /// Values at the probe.
-    fn at_probe(&self, exprs: &[Expr]) -> Vec<f64> {
+    /// Values at the sample.
+    fn at_sample(&self, exprs: &[Expr]) -> Vec<f64> {
         let slot_of: rustc_hash::FxHashMap<Expr, usize> =
             self.inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
-        self.graph.evaluate(exprs, |symbol| self.probe[slot_of[&symbol]])
+        self.graph.evaluate(exprs, |symbol| self.sample[slot_of[&symbol]])
     }
 
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
-        self.at_probe(&entries).into_iter().map(|value| [value; PROBES]).collect()
+        self.at_sample(&entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
     }
 
     /// Σ Φ_ki² / metric_ii: a constraint's own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.

@@ -12,7 +12,7 @@ use crate::results::Summary;
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs)]
-pub enum ReportError {
+pub enum ExportError {
     #[error("cannot write into the folder {}: {source}", path.display())]
     Folder { path: PathBuf, source: io::Error },
     #[error("cannot write {}: {source}", path.display())]
@@ -32,7 +32,7 @@ pub enum ReportError {
 ///
 /// # Errors
 /// At the first file that cannot be written; then older results are left as they were.
-pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = Together::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
     if !bounds.contributions.is_empty() {
@@ -42,11 +42,11 @@ pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<V
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
     for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
         let svg = plot_svg(&bounds.times, output)
-            .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
+            .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
         if let Some(contributions) = contributions {
             let svg = contributions_svg(&bounds.times, &output.name, contributions)
-                .map_err(|message| ReportError::Plot { output: output.name.clone(), message })?;
+                .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
@@ -163,7 +163,7 @@ mod tests {
         fs::write(&place, "mine").unwrap();
         let (bounds, summary) = results();
         let error = write_results(&place, &bounds, &summary).unwrap_err();
-        assert!(matches!(&error, ReportError::Folder { path, .. } if *path == place), "{error}");
+        assert!(matches!(&error, ExportError::Folder { path, .. } if *path == place), "{error}");
         assert!(
             error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
             "{error}"

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::files::ReportError;
+use super::files::ExportError;
 
 /// Files that are written under temporary names beside their places, and get their own when all are there. So neither
 /// a failure nor a killed run leaves half a file, or half a new file in place of an old one; a disk that is full leaves
@@ -21,7 +21,7 @@ impl<'d> Together<'d> {
     ///
     /// # Errors
     /// As [`prepare_folder`].
-    pub fn in_folder(dir: &'d Path) -> Result<Self, ReportError> {
+    pub fn in_folder(dir: &'d Path) -> Result<Self, ExportError> {
         prepare_folder(dir)?;
         Ok(Self { dir, files: Vec::new() })
     }
@@ -30,10 +30,10 @@ impl<'d> Together<'d> {
     ///
     /// # Errors
     /// If it cannot be written; temporary files go with `self`.
-    pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ReportError> {
+    pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ExportError> {
         let path = self.dir.join(name);
         let written = temporary(self.dir).and_then(|mut file| file.as_file_mut().write_all(contents).map(|()| file));
-        let file = written.map_err(|source| ReportError::Write { path: path.clone(), source })?;
+        let file = written.map_err(|source| ExportError::Write { path: path.clone(), source })?;
         self.files.push((path, file));
         Ok(())
     }
@@ -43,13 +43,13 @@ impl<'d> Together<'d> {
     ///
     /// # Errors
     /// At the first that cannot be named so; those before it are kept.
-    pub fn put_in_place(self) -> Result<Vec<PathBuf>, ReportError> {
+    pub fn put_in_place(self) -> Result<Vec<PathBuf>, ExportError> {
         // Not every system opens folders, not every file system locks: without, two runs may mix.
         let folder = fs::File::open(self.dir).ok();
         let _ = folder.as_ref().map(fs::File::lock);
         let put = |(path, file): (PathBuf, NamedTempFile)| match file.persist(&path) {
             Ok(_) => Ok(path),
-            Err(error) => Err(ReportError::Write { path, source: plain(error.error) }),
+            Err(error) => Err(ExportError::Write { path, source: plain(error.error) }),
         };
         self.files.into_iter().map(put).collect()
     }
@@ -59,8 +59,8 @@ impl<'d> Together<'d> {
 ///
 /// # Errors
 /// If it cannot.
-pub fn prepare_folder(dir: &Path) -> Result<(), ReportError> {
-    let folder = |source| ReportError::Folder { path: dir.to_owned(), source };
+pub fn prepare_folder(dir: &Path) -> Result<(), ExportError> {
+    let folder = |source| ExportError::Folder { path: dir.to_owned(), source };
     if dir.exists() && !dir.is_dir() {
         // The system would say "File exists".
         return Err(folder(io::ErrorKind::NotADirectory.into()));

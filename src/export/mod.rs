@@ -18,7 +18,7 @@ mod view;
 pub use self::csv::bounds_csv;
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::{cost_csv, cost_svg, write_cost};
-pub use files::{ReportError, file_stem, write_results};
+pub use files::{ExportError, file_stem, write_results};
 pub use folder::prepare_folder;
 pub use overlay::overlay_svg;
 pub use plot::plot_svg;

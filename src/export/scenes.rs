@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use csv::WriterBuilder;
 
 use super::csv::number;
-use super::files::{ReportError, unique_stems};
+use super::files::{ExportError, unique_stems};
 use super::folder::Together;
 use super::overlay::overlay_svg;
 use crate::results::{Bounds, OutputBounds};
@@ -56,12 +56,12 @@ pub fn scenes_csv(scenes: &[SceneBounds]) -> Result<Vec<u8>, csv::Error> {
 ///
 /// # Errors
 /// As [`write_results`](super::write_results).
-pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = Together::in_folder(dir)?;
     let shared = shared(scenes);
     for (name, stem) in shared.iter().zip(unique_stems(shared.iter().copied())) {
         let svg =
-            overlay_svg(name, scenes).map_err(|message| ReportError::Plot { output: (*name).to_owned(), message })?;
+            overlay_svg(name, scenes).map_err(|message| ExportError::Plot { output: (*name).to_owned(), message })?;
         files.add(&format!("{stem}.svg"), svg.as_bytes())?;
     }
     files.add("scenes.csv", &scenes_csv(scenes)?)?;

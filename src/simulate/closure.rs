@@ -6,9 +6,9 @@
 use nalgebra::DMatrix;
 use symdiff::Tile;
 
-use super::initial::{Assembly, allowed_gap};
-use super::rank::free_columns;
-use super::simulator::{SimulationError, Simulator, no_factors};
+use super::error::{SimulationError, no_factors};
+use super::simulator::Simulator;
+use super::start::{Assembly, allowed_residual, free_columns};
 use crate::assemble::System;
 use crate::compile::{StartProgram, compile_start};
 
@@ -50,9 +50,9 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
     }
     tile.lane_mut(layout.time)[0] = time;
     tile.run(start.sample());
-    tile.run(start.slopes());
+    tile.run(start.jacobian());
     let mut slopes = DMatrix::zeros(layout.lambda.len(), n);
-    for &(row, column, slot) in &start.slope_entries {
+    for &(row, column, slot) in &start.jacobian_entries {
         slopes[(row, column)] = tile.lane(slot)[0] * simulator.program.scale[column];
     }
     let weight: Vec<f64> = simulator
@@ -145,7 +145,7 @@ impl<'s> Closure<'s> {
     }
 
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
-        let allowed = allowed_gap(&self.simulator.program.scale);
+        let allowed = allowed_residual(&self.simulator.program.scale);
         let mut closed = vec![true; WIDTH];
         for &slot in &self.program.constraint {
             for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(slot)) {

@@ -1,27 +1,30 @@
-//! Program → trajectories: a consistent start, and a scheme's steps over tiles of samples.
+//! Program → trajectories.
+//!
+//! - [`start`]: a consistent start, the rank of the constraints there;
+//! - `simulator`: a mechanism assembled and compiled, and `error`: why it cannot be;
+//! - [`step`]: one step of a scheme for a tile of samples: stepper, Newton's iteration, the rank-revealing solve;
+//! - [`control`]: the step schedule that all samples share, fixed or from a tolerance;
+//! - [`ensemble`]: many samples, or one jet in the parameters, over a schedule;
+//! - [`diagnostics`]: singular configurations, constraints that cannot be closed, undetermined reactions;
+//! - `closure`: the motion from independent coordinates, without integration;
+//! - [`enclosure`]: certified motions over a box of parameters.
 
 mod closure;
+mod control;
+mod diagnostics;
 mod enclosure;
-mod fleet;
-mod hht;
-mod initial;
-mod jets;
-mod lock;
-mod newton;
-mod pilot;
-mod rank;
-mod reactions;
+mod ensemble;
+mod error;
 mod simulator;
-mod singular;
-mod steps;
+mod start;
+mod step;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use enclosure::{Certifier, Enclosure, Lost};
-pub use fleet::{Fleet, Observed, Stop};
-pub use hht::{LocalError, Stepper, Stuck};
-pub use jets::JetRun;
-pub use newton::Counters;
-pub use pilot::{Piloted, schedule as schedule_for_tolerance};
-pub use simulator::{Mobility, SimulationError, Simulator};
-pub use singular::SingularPass;
-pub use steps::{Controller, Schedule};
+pub use control::{Controller, Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use diagnostics::{OpenConstraint, SingularPass};
+pub use enclosure::{Certifier, Enclosure, EnclosureError};
+pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
+pub use error::{NamedValues, SimulationError};
+pub use simulator::Simulator;
+pub use start::Mobility;
+pub use step::{Counters, LocalError, StepFailure, Stepper};

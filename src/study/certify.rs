@@ -9,7 +9,7 @@ use super::methods::{FleetRun, Lines, Outcome, Run};
 use crate::model::RangeKind;
 use crate::numerics::{ParameterBox, Range, TaylorRange};
 use crate::results::Method;
-use crate::simulate::{Certifier, Counters, Enclosure, Lost};
+use crate::simulate::{Certifier, Counters, Enclosure, EnclosureError};
 
 /// Most uncertain parameters: pieces and coefficients grow with powers of their number.
 pub(super) const MOST_PARAMETERS: usize = 2;
@@ -25,7 +25,7 @@ const MOST_PIECES: usize = 16;
 struct Enclosed {
     piece: ParameterBox,
     ranges: Vec<Range>,
-    lost: Option<(f64, Lost)>,
+    lost: Option<(f64, EnclosureError)>,
 }
 
 impl Run<'_> {
@@ -118,7 +118,9 @@ impl Run<'_> {
 impl Enclosed {
     /// Whether smaller pieces of it may go further.
     fn piece_can_help(&self, parameters: usize) -> bool {
-        matches!(self.lost, Some((_, Lost::Unproven))) && parameters > 0 && self.piece.lower != self.piece.upper
+        matches!(self.lost, Some((_, EnclosureError::Unproven)))
+            && parameters > 0
+            && self.piece.lower != self.piece.upper
     }
 }
 

@@ -20,7 +20,7 @@ use crate::numerics::{
 };
 use crate::results::Method;
 use crate::results::MethodSummary;
-use crate::simulate::{Counters, Fleet, JetRun, Observed, Schedule, SimulationError, SingularPass, Stop};
+use crate::simulate::{Counters, EnsembleRun, JetRun, Observed, Schedule, SimulationError, SingularPass, Stop};
 
 /// Values (rows × outputs × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
@@ -101,13 +101,13 @@ impl Run<'_> {
         until: Until,
         reduce: impl FnMut(Rows<usize>, &[f64]),
     ) -> Result<FleetRun, SimulationError> {
-        let fleet = Fleet::start(&self.study.simulator, samples, self.schedule.first_step())?;
+        let fleet = EnsembleRun::start(&self.study.simulator, samples, self.schedule.first_step())?;
         Ok(self.steer(fleet, samples, observed, until, reduce))
     }
 
     fn steer(
         &self,
-        mut fleet: Fleet,
+        mut fleet: EnsembleRun,
         samples: &[Vec<f64>],
         observed: Observed,
         until: Until,
@@ -132,10 +132,10 @@ impl Run<'_> {
             Some(stop) if until == Until::First => stop.row,
             _ => next,
         };
-        let stop = stop.map(|stop| Stop { open: fleet.stays_open(&stop, self.schedule), ..stop });
+        let stop = stop.map(|stop| Stop { open: fleet.open_constraint(&stop, self.schedule), ..stop });
         FleetRun {
             counters: fleet.counters(),
-            strained: fleet.most_strained().map(|(sample, strain)| (samples[sample].clone(), strain)),
+            strained: fleet.largest_error_ratio().map(|(sample, strain)| (samples[sample].clone(), strain)),
             stop: stop.map(|stop| (stop, samples[stop.sample].clone())),
             singular: fleet.singular_passes(),
             stopped,
@@ -174,7 +174,7 @@ impl Run<'_> {
         let mut lines = Lines::new(self);
         let outputs = self.outputs();
         let sample = std::slice::from_ref(&self.study.domain.nominal);
-        let fleet = Fleet::start(&self.study.simulator, sample, self.schedule.first_step())?.watching();
+        let fleet = EnsembleRun::start(&self.study.simulator, sample, self.schedule.first_step())?.watching();
         let done = self.steer(fleet, sample, Observed::Outputs, Until::First, |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
                 for (output, &value) in values.iter().enumerate() {

@@ -14,7 +14,9 @@ use crate::model::{BoundsRequest, ChebyshevRequest, Degree, Description, Expand,
 use crate::numerics::{BandError, ParameterBox, corners, probes, time_error, time_error_certified, validation};
 use crate::results::{Band, Bounds, Contribution, Method, OutputBounds};
 use crate::results::{ContributionSummary, ErrorSummary, MethodSummary, ParameterSummary, SingularSummary, Summary};
-use crate::simulate::{Observed, Piloted, Schedule, SimulationError, Simulator, Stop, schedule_for_tolerance};
+use crate::simulate::{
+    Observed, Schedule, SimulationError, Simulator, Stop, ToleranceSchedule, schedule_for_tolerance,
+};
 
 /// Corners of the box that join the nominal sample as pilots of step-size control.
 const PILOT_CORNERS: usize = 16;
@@ -152,11 +154,11 @@ impl<'a> Study<'a> {
                 let piloted = schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
                 // The nominal pilot may be of another part of the box.
                 let inside = |pilot: &Vec<f64>| pilots[0] != *pilot || self.domain.contains(pilot);
-                let going = (0..pilots.len()).filter(|pilot| !piloted.left_behind.contains(pilot));
+                let going = (0..pilots.len()).filter(|pilot| !piloted.dropped.contains(pilot));
                 Ok(Tried {
-                    reached: piloted.whole.min(piloted.schedule.rows),
+                    reached: piloted.complete_rows.min(piloted.schedule.rows),
                     any: going.into_iter().any(|pilot| inside(&pilots[pilot])),
-                    stopped: piloted.left_behind.iter().map(|&pilot| self.domain.xi(&pilots[pilot])).collect(),
+                    stopped: piloted.dropped.iter().map(|&pilot| self.domain.xi(&pilots[pilot])).collect(),
                 })
             }
         }
@@ -183,7 +185,7 @@ impl<'a> Study<'a> {
         let mut round = 1;
         loop {
             let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let Piloted { schedule, failure, .. } =
+            let ToleranceSchedule { schedule, failure, .. } =
                 schedule_for_tolerance(&self.simulator, &pilots, duration, output_step, tolerance)?;
             let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
             let results = self.methods(&schedule, Some(tolerance))?;
@@ -388,12 +390,11 @@ impl<'a> Study<'a> {
             let singular = SimulationError::SingularJet { time: stop.time };
             return format!("{singular}: Taylor bounds are unknown from there on");
         }
-        if let Some((constraint, amount)) = stop.open {
-            let constraint = self.simulator.system.constraints[constraint].name.clone();
-            let locked = SimulationError::Locked { time: stop.time, constraint, amount, parameters };
+        if let Some(open) = stop.open {
+            let locked = self.simulator.locked(open, stop.time, parameters);
             return format!("{locked}; results up to that time are kept");
         }
-        let stuck = SimulationError::Stuck {
+        let stuck = SimulationError::NotConverged {
             sample: stop.sample,
             time: stop.time,
             equation: self.simulator.equation_name(stop.equation),

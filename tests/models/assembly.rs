@@ -1,11 +1,11 @@
-//! Initial velocities that do not fit say which joint they do not fit. (Positions that do not: `tests/faults/infeasible.rs`.)
+//! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not: `tests/faults/infeasible.rs`.)
 
 use mbint::study::{self, Options};
 
 use super::common::read;
 
 #[test]
-fn velocities_that_do_not_fit_are_reported() {
+fn inconsistent_velocities_are_reported() {
     let description = read(
         "
 bodies: { rod: { mass: 1, inertia: 0.1, points: { top: [0, 0.5] } } }
@@ -17,5 +17,5 @@ simulation: { duration: 0.1, step: 1e-3, output_step: 0.05 }
     );
     let message = study::run(&description, Options::default()).expect_err("it cannot be assembled").to_string();
     println!("{message}");
-    assert!(message.contains("initial velocities do not fit joint `hinge`"), "{message}");
+    assert!(message.contains("initial velocities are inconsistent with joint `hinge`"), "{message}");
 }

@@ -3,7 +3,7 @@
 use mbint::assemble;
 use mbint::compile::Scheme;
 use mbint::model::Description;
-use mbint::simulate::{Fleet, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
+use mbint::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
 
@@ -33,7 +33,7 @@ fn nominal_sample(simulator: &Simulator) -> Vec<f64> {
 
 /// Every output's course of a sample.
 fn courses(simulator: &Simulator, schedule: &Schedule, sample: Vec<f64>) -> Vec<Vec<f64>> {
-    let mut fleet = Fleet::start(simulator, &[sample], schedule.first_step()).unwrap();
+    let mut fleet = EnsembleRun::start(simulator, &[sample], schedule.first_step()).unwrap();
     let mut values = Vec::new();
     let stops = fleet.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
     assert_eq!(stops, []);

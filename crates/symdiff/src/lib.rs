@@ -4,7 +4,7 @@
 //! polynomials in a [`JetMemory`], or enclosures in a [`ModelMemory`].
 //!
 //! ```
-//! use mbint_symdiff::{Builder, Input, Tile, lower};
+//! use symdiff::{Builder, Input, Tile, lower};
 //!
 //! // ∂/∂x (x² sin y), symbolically.
 //! let builder = Builder::new();

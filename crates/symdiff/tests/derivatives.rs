@@ -1,9 +1,9 @@
 //! Symbolic derivatives against finite differences and against jets: three ways that share nothing but the functions'
 //! values.
 
-use mbint_symdiff::jet::{JetScratch, JetSpace};
-use mbint_symdiff::{Binary, Expr, Graph, Node, Unary};
 use proptest::prelude::*;
+use symdiff::jet::{JetScratch, JetSpace};
+use symdiff::{Binary, Expr, Graph, Node, Unary};
 
 const VARIABLES: usize = 3;
 

@@ -1,6 +1,6 @@
 //! Antiderivatives: their derivatives are what they are of, and they are zero at zero.
 
-use mbint_symdiff::{Builder, Formula, Scalar};
+use symdiff::{Builder, Formula, Scalar};
 
 fn integral(text: &str) -> Option<[f64; 2]> {
     let builder = Builder::new();

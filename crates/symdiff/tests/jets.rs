@@ -1,8 +1,8 @@
 //! Jets against closed forms and identities.
 
-use mbint_symdiff::jet::{JetScratch, JetSpace, Monomials};
-use mbint_symdiff::{Binary, Graph, Unary};
 use proptest::prelude::*;
+use symdiff::jet::{JetScratch, JetSpace, Monomials};
+use symdiff::{Binary, Graph, Unary};
 
 /// Largest difference of two jets, relative to the larger coefficient (at least 1).
 fn distance(a: &[f64], b: &[f64]) -> f64 {

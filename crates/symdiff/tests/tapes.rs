@@ -1,8 +1,8 @@
 //! Tapes against direct evaluation, bit for bit: random graphs with shared subexpressions, inputs of all stages, two
 //! kernels, results that replace inputs, blocks that may be skipped, every tile width.
 
-use mbint_symdiff::{Binary, Expr, Graph, Input, Tile, Unary, WIDTHS, lower};
 use proptest::prelude::*;
+use symdiff::{Binary, Expr, Graph, Input, Tile, Unary, WIDTHS, lower};
 
 const INPUTS: usize = 5;
 /// Stages below the kernels'.

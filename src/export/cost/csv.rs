@@ -6,7 +6,7 @@ use csv::WriterBuilder;
 
 use super::plot::cost_svg;
 use crate::export::csv::number;
-use crate::export::files::ReportError;
+use crate::export::files::ExportError;
 use crate::export::folder::Together;
 use crate::model::Stepping;
 use crate::results::{CostPoint, CostStudy, Deviation};
@@ -79,9 +79,9 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
 ///
 /// # Errors
 /// At the first file that cannot be written.
-pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = Together::in_folder(dir)?;
-    let plot = cost_svg(study).map_err(|message| ReportError::Plot { output: "cost".to_owned(), message })?;
+    let plot = cost_svg(study).map_err(|message| ExportError::Plot { output: "cost".to_owned(), message })?;
     files.add("cost.csv", &cost_csv(study)?)?;
     files.add("cost.svg", plot.as_bytes())?;
     files.put_in_place()

@@ -24,7 +24,7 @@ use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
 use super::matrix::{Models, apply_bounds, larger};
-use super::{Gains, Lost};
+use super::{EnclosureError, Gains};
 
 /// Independent coordinates are chosen anew when another moves this many times as much.
 const OUTRUN: f64 = 2.0;
@@ -103,7 +103,7 @@ impl Frame {
     ///
     /// # Errors
     /// Where the frame has no inverse.
-    pub fn radii_of(&mut self, space: &ModelSpace, spread: &[f64]) -> Result<Vec<f64>, Lost> {
+    pub fn radii_of(&mut self, space: &ModelSpace, spread: &[f64]) -> Result<Vec<f64>, EnclosureError> {
         let nothing = Models::zero(space, self.basis.rows, 1);
         self.refine_inverse(space)?;
         self.coordinates_of(space, &nothing, &[0.0], spread, |_, _| ())
@@ -122,7 +122,7 @@ impl Frame {
         radii: &[f64],
         fresh: &[f64],
         push: &Models,
-    ) -> Result<(Self, Vec<f64>), Lost> {
+    ) -> Result<(Self, Vec<f64>), EnclosureError> {
         let (dimension, n, f) = (self.basis.rows, self.basis.rows / 3, self.independent.len());
         let columns = moved.part(space, 0..dimension, 0..2 * f).without_radii();
         let mut slow = self.follow(space, units, &columns)?;
@@ -147,7 +147,7 @@ impl Frame {
     }
 
     /// S from the columns that it is to span.
-    fn follow(&self, space: &ModelSpace, units: &Units, columns: &Models) -> Result<Models, Lost> {
+    fn follow(&self, space: &ModelSpace, units: &Units, columns: &Models) -> Result<Models, EnclosureError> {
         let n = columns.rows / 3;
         let weights = [(0, 1.0), (n, units.motion)];
         let mut direct = Models::zero(space, columns.columns, columns.columns);
@@ -159,7 +159,7 @@ impl Frame {
             }
             direct.scale_row(place, weight);
         }
-        let inverse = direct.inverse_at_centre(space).ok_or(Lost::Unproven)?;
+        let inverse = direct.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
         Ok(columns.approximate_times(space, &inverse))
     }
 
@@ -190,7 +190,7 @@ impl Frame {
     }
 
     /// The inverse, from the last frame's where that is near.
-    fn refine_inverse(&mut self, space: &ModelSpace) -> Result<(), Lost> {
+    fn refine_inverse(&mut self, space: &ModelSpace) -> Result<(), EnclosureError> {
         let kept = self
             .inverse
             .take()
@@ -198,9 +198,9 @@ impl Frame {
         let inverse = match kept {
             Some(inverse) => inverse,
             None => {
-                let mut inverse = self.basis.inverse_at_centre(space).ok_or(Lost::Unproven)?;
+                let mut inverse = self.basis.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
                 if !inverse.refine_inverse_of(space, &self.basis) {
-                    return Err(Lost::Unproven);
+                    return Err(EnclosureError::Unproven);
                 }
                 inverse
             }
@@ -219,9 +219,9 @@ impl Frame {
         radii: &[f64],
         fresh: &[f64],
         turn: impl FnOnce(&mut DMatrix<f64>, &Models),
-    ) -> Result<Vec<f64>, Lost> {
+    ) -> Result<Vec<f64>, EnclosureError> {
         let (dimension, slow) = (self.basis.rows, self.turned.nrows());
-        let inverse = self.inverse.as_ref().ok_or(Lost::Unproven)?;
+        let inverse = self.inverse.as_ref().ok_or(EnclosureError::Unproven)?;
         let found = inverse.times(space, moved);
         turn(&mut self.turned, &found);
         let rest = inverse.times(space, &self.basis).off_identity(space);
@@ -246,12 +246,12 @@ impl Frame {
 }
 
 /// Adds |Δ x| to `to`, for x = (what is bounded by `rough`) + Δ x.
-fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) -> Result<(), Lost> {
+fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) -> Result<(), EnclosureError> {
     let norm = skew.row_norm(space);
     // Not a number is not small.
     let small = norm < 0.5;
     if !small {
-        return Err(Lost::Unproven);
+        return Err(EnclosureError::Unproven);
     }
     let largest = up(rough.iter().copied().fold(0.0, larger) / (1.0 - norm));
     for (to, row) in to.iter_mut().zip(skew.bounds(space).chunks_exact(skew.columns)) {

@@ -2,7 +2,7 @@
 
 use symdiff::taylor_model::up;
 
-use super::Lost;
+use super::EnclosureError;
 use super::matrix::{apply_bounds, larger};
 
 /// Attempts at a box that is mapped into itself.
@@ -21,8 +21,8 @@ pub(super) struct Image {
 /// A box that the operator maps into itself: for every ξ one solution is in it. `first` is where the search begins.
 ///
 /// # Errors
-/// [`Lost::Unproven`] where none is found.
-pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Result<Vec<f64>, Lost> {
+/// [`EnclosureError::Unproven`] where none is found.
+pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -> Result<Vec<f64>, EnclosureError> {
     let mut box_of = first;
     for _ in 0..ATTEMPTS {
         let Image { missed, contraction } = image(&box_of);
@@ -37,12 +37,12 @@ pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -
             return Ok(apply(&mapped));
         }
         if mapped.iter().any(|y| !y.is_finite()) {
-            return Err(Lost::Unproven);
+            return Err(EnclosureError::Unproven);
         }
         let wider = mapped.iter().zip(&box_of).map(|(&mapped, &y)| up(INFLATION * larger(mapped, y.min(mapped))));
         box_of = wider.collect();
     }
-    Err(Lost::Unproven)
+    Err(EnclosureError::Unproven)
 }
 
 #[cfg(test)]
@@ -57,7 +57,7 @@ mod tests {
         let found = enclose(vec![1e-9, 1e-9], image(0.5)).unwrap();
         // y₂ = 0.5/(1 − 0.5) = 1, y₁ = (1 + 0.1)/(1 − 0.5) = 2.2.
         assert!((2.2..3.0).contains(&found[0]) && (1.0..1.4).contains(&found[1]), "{found:?}");
-        assert_eq!(enclose(vec![1e-9, 1e-9], image(1.01)), Err(Lost::Unproven));
-        assert_eq!(enclose(vec![1e-9, 1e-9], image(f64::NAN)), Err(Lost::Unproven));
+        assert_eq!(enclose(vec![1e-9, 1e-9], image(1.01)), Err(EnclosureError::Unproven));
+        assert_eq!(enclose(vec![1e-9, 1e-9], image(f64::NAN)), Err(EnclosureError::Unproven));
     }
 }

@@ -32,8 +32,8 @@ mod step;
 use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory};
 
+use super::control::Schedule;
 use super::simulator::Simulator;
-use super::steps::Schedule;
 use crate::compile::{Coefficients, EquationsProgram, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
@@ -43,7 +43,7 @@ const MOTION_TIME: f64 = 0.1;
 
 /// Why an enclosure ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Lost {
+pub enum EnclosureError {
     /// The start is not determined, or over-determined, by what the model keeps.
     #[error("the start is not the solution of as many equations as unknowns")]
     Undetermined,
@@ -136,7 +136,7 @@ impl<'s> Enclosure<'s> {
         lower: &[f64],
         upper: &[f64],
         h: f64,
-    ) -> Result<Self, Lost> {
+    ) -> Result<Self, EnclosureError> {
         let (simulator, program) = (certifier.simulator, &certifier.program);
         let coefficients = simulator.program.coefficients;
         let mut memory = ModelMemory::new(space, program.slots(), program.constants());
@@ -183,7 +183,7 @@ impl<'s> Enclosure<'s> {
     ///
     /// # Errors
     /// Where a step's solution cannot be proven, with the time of its end.
-    pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, Lost)> {
+    pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, EnclosureError)> {
         schedule.steps_to(row).try_for_each(|(_, end)| self.step(end).map_err(|lost| (end, lost)))
     }
 }

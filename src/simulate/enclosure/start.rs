@@ -3,7 +3,7 @@
 use symdiff::taylor_model::ModelSpace;
 use symdiff::{Interval, ModelMemory, Tape};
 
-use super::Lost;
+use super::EnclosureError;
 use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds};
 use crate::compile::EquationsProgram;
@@ -29,7 +29,7 @@ pub(super) fn assemble(
     space: &ModelSpace,
     memory: &mut ModelMemory,
     shift: f64,
-) -> Result<(), Lost> {
+) -> Result<(), EnclosureError> {
     let layout = &program.layout;
     for slot in layout.state() {
         space.constant(Interval::point(simulator.nominal[slot]), memory.model_mut(slot));
@@ -54,7 +54,7 @@ pub(super) fn assemble(
             unknowns: free.iter().map(|place| start + place).collect(),
             residuals: residuals.clone(),
             residual: [program.residual(), program.rates()],
-            slopes: program.slopes(),
+            slopes: program.jacobian(),
             entries,
         };
         equations.solve(space, memory)?;
@@ -95,7 +95,7 @@ pub(super) fn tangent(
     program: &EquationsProgram,
     space: &ModelSpace,
     memory: &mut ModelMemory,
-) -> Result<(Models, Models, Vec<usize>), Lost> {
+) -> Result<(Models, Models, Vec<usize>), EnclosureError> {
     let layout = &program.layout;
     let (n, m) = (layout.q.len(), program.constraint.len());
     let motion = &simulator.nominal[layout.q.start..layout.v.end];
@@ -103,9 +103,9 @@ pub(super) fn tangent(
     let independent = choose_independent(simulator, parameters, motion, 0.0);
     let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
     if dependent.len() != m {
-        return Err(Lost::Undetermined);
+        return Err(EnclosureError::Undetermined);
     }
-    memory.run(program.slopes());
+    memory.run(program.jacobian());
     let (mut mass, mut slopes) = (Models::zero(space, n + m, n + m), Models::zero(space, m, n));
     for &(row, column, slot) in &program.motion_by[2] {
         mass.at_mut(row, column).copy_from_slice(memory.model(slot));
@@ -127,9 +127,9 @@ pub(super) fn tangent(
     Ok((tangent, push, independent))
 }
 
-fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, Lost> {
-    let mut inverse = matrix.inverse_at_centre(space).ok_or(Lost::Undetermined)?;
-    if inverse.refine_inverse_of(space, matrix) { Ok(inverse) } else { Err(Lost::Unproven) }
+fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, EnclosureError> {
+    let mut inverse = matrix.inverse_at_centre(space).ok_or(EnclosureError::Undetermined)?;
+    if inverse.refine_inverse_of(space, matrix) { Ok(inverse) } else { Err(EnclosureError::Unproven) }
 }
 
 fn set_time(space: &ModelSpace, memory: &mut ModelMemory, slot: usize, time: f64) {
@@ -148,27 +148,27 @@ fn accelerations(program: &EquationsProgram) -> Equations<'_> {
         unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
         residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
         residual: [program.residual(), program.rates()],
-        slopes: program.slopes(),
+        slopes: program.jacobian(),
         entries,
     }
 }
 
 impl Equations<'_> {
     /// Encloses the unknowns, from the approximation in the memory.
-    fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), Lost> {
+    fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), EnclosureError> {
         if self.unknowns.len() != self.residuals.len() {
-            return Err(Lost::Undetermined);
+            return Err(EnclosureError::Undetermined);
         }
         if self.unknowns.is_empty() {
             return Ok(());
         }
         self.set_radii(space, memory, None);
-        let mut inverse = self.matrix(space, memory).inverse_at_centre(space).ok_or(Lost::Unproven)?;
+        let mut inverse = self.matrix(space, memory).inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
         // Each correction at least makes one more order right, and doubles them where C follows.
         for _ in 0..space.jets().monomials().order().max(1).ilog2() + 5 {
             let matrix = self.matrix(space, memory);
             if !inverse.refine_inverse_of(space, &matrix) {
-                return Err(Lost::Unproven);
+                return Err(EnclosureError::Unproven);
             }
             let correction = inverse.approximate_times(space, &self.residual(space, memory));
             for (place, &slot) in self.unknowns.iter().enumerate() {

@@ -5,7 +5,7 @@ use symdiff::{Interval, ModelMemory};
 
 use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds, larger};
-use super::{Enclosure, Lost};
+use super::{Enclosure, EnclosureError};
 
 /// Corrections of X before its residual is taken as it is: what is left is bounded in any case.
 const MAX_CORRECTIONS: usize = 4;
@@ -27,7 +27,7 @@ impl<'s> Enclosure<'s> {
     }
 
     /// From the start's q, v, a, w to the first q̂, v̂, w and their radii.
-    pub(super) fn begin(&mut self) -> Result<(), Lost> {
+    pub(super) fn begin(&mut self) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         let layout = self.program.layout.clone();
         let radius = space.size() - 1;
@@ -86,7 +86,7 @@ impl<'s> Enclosure<'s> {
     }
 
     /// One step to the time `end`. On return the memory holds q₊, v₊, w₊, λ₊ with all their radii.
-    pub(super) fn step(&mut self, end: f64) -> Result<(), Lost> {
+    pub(super) fn step(&mut self, end: f64) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         space.constant(Interval::point(end), self.memory.model_mut(self.program.layout.time));
         let solution = self.solve()?;
@@ -98,7 +98,7 @@ impl<'s> Enclosure<'s> {
         let columns = self.columns();
         let of_state = columns.part(space, 0..2 * n, 0..3 * n);
         let Slopes { by_state, .. } = self.slopes();
-        let inverse = self.inverse.take().ok_or(Lost::Unproven)?;
+        let inverse = self.inverse.take().ok_or(EnclosureError::Unproven)?;
         let pull = by_state.approximate_times(space, &of_state);
         let mut follows = inverse.approximate_times(space, &pull).without_radii();
         follows.negate();
@@ -155,19 +155,19 @@ impl<'s> Enclosure<'s> {
     }
 
     /// X: polynomials near the solution.
-    fn solve(&mut self) -> Result<Models, Lost> {
+    fn solve(&mut self) -> Result<Models, EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         let mut solution = self.extrapolate();
         self.place(&solution, None);
         let matrix = self.slopes().by_unknown;
         let mut inverse = match self.inverse.take() {
             Some(inverse) => inverse,
-            None => matrix.inverse_at_centre(space).ok_or(Lost::Unproven)?,
+            None => matrix.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?,
         };
         if !inverse.refine_inverse_of(space, &matrix) {
-            inverse = matrix.inverse_at_centre(space).ok_or(Lost::Unproven)?;
+            inverse = matrix.inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
             if !inverse.refine_inverse_of(space, &matrix) {
-                return Err(Lost::Unproven);
+                return Err(EnclosureError::Unproven);
             }
         }
         let gain = self.gains.b.magnitude();
@@ -261,7 +261,7 @@ impl<'s> Enclosure<'s> {
     fn slopes_in(&self, memory: &mut ModelMemory) -> Slopes {
         let (n, space, gains) = (self.coordinates(), self.space, &self.gains);
         let program = self.program;
-        memory.run(program.slopes());
+        memory.run(program.jacobian());
         let count = n + program.constraint.len();
         let (mut by_unknown, mut by_state) = (Models::zero(space, count, count), Models::zero(space, count, 2 * n));
         let mut add = |row: usize, column: usize, factor: Option<Interval>, slot: usize| {
@@ -343,7 +343,7 @@ impl<'s> Enclosure<'s> {
         radii: &[f64],
         found: &[f64],
         push: &Models,
-    ) -> Result<(), Lost> {
+    ) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
         let radius = space.size() - 1;
         let gains = self.gains;

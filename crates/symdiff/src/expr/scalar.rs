@@ -62,7 +62,7 @@ impl Builder {
 /// A node of a graph that is being built, with operators.
 ///
 /// ```
-/// use mbint_symdiff::Builder;
+/// use symdiff::Builder;
 ///
 /// let builder = Builder::new();
 /// let x = builder.variable("x");

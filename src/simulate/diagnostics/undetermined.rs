@@ -1,19 +1,19 @@
 //! Reactions that equilibrium does not determine.
 //!
-//! Where constraints are redundant, Φ_qᵀ λ does not change along null vectors of Φ_qᵀ: reactions may be shifted along them, and
-//! only elasticity, which rigid bodies do not have, would decide. What is given is the set in which the multipliers of the
-//! constraints that are named redundant are zero. The motion does not depend on it.
+//! Where constraints are redundant, Φ_qᵀ λ does not change along null vectors of Φ_qᵀ: reactions may be shifted along them,
+//! and only elasticity, which rigid bodies do not have, would determine the shift. The multipliers of the constraints that
+//! are reported as redundant are set to zero. The motion does not depend on that choice.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
-use super::simulator::{Mobility, move_apart, slope_rows, spread};
 use crate::assemble::System;
 use crate::compile::{Layout, StartProgram};
+use crate::simulate::start::{Mobility, jacobian_rows, move_apart, spread};
 
-/// A slope along a null vector below this share of the whole slope is zero.
-const NOTHING: f64 = 1e-7;
+/// A derivative along a null vector below this share of the whole gradient is zero.
+const NEGLIGIBLE: f64 = 1e-7;
 
 /// Outputs that change when reactions are shifted along null vectors of Φ_qᵀ, at a state in general position.
 pub fn undetermined_outputs(system: &System, start: &StartProgram, nominal: &[f64], mobility: &Mobility) -> Vec<usize> {
@@ -25,24 +25,24 @@ pub fn undetermined_outputs(system: &System, start: &StartProgram, nominal: &[f6
     let values = general_values(system, &start.layout, &state);
     let mut graph = system.graph.clone();
     let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
-    let slopes = graph.jacobian(&outputs, &system.lambda);
+    let derivatives = graph.jacobian(&outputs, &system.lambda);
     let (places, entries): (Vec<_>, Vec<_>) =
-        slopes.entries().map(|(output, constraint, slope)| ((output, constraint), slope)).unzip();
+        derivatives.entries().map(|(output, constraint, derivative)| ((output, constraint), derivative)).unzip();
     let numbers = graph.evaluate(&entries, |symbol| values.get(&symbol).copied().unwrap_or(0.0));
     let mut gradient = DMatrix::zeros(outputs.len(), system.lambda.len());
     places.into_iter().zip(numbers).for_each(|(place, number)| gradient[place] = number);
     let along = &gradient * shifts;
-    let hangs = |output: &usize| along.row(*output).norm() > NOTHING * gradient.row(*output).norm();
-    (0..outputs.len()).filter(hangs).collect()
+    let depends = |output: &usize| along.row(*output).norm() > NEGLIGIBLE * gradient.row(*output).norm();
+    (0..outputs.len()).filter(depends).collect()
 }
 
-/// So many left null vectors of Φ_q, one a column.
+/// This many left null vectors of Φ_q, one a column.
 fn null_vectors(system: &System, start: &StartProgram, state: &[f64], count: usize) -> DMatrix<f64> {
-    let mut slopes: DMatrix<f64> = DMatrix::zeros(system.lambda.len(), system.q.len());
-    for (row, entries) in slope_rows(system, start, state).into_iter().enumerate() {
-        entries.into_iter().for_each(|(column, value)| slopes[(row, column)] += value);
+    let mut jacobian: DMatrix<f64> = DMatrix::zeros(system.lambda.len(), system.q.len());
+    for (row, entries) in jacobian_rows(system, start, state).into_iter().enumerate() {
+        entries.into_iter().for_each(|(column, value)| jacobian[(row, column)] += value);
     }
-    let products: DMatrix<f64> = &slopes * slopes.transpose();
+    let products: DMatrix<f64> = &jacobian * jacobian.transpose();
     let modes = SymmetricEigen::new(products);
     let mut order: Vec<usize> = (0..system.lambda.len()).collect();
     order.sort_by(|&a, &b| f64::total_cmp(&modes.eigenvalues[a], &modes.eigenvalues[b]));

@@ -1,25 +1,26 @@
-//! Singular configurations that a motion passes: where constraints depend on others that do not elsewhere, and the mechanism
-//! has more degrees of freedom for a moment.
+//! Singular configurations that a motion passes: there, constraints that are independent elsewhere depend on others, and the
+//! mechanism has more degrees of freedom for a moment.
 //!
-//! Steps hardly ever end in one. So where the Newton matrix's pivots are smallest between two steps, the weakest constraint is
-//! sought on the positions interpolated there; it vanishes in a singular configuration, and does not where the mechanism
-//! only comes near to one.
+//! A step hardly ever ends in one. Where the Newton matrix's pivots are smallest between two steps, the least independent
+//! constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in a singular
+//! configuration, and stays positive where the mechanism only comes near to one.
 
-use super::hht::Stepper;
-use super::rank::row_strengths;
-use super::simulator::{DEPENDENT, Simulator, slope_rows};
+use crate::simulate::simulator::Simulator;
+use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence};
+use crate::simulate::step::Stepper;
 
-/// A pivot that is this much nearer to what is not trusted than it was at the probes (1e-10) is looked into.
+/// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and the
+/// smallest that is trusted (1).
 const SUSPECT: f64 = 1e-8;
 
-/// A constraint that stands out of the others by less than this (scaled) depends on them. Interpolated positions are off by
+/// A constraint whose independence (scaled) is less than this depends on the others. Interpolated positions are off by
 /// (hω)⁴/384, 1e-6 for twenty steps a turn.
 const VANISHES: f64 = 1e-5;
 
 /// Divisions of the time between steps by the golden section: to 1e-8 of it.
 const DIVISIONS: usize = 40;
 
-/// Suspects that are looked into at most, so that the search stays short beside the run.
+/// Most steps that are examined, so that the search stays short beside the run.
 const MOST: usize = 200;
 
 /// A singular configuration that was passed.
@@ -31,16 +32,16 @@ pub struct SingularPass {
     pub constraints: Vec<usize>,
 }
 
-/// What is kept of a step's end.
+/// The state at a step's end.
 #[derive(Clone, Debug, Default)]
 struct Moment {
     time: f64,
-    strain: f64,
+    pivot_loss: f64,
     /// The layout's slots.
     state: Vec<f64>,
 }
 
-/// Looks at every step of the first lane of a tile.
+/// Search for singular configurations, over all steps of the first lane of a tile.
 #[derive(Clone, Debug)]
 pub struct SingularWatch<'s> {
     simulator: &'s Simulator,
@@ -51,38 +52,39 @@ pub struct SingularWatch<'s> {
 }
 
 impl<'s> SingularWatch<'s> {
-    /// From the start on.
+    /// Begins at the start.
     pub fn new(simulator: &'s Simulator, stepper: &Stepper) -> Self {
-        let start = Moment { time: 0.0, strain: f64::INFINITY, state: stepper.lane(0) };
+        let start = Moment { time: 0.0, pivot_loss: f64::INFINITY, state: stepper.lane(0) };
         let moments = [start.clone(), start.clone(), start];
         Self { simulator, moments, suspects: 0, passes: Vec::new() }
     }
 
-    /// What was found.
+    /// Singular configurations found so far.
     pub fn passes(&self) -> Vec<SingularPass> {
         self.passes.clone()
     }
 
-    /// After a step.
+    /// Examines the step that has just ended.
     pub fn look(&mut self, stepper: &Stepper, time: f64) {
         self.moments.rotate_left(1);
         let latest = &mut self.moments[2];
-        (latest.time, latest.strain) = (time, stepper.pivot_strain(0));
+        (latest.time, latest.pivot_loss) = (time, stepper.pivot_loss(0));
         stepper.copy_lane(0, &mut latest.state);
         let [first, middle, last] = &self.moments;
-        let nearest = middle.strain > first.strain && middle.strain >= last.strain;
-        if nearest && middle.strain > SUSPECT && self.suspects < MOST {
+        let nearest = middle.pivot_loss > first.pivot_loss && middle.pivot_loss >= last.pivot_loss;
+        if nearest && middle.pivot_loss > SUSPECT && self.suspects < MOST {
             self.suspects += 1;
             let pass = self.weakest();
             self.passes.extend((!pass.constraints.is_empty()).then_some(pass));
         }
     }
 
-    /// The moment between the last three steps' ends in which a constraint is weakest, and what has vanished there.
+    /// The moment between the last three steps' ends in which a constraint is least independent, and the constraints that
+    /// depend on others there.
     fn weakest(&self) -> SingularPass {
         let weakness = |time: f64| {
-            let strengths = self.strengths(time);
-            strengths.into_iter().map(|(_, strength)| strength).fold(f64::INFINITY, f64::min)
+            let independence = self.independence(time);
+            independence.into_iter().map(|(_, independent)| independent).fold(f64::INFINITY, f64::min)
         };
         let golden = 0.618_033_988_749_895;
         let (mut from, mut to) = (self.moments[0].time, self.moments[2].time);
@@ -100,19 +102,19 @@ impl<'s> SingularWatch<'s> {
             }
         }
         let time = 0.5 * (from + to);
-        let vanished = self.strengths(time).into_iter().filter(|(_, strength)| *strength < VANISHES);
+        let vanished = self.independence(time).into_iter().filter(|(_, independent)| *independent < VANISHES);
         SingularPass { time, constraints: vanished.map(|(constraint, _)| constraint).collect() }
     }
 
-    /// How far each constraint that is not redundant everywhere stands out of those before it.
-    fn strengths(&self, time: f64) -> Vec<(usize, f64)> {
-        let rows = slope_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
+    /// Independence of each constraint that is not redundant everywhere from the constraints before it.
+    fn independence(&self, time: f64) -> Vec<(usize, f64)> {
+        let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
-        let strengths = row_strengths(&rows, DEPENDENT).into_iter().enumerate();
-        strengths.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
+        let independence = row_independence(&rows, DEPENDENT).into_iter().enumerate();
+        independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 
-    /// The state whose positions are cubic between steps' ends, by positions and velocities there.
+    /// The state at a time between steps' ends: positions are cubic through positions and velocities there.
     fn between(&self, time: f64) -> Vec<f64> {
         let after = if time < self.moments[1].time { 1 } else { 2 };
         let (start, end) = (&self.moments[after - 1], &self.moments[after]);

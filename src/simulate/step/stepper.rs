@@ -1,21 +1,21 @@
-//! One step of HHT-I3, or of another scheme of its family, for a tile of samples.
+//! The stepper: one step of HHT-I3, or of another scheme of its family, for a tile of samples.
 
 use symdiff::Tile;
 
 use super::newton::{Counters, Newton};
 use crate::compile::Program;
 
-/// A step that fails is divided into 2, 4, … up to 2 to the power of this many before it is given up.
+/// A step that fails is divided into 2, 4, … substeps, up to 2 to the power of this, before it is given up.
 const MAX_HALVINGS: u32 = 10;
 
-/// A sample that could not go on.
+/// A step that failed for a sample, however short its substeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stuck {
+pub struct StepFailure {
     /// Lane of the tile.
     pub lane: usize,
     /// Time of the step's end, s.
     pub time: f64,
-    /// Equation (of n + m) with the largest scaled residual.
+    /// The equation (of n + m) with the largest scaled residual.
     pub equation: usize,
 }
 
@@ -24,30 +24,30 @@ pub struct Stuck {
 pub struct LocalError {
     /// Of positions, relative to |q| or the coordinate's scale, whichever is larger.
     pub size: f64,
-    /// The coordinate that has it.
+    /// The coordinate with this error.
     pub coordinate: usize,
-    /// How much its acceleration changes within the step.
+    /// Change of that coordinate's acceleration within the step.
     pub change: f64,
 }
 
-/// Samples in step: the states of a tile, advanced together.
+/// The states of a tile of samples, advanced together.
 #[derive(Clone, Debug)]
 pub struct Stepper<'p> {
     program: &'p Program,
     tile: Tile,
     newton: Newton,
-    /// Step size that a belongs to; not a number before the first step.
+    /// Step size that a belongs to; NaN before the first step.
     step_size: f64,
     /// Step size that the tile's step-size stage was run for.
     prepared_size: f64,
     /// Whether a lane still runs.
     alive: Vec<bool>,
-    /// Local errors, where they are asked for.
+    /// Local errors, if they are estimated.
     errors: Option<Vec<LocalError>>,
 }
 
 impl<'p> Stepper<'p> {
-    /// A tile in the states (and with the parameters) of `start`, whose first slots are laid out alike.
+    /// A tile with the states and parameters of `start`, whose first slots have the same layout.
     pub fn new(program: &'p Program, start: &Tile) -> Self {
         let width = start.width();
         let mut tile = Tile::new(width, program.slots(), program.constants());
@@ -70,24 +70,24 @@ impl<'p> Stepper<'p> {
         &self.tile
     }
 
-    /// The memory, to put back a state that was saved.
+    /// The memory, to restore a saved state.
     pub fn tile_mut(&mut self) -> &mut Tile {
         &mut self.tile
     }
 
     /// The layout's slots of one lane.
-    pub(super) fn lane(&self, lane: usize) -> Vec<f64> {
+    pub(in crate::simulate) fn lane(&self, lane: usize) -> Vec<f64> {
         (0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]).collect()
     }
 
-    /// The same into memory that is there.
-    pub(super) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
+    /// [`lane`](Self::lane) without a new allocation.
+    pub(in crate::simulate) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
         into.clear();
         into.extend((0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]));
     }
 
-    /// Largest |1/pivot| of a lane's last factors, over what is trusted.
-    pub(super) fn pivot_strain(&self, lane: usize) -> f64 {
+    /// Largest |1/pivot| of a lane's last factors, over the largest that is trusted.
+    pub(in crate::simulate) fn pivot_loss(&self, lane: usize) -> f64 {
         let value = |slot: usize| self.tile.lane(slot)[lane];
         let watched = self.program.watched.iter();
         let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.slot))));
@@ -106,40 +106,40 @@ impl<'p> Stepper<'p> {
         &self.alive
     }
 
-    /// Lanes that carry no sample of their own stop running.
+    /// Stops lanes, such as those without a sample of their own.
     pub fn retire(&mut self, lanes: std::ops::Range<usize>) {
         self.alive[lanes].fill(false);
     }
 
-    /// All lanes back to a state that was saved; its a belongs to steps of length h.
+    /// Restores a saved state in all lanes; its a belongs to steps of length h.
     pub fn rewind(&mut self, saved: &[f64], h: f64) {
         self.restore_lanes(saved, |_| true);
         self.step_size = h;
     }
 
-    /// What Newton's iteration took so far.
+    /// Newton iterations and rank-revealing solves so far.
     pub fn counters(&self) -> Counters {
         self.newton.counters
     }
 
-    /// One step of length h to time t₊. A lane that does not converge is stepped alone, with smaller steps; those that
-    /// cannot be helped are returned and no longer run.
-    pub fn step(&mut self, h: f64, end: f64) -> Vec<Stuck> {
+    /// One step of length h to time t₊. A lane that does not converge is stepped alone with substeps; lanes that fail even
+    /// then are returned and no longer run.
+    pub fn step(&mut self, h: f64, end: f64) -> Vec<StepFailure> {
         let mut converged = self.try_step(h, end);
-        let mut stuck = Vec::new();
+        let mut failures = Vec::new();
         if converged != self.alive {
             for lane in (0..converged.len()).filter(|&lane| self.alive[lane] && !converged[lane]).collect::<Vec<_>>() {
-                match self.rescue(lane, h, end) {
+                match self.substep(lane, h, end) {
                     Ok(()) => converged[lane] = true,
-                    Err(equation) => stuck.push(Stuck { lane, time: end, equation }),
+                    Err(equation) => failures.push(StepFailure { lane, time: end, equation }),
                 }
             }
         }
         self.alive = converged;
-        stuck
+        failures
     }
 
-    /// One step without rescue: which of the running lanes converged and advanced. Those that did not keep their state.
+    /// One step without substeps. Returns which of the running lanes converged and advanced; the others keep their state.
     pub fn try_step(&mut self, h: f64, end: f64) -> Vec<bool> {
         let converged = self.solve(h, end);
         self.measure_errors(h);
@@ -153,8 +153,8 @@ impl<'p> Stepper<'p> {
         converged
     }
 
-    /// First half of a step: solves for its end. Which of the running lanes converged.
-    pub(super) fn solve(&mut self, h: f64, end: f64) -> Vec<bool> {
+    /// First half of a step: solves for the state at its end. Returns which of the running lanes converged.
+    pub(in crate::simulate) fn solve(&mut self, h: f64, end: f64) -> Vec<bool> {
         self.set_step_size(h);
         self.tile.lane_mut(self.program.layout.time).fill(end);
         self.tile.run(self.program.step());
@@ -163,8 +163,8 @@ impl<'p> Stepper<'p> {
         converged
     }
 
-    /// Second half: the state becomes the one at the step's end.
-    pub(super) fn finish(&mut self) {
+    /// Second half of a step: the state becomes the one at the step's end.
+    pub(in crate::simulate) fn finish(&mut self) {
         self.tile.run(self.program.advance());
     }
 
@@ -174,7 +174,7 @@ impl<'p> Stepper<'p> {
         self.tile.values()[state.start * self.tile.width()..state.end * self.tile.width()].to_vec()
     }
 
-    /// Puts saved states back into the chosen lanes.
+    /// Restores saved states in the chosen lanes.
     pub fn restore_lanes(&mut self, saved: &[f64], chosen: impl Fn(usize) -> bool) {
         let width = self.tile.width();
         for (slot, values) in self.program.layout.state().zip(saved.chunks_exact(width)) {
@@ -205,8 +205,11 @@ impl<'p> Stepper<'p> {
         }
     }
 
-    /// One lane alone, the step divided ever finer. Returns the equation that resists.
-    fn rescue(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
+    /// Steps one lane alone, with ever shorter substeps.
+    ///
+    /// # Errors
+    /// The equation with the largest scaled residual of the last attempt.
+    fn substep(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
         let layout = &self.program.layout;
         let mut alone = Tile::new(1, self.program.slots(), self.program.constants());
         for slot in 0..layout.slots() {
@@ -242,8 +245,8 @@ impl<'p> Stepper<'p> {
         Err(single.worst_equation(0))
     }
 
-    /// The equation with the largest residual at a lane's iterate, each against its scale.
-    pub(super) fn worst_equation(&mut self, lane: usize) -> usize {
+    /// The equation with the largest scaled residual at a lane's iterate.
+    pub(in crate::simulate) fn worst_equation(&mut self, lane: usize) -> usize {
         self.tile.run(self.program.matrix());
         let sizes = self.program.residual.iter().zip(&self.program.equilibration);
         let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[lane] * scale).abs());
@@ -251,12 +254,12 @@ impl<'p> Stepper<'p> {
         sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(equation, _)| equation)
     }
 
-    /// From now on every step's local error is known.
+    /// Estimates the local error of every step from now on.
     pub fn estimate_errors(&mut self) {
         self.errors = Some(vec![LocalError::default(); self.tile.width()]);
     }
 
-    /// Local errors of the lanes in the last step, where they are asked for.
+    /// Local errors of the lanes in the last step; empty unless they are estimated.
     pub fn local_errors(&self) -> &[LocalError] {
         self.errors.as_deref().unwrap_or_default()
     }
@@ -281,7 +284,7 @@ impl<'p> Stepper<'p> {
                     value(layout.correction.start + place)
                 };
                 let size = gain * change.abs() / scale.max(value(layout.q.start + place).abs());
-                // Written so that not a number wins and stays.
+                // Written so that NaN wins and stays.
                 if !(size <= worst.size || worst.size.is_nan()) {
                     *worst = LocalError { size, coordinate: place, change };
                 }
@@ -289,13 +292,13 @@ impl<'p> Stepper<'p> {
         }
     }
 
-    /// Values of the outputs now: output by output, lane by lane; not a number for lanes that no longer run.
+    /// Values of the outputs now: output by output, lane by lane; NaN for lanes that no longer run.
     pub fn observe(&mut self, into: &mut [f64]) {
         self.tile.run(self.program.observe());
         self.copy(self.program.outputs.iter().copied(), into);
     }
 
-    /// Positions and velocities now: coordinate by coordinate, lane by lane; not a number for lanes that no longer run.
+    /// Positions and velocities now: coordinate by coordinate, lane by lane; NaN for lanes that no longer run.
     pub fn copy_motion(&self, into: &mut [f64]) {
         let layout = &self.program.layout;
         self.copy(layout.q.clone().chain(layout.v.clone()), into);

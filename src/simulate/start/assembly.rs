@@ -1,4 +1,4 @@
-//! A consistent start: positions on the constraints, velocities, accelerations and multipliers that fit them.
+//! Assembly: positions on the constraints, and velocities, accelerations and multipliers consistent with them.
 
 use symdiff::{Tape, Tile};
 
@@ -14,8 +14,8 @@ const MAX_NOMINAL_CORRECTIONS: usize = 200;
 /// Guesses that are tried for the nominal start: the model's own, then ever wider around it.
 const GUESSES: usize = 60;
 
-/// Constraints hold when none gapes by more than this, relative to the smallest coordinate scale (at most 1).
-const GAP: f64 = 1e-9;
+/// A constraint holds when its residual is at most this, relative to the smallest coordinate scale (at most 1).
+const CLOSED: f64 = 1e-9;
 
 /// Corrections (relative to the coordinates' scales) that end the iteration.
 const SETTLED: f64 = 1e-14;
@@ -23,24 +23,24 @@ const SETTLED: f64 = 1e-14;
 /// Corrections below this that no longer shrink are round-off.
 const STALLED: f64 = 1e-8;
 
-/// How far a constraint may gape for it to hold, given the coordinates' scales.
-pub(super) fn allowed_gap(scale: &[f64]) -> f64 {
-    GAP * scale.iter().copied().fold(1.0, f64::min)
+/// Largest residual at which a constraint holds, given the coordinates' scales.
+pub fn allowed_residual(scale: &[f64]) -> f64 {
+    CLOSED * scale.iter().copied().fold(1.0, f64::min)
 }
 
 /// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
 const FAR: f64 = 0.25;
 
-/// A start that cannot be.
+/// The largest constraint residual of a sample that cannot be assembled.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Gap {
+pub struct ConstraintResidual {
     /// Lane of the tile.
     pub lane: usize,
-    /// Constraint that is fulfilled worst.
+    /// The constraint with the largest residual; beyond the constraints, the conditions of the start.
     pub constraint: usize,
     /// Its residual: m, rad, or m/s, rad/s for velocities.
-    pub amount: f64,
-    /// Whether positions are fine and velocities are not.
+    pub residual: f64,
+    /// Whether positions are consistent and velocities are not.
     pub of_velocities: bool,
 }
 
@@ -67,8 +67,8 @@ impl<'p> Assembly<'p> {
         assembly
     }
 
-    /// Other parameters.
-    pub(super) fn set_parameters(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+    /// Sets other parameters.
+    pub fn set_parameters(&mut self, parameters: impl Fn(usize, usize) -> f64) {
         for (parameter, slot) in self.program.layout.parameters.clone().enumerate() {
             for lane in 0..self.tile.width() {
                 self.tile.lane_mut(slot)[lane] = parameters(parameter, lane);
@@ -77,32 +77,32 @@ impl<'p> Assembly<'p> {
         self.tile.run(self.program.sample());
     }
 
-    /// The same state in every lane.
-    pub(super) fn set_state(&mut self, state: &[f64]) {
+    /// Sets the same state in every lane.
+    pub fn set_state(&mut self, state: &[f64]) {
         for slot in self.program.layout.state() {
             self.tile.lane_mut(slot).fill(state[slot]);
         }
     }
 
-    /// Positions for other parameters, from where they are.
-    pub(super) fn follow(&mut self, parameters: impl Fn(usize, usize) -> f64) {
+    /// Corrects the present positions for other parameters.
+    pub fn follow(&mut self, parameters: impl Fn(usize, usize) -> f64) {
         self.set_parameters(parameters);
         self.tile.run(self.program.given());
         self.correct_until_settled(self.program.position(), self.program.layout.q.start);
     }
 
-    /// Lanes of which a coordinate is far from that of a state.
-    pub(super) fn far_from(&self, state: &[f64]) -> Vec<bool> {
+    /// Which lanes have a coordinate far from that of a state.
+    pub fn far_from(&self, state: &[f64]) -> Vec<bool> {
         let is_far = |lane: usize| {
             let places = self.program.layout.q.clone().zip(&self.scale);
-            // Not a number is far.
+            // NaN is far.
             !places.into_iter().all(|(slot, scale)| (self.tile.lane(slot)[lane] - state[slot]).abs() <= FAR * scale)
         };
         (0..self.tile.width()).map(is_far).collect()
     }
 
-    /// Takes over some lanes of another.
-    pub(super) fn copy_lanes(&mut self, other: &Self, lanes: &[usize]) {
+    /// Copies some lanes of another assembly.
+    pub fn copy_lanes(&mut self, other: &Self, lanes: &[usize]) {
         for slot in 0..self.program.slots() {
             for &lane in lanes {
                 self.tile.lane_mut(slot)[lane] = other.tile.lane(slot)[lane];
@@ -110,8 +110,8 @@ impl<'p> Assembly<'p> {
         }
     }
 
-    /// The memory, to set what is to be assembled.
-    pub(super) fn tile_mut(&mut self) -> &mut Tile {
+    /// The memory, to set the values to start from.
+    pub fn tile_mut(&mut self) -> &mut Tile {
         &mut self.tile
     }
 
@@ -120,12 +120,12 @@ impl<'p> Assembly<'p> {
         &self.tile
     }
 
-    /// Assembles the one lane from the model's guess, or from ever wider guesses around it.
+    /// Assembles the one lane from the model's guess, or from guesses spread ever wider around it.
     ///
     /// # Errors
-    /// The smallest worst gap that was found.
-    pub fn assemble_nominal(&mut self) -> Result<(), Gap> {
-        let mut best: Option<Gap> = None;
+    /// The smallest of the guesses' largest residuals.
+    pub fn assemble_nominal(&mut self) -> Result<(), ConstraintResidual> {
+        let mut best: Option<ConstraintResidual> = None;
         for guess in 0..GUESSES {
             self.tile.run(self.program.guess());
             let spread = 3.0 * guess as f64 / GUESSES as f64;
@@ -137,12 +137,12 @@ impl<'p> Assembly<'p> {
             self.tile.run(self.program.given());
             match self.descend() {
                 Ok(()) => return self.complete().into_iter().next().map_or(Ok(()), Err),
-                Err(gap)
+                Err(worst)
                     if best
                         .as_ref()
-                        .is_none_or(|best| gap.amount.abs() < best.amount.abs() || best.amount.is_nan()) =>
+                        .is_none_or(|best| worst.residual.abs() < best.residual.abs() || best.residual.is_nan()) =>
                 {
-                    best = Some(gap)
+                    best = Some(worst)
                 }
                 Err(_) => {}
             }
@@ -151,25 +151,26 @@ impl<'p> Assembly<'p> {
         Err(best.expect("at least one guess was tried"))
     }
 
-    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the worst gap of each lane that cannot be
-    /// assembled, lane by lane.
-    pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<Gap> {
+    /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the largest residual of each lane that
+    /// cannot be assembled, lane by lane.
+    pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<ConstraintResidual> {
         self.set_state(nominal);
         self.assemble()
     }
 
-    /// Assembles every lane from where it is; the worst gap of each that cannot be.
-    pub(super) fn assemble(&mut self) -> Vec<Gap> {
+    /// Assembles every lane from its present state. Returns the largest residual of each lane that cannot be assembled.
+    pub fn assemble(&mut self) -> Vec<ConstraintResidual> {
         self.tile.run(self.program.given());
         self.correct_until_settled(self.program.position(), self.program.layout.q.start);
         self.complete()
     }
 
-    /// Velocities, accelerations and multipliers for assembled positions; the gaps of lanes where there are none.
-    fn complete(&mut self) -> Vec<Gap> {
+    /// Velocities, accelerations and multipliers for assembled positions. Returns the largest residual of each lane that has
+    /// none.
+    fn complete(&mut self) -> Vec<ConstraintResidual> {
         let program = self.program;
         self.tile.run(program.position());
-        let mut gaps = self.gaps(&program.constraint, false);
+        let mut open = self.open_lanes(&program.constraint, false);
         for slot in program.layout.v.clone() {
             self.tile.lane_mut(slot).fill(0.0);
         }
@@ -177,15 +178,15 @@ impl<'p> Assembly<'p> {
         // `given` sets positions too: to the values they have already.
         self.correct_until_settled(program.velocity(), program.layout.v.start);
         self.tile.run(program.velocity());
-        gaps.extend(self.gaps(&program.constraint_rate, true));
-        // Where positions gape, velocities mean nothing.
-        gaps.sort_by_key(|gap| (gap.lane, gap.of_velocities));
-        gaps.dedup_by_key(|gap| gap.lane);
+        open.extend(self.open_lanes(&program.constraint_rate, true));
+        // Where positions are inconsistent, velocities mean nothing.
+        open.sort_by_key(|residual| (residual.lane, residual.of_velocities));
+        open.dedup_by_key(|residual| residual.lane);
         for slot in program.layout.w.start..program.layout.lambda.end {
             self.tile.lane_mut(slot).fill(0.0);
         }
         self.accelerate();
-        gaps
+        open
     }
 
     /// Accelerations and multipliers at the tile's positions, velocities and time.
@@ -215,7 +216,7 @@ impl<'p> Assembly<'p> {
     }
 
     /// Damped Gauss–Newton of a single lane.
-    pub(super) fn descend(&mut self) -> Result<(), Gap> {
+    pub fn descend(&mut self) -> Result<(), ConstraintResidual> {
         let program = self.program;
         let q = program.layout.q.clone();
         self.tile.run(program.position());
@@ -247,15 +248,15 @@ impl<'p> Assembly<'p> {
             }
             damping = (2.0 * damping).min(1.0);
         }
-        self.gaps(&program.constraint, false).into_iter().next().map_or(Ok(()), Err)
+        self.open_lanes(&program.constraint, false).into_iter().next().map_or(Ok(()), Err)
     }
 
     fn constraint_norm(&self) -> f64 {
         self.program.constraint.iter().map(|&slot| self.tile.lane(slot)[0].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Full corrections of the values from slot `start` on, until every lane has settled (or cannot).
-    pub(super) fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
+    /// Full corrections of the values from slot `start` on, until every lane has settled or the corrections are used up.
+    pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
         let layout = &self.program.layout;
         let width = self.tile.width();
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
@@ -284,15 +285,15 @@ impl<'p> Assembly<'p> {
         }
     }
 
-    /// The worst gap of each lane with a constraint that is not fulfilled.
-    fn gaps(&self, slots: &[usize], of_velocities: bool) -> Vec<Gap> {
-        let allowed = allowed_gap(&self.scale);
+    /// The largest residual of each lane with a constraint that does not hold.
+    fn open_lanes(&self, slots: &[usize], of_velocities: bool) -> Vec<ConstraintResidual> {
+        let allowed = allowed_residual(&self.scale);
         let of_lane = |lane: usize| {
-            let gaps = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
-            let worst = gaps.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
-            // Not a number is a gap too.
-            let open = worst.filter(|(_, amount)| amount.is_nan() || amount.abs() > allowed);
-            open.map(|(constraint, amount)| Gap { lane, constraint, amount, of_velocities })
+            let residuals = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
+            let worst = residuals.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
+            // NaN does not hold either.
+            let open = worst.filter(|(_, residual)| residual.is_nan() || residual.abs() > allowed);
+            open.map(|(constraint, residual)| ConstraintResidual { lane, constraint, residual, of_velocities })
         };
         (0..self.tile.width()).filter_map(of_lane).collect()
     }

@@ -1,47 +1,47 @@
-//! Many samples in step: tiles over all cores, advanced row by row of output.
+//! An ensemble of samples on one step schedule: tiles over all cores, advanced row by row of output.
 
 use rayon::prelude::*;
 use symdiff::WIDTHS;
 
-use super::hht::{Stepper, Stuck};
-use super::newton::Counters;
-use super::simulator::{SimulationError, Simulator};
-use super::singular::{SingularPass, SingularWatch};
-use super::steps::Schedule;
+use crate::simulate::control::Schedule;
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::{Counters, StepFailure, Stepper};
 
 /// Widest tile in use: a wider one's memory would leave the first-level cache.
 const WIDEST: usize = 32;
 
-/// Memory that a tile should not exceed, so that a large mechanism's stays in the second-level cache; it is narrower then,
-/// down to [`NARROWEST`], where dispatch costs more than memory does.
+/// Most memory of a tile, so that a large mechanism's stays in the second-level cache. Tiles are narrower then, down to
+/// [`NARROWEST`], where dispatch costs more than memory does.
 const TILE_MEMORY: usize = 2 << 20;
 
 /// See [`TILE_MEMORY`].
 const NARROWEST: usize = 8;
 
-/// A block of samples in step.
+/// The run of an ensemble of samples.
 #[derive(Debug)]
-pub struct Fleet<'s> {
+pub struct EnsembleRun<'s> {
     simulator: &'s Simulator,
-    tiles: Vec<Member<'s>>,
+    tiles: Vec<TileRun<'s>>,
     samples: usize,
 }
 
 #[derive(Debug)]
-struct Member<'s> {
+struct TileRun<'s> {
     stepper: Stepper<'s>,
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
-    /// What each lane's local errors add up to, over the tolerance.
-    strain: Vec<f64>,
-    /// The first of its samples that stopped, and where the step began that it did not take.
+    /// Sum of each lane's local errors over the tolerance.
+    error_ratio: Vec<f64>,
+    /// The first of the samples that stopped, and its state at the beginning of the failed step.
     stopped: Option<(usize, Vec<f64>)>,
-    /// Looks for singular configurations of the first lane.
+    /// Search for singular configurations of the first lane.
     watch: Option<SingularWatch<'s>>,
 }
 
-/// What is looked at in each row.
+/// Values that are recorded in each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Observed {
     /// The model's outputs.
@@ -60,25 +60,24 @@ impl Observed {
     }
 }
 
-/// A sample that stopped, and in which row.
+/// A sample that stopped, and the row in which it did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// Sample of the fleet.
+    /// Number of the sample in the ensemble.
     pub sample: usize,
     /// First row of output that it did not reach.
     pub row: usize,
     /// s
     pub time: f64,
-    /// Of n + m, the one that resists most.
+    /// Of the n + m equations, the one with the largest scaled residual.
     pub equation: usize,
-    /// The constraint that stays open there whatever the position, and by how much, where it is known that one does.
-    pub open: Option<(usize, f64)>,
-    /// Whether it would go on, but not with an invertible Newton matrix, which jets need.
+    /// The constraint that cannot be closed there, if one is known.
+    pub open: Option<OpenConstraint>,
+    /// Whether the sample could continue, but without the invertible Newton matrix that jets need.
     pub singular: bool,
 }
 
-/// How `samples` with so many slots each are cut into tiles for `threads`: (first, count, width). The results do not depend
-/// on it.
+/// Tiles of `samples` with this many slots each for `threads`: (first, count, width). Results do not depend on the tiling.
 fn tiles(samples: usize, slots: usize, threads: usize) -> Vec<(usize, usize, usize)> {
     let fits = TILE_MEMORY / (slots * size_of::<f64>()).max(1);
     let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
@@ -94,14 +93,14 @@ fn tiles(samples: usize, slots: usize, threads: usize) -> Vec<(usize, usize, usi
     tiles
 }
 
-impl<'s> Fleet<'s> {
+impl<'s> EnsembleRun<'s> {
     /// Assembles samples for a schedule that begins with steps of `first_step`.
     ///
     /// # Errors
     /// The first sample that cannot be assembled.
     pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
         let tiles = tiles(samples.len(), simulator.program.slots(), rayon::current_num_threads());
-        let assembled: Vec<Result<Member<'s>, SimulationError>> = tiles
+        let assembled: Vec<Result<TileRun<'s>, SimulationError>> = tiles
             .into_par_iter()
             .map(|(first, count, width)| {
                 // Lanes beyond the samples repeat the last one and do not run.
@@ -109,24 +108,25 @@ impl<'s> Fleet<'s> {
                 let start = simulator.assemble(width, first_step, sample)?;
                 let mut stepper = Stepper::new(&simulator.program, &start);
                 stepper.retire(count..width);
-                Ok(Member { stepper, first, count, strain: vec![0.0; width], stopped: None, watch: None })
+                Ok(TileRun { stepper, first, count, error_ratio: vec![0.0; width], stopped: None, watch: None })
             })
             .collect();
         let tiles = assembled.into_iter().collect::<Result<Vec<_>, _>>()?;
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
 
-    /// The same, looking for singular configurations that the first sample passes.
+    /// Also searches for singular configurations that the first sample passes.
     #[must_use]
     pub fn watching(mut self) -> Self {
-        if let Some(member) = self.tiles.first_mut() {
-            member.watch = Some(SingularWatch::new(self.simulator, &member.stepper));
+        if let Some(tile) = self.tiles.first_mut() {
+            tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
         }
         self
     }
 
-    /// What is `observed` at `rows`, which follow those asked for last (row 0 is the start): row by row, value by value,
-    /// sample by sample. With a tolerance, local errors are watched. Returns which samples stopped.
+    /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records what is `observed`: row by
+    /// row, value by value, sample by sample. With a tolerance, local errors are summed up. Returns the samples that
+    /// stopped.
     pub fn advance(
         &mut self,
         schedule: &Schedule,
@@ -139,25 +139,25 @@ impl<'s> Fleet<'s> {
         let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
             .tiles
             .par_iter_mut()
-            .map(|member| member.advance(schedule, rows.clone(), tolerance, (observed, outputs)))
+            .map(|tile| tile.advance(schedule, rows.clone(), tolerance, (observed, outputs)))
             .collect();
         into.clear();
         into.resize(rows.len() * outputs * self.samples, 0.0);
         let mut stops = Vec::new();
-        for (member, (values, stopped)) in self.tiles.iter().zip(parts) {
-            let width = member.stepper.tile().width();
+        for (tile, (values, stopped)) in self.tiles.iter().zip(parts) {
+            let width = tile.stepper.tile().width();
             for (line, lanes) in values.chunks_exact(width).enumerate() {
-                into[line * self.samples + member.first..][..member.count].copy_from_slice(&lanes[..member.count]);
+                into[line * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
             }
             stops.extend(stopped);
         }
         stops
     }
 
-    /// Iterations and fallbacks so far.
+    /// Newton iterations and rank-revealing solves so far.
     pub fn counters(&self) -> Counters {
-        self.tiles.iter().fold(Counters::default(), |total, member| {
-            let counters = member.stepper.counters();
+        self.tiles.iter().fold(Counters::default(), |total, tile| {
+            let counters = tile.stepper.counters();
             Counters {
                 iterations: total.iterations + counters.iterations,
                 rank_revealing: total.rank_revealing + counters.rank_revealing,
@@ -165,31 +165,31 @@ impl<'s> Fleet<'s> {
         })
     }
 
-    /// Singular configurations that the first sample has passed, where they were looked for.
+    /// Singular configurations that the first sample has passed, if they are searched for.
     pub fn singular_passes(&self) -> Vec<SingularPass> {
-        self.tiles.iter().filter_map(|member| member.watch.as_ref()).flat_map(SingularWatch::passes).collect()
+        self.tiles.iter().filter_map(|tile| tile.watch.as_ref()).flat_map(SingularWatch::passes).collect()
     }
 
-    /// A constraint that stays open where a sample stopped, whatever its position, and by how much: the mechanism locks there.
-    /// Known of the first sample of each tile that stops.
-    pub fn stays_open(&self, stop: &Stop, schedule: &Schedule) -> Option<(usize, f64)> {
-        let mut stopped = self.tiles.iter().filter_map(|member| member.stopped.as_ref());
+    /// The constraint that cannot be closed where a sample stopped: the mechanism locks there. Known for the first sample of
+    /// each tile that stops.
+    pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
+        let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
         let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
-        // An opening needs time to show.
+        // A residual needs time to grow.
         let times = [stop.time, stop.time + schedule.output_step];
-        times.into_iter().find_map(|time| self.simulator.stays_open(state, time))
+        times.into_iter().find_map(|time| self.simulator.open_constraint(state, time))
     }
 
-    /// The sample whose local errors add up to most, and to how much over the tolerance.
-    pub fn most_strained(&self) -> Option<(usize, f64)> {
-        let strains = self.tiles.iter().flat_map(|member| {
-            member.strain[..member.count].iter().enumerate().map(|(lane, &strain)| (member.first + lane, strain))
+    /// The sample with the largest sum of local errors over the tolerance, and that sum.
+    pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
+        let ratios = self.tiles.iter().flat_map(|tile| {
+            tile.error_ratio[..tile.count].iter().enumerate().map(|(lane, &ratio)| (tile.first + lane, ratio))
         });
-        strains.reduce(|a, b| if b.1 > a.1 { b } else { a })
+        ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 }
 
-impl Member<'_> {
+impl TileRun<'_> {
     fn advance(
         &mut self,
         schedule: &Schedule,
@@ -209,14 +209,14 @@ impl Member<'_> {
                     break;
                 }
                 self.stepper.set_step_size(h);
-                let stuck = self.stepper.step(h, end);
-                if let (Some(first), None) = (stuck.first(), &self.stopped) {
+                let failures = self.stepper.step(h, end);
+                if let (Some(first), None) = (failures.first(), &self.stopped) {
                     self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
                 }
                 if let Some(watch) = &mut self.watch {
                     watch.look(&self.stepper, end);
                 }
-                stops.extend(stuck.into_iter().map(|Stuck { lane, time, equation }| Stop {
+                stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
                     sample: self.first + lane,
                     row,
                     time,
@@ -227,7 +227,7 @@ impl Member<'_> {
                 if let Some(tolerance) = tolerance {
                     for (lane, error) in self.stepper.local_errors().iter().enumerate() {
                         if self.stepper.alive()[lane] {
-                            self.strain[lane] += error.size / tolerance;
+                            self.error_ratio[lane] += error.size / tolerance;
                         }
                     }
                 }

@@ -1,4 +1,4 @@
-//! What to do where a matrix loses rank: solved by its numbers alone, off the hot path.
+//! The rank-revealing solve: a linear system whose matrix may have lost rank, solved on its numbers alone, off the hot path.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ const SAFE: (f64, f64) = (1e-3, 0.1);
 /// Solution of `matrix · x = right` where the matrix may have lost rank: entries (row, column, value), scaled symmetrically
 /// by `scale`. Pivots that are safe are eliminated sparsely, and of what is left, which is small, the smallest
 /// least-squares solution is found through its singular values. `None` where the numbers are not finite.
-pub fn solve_whatever_rank(entries: &[(usize, usize, f64)], right: &[f64], scale: &[f64]) -> Option<Vec<f64>> {
+pub fn solve_rank_deficient(entries: &[(usize, usize, f64)], right: &[f64], scale: &[f64]) -> Option<Vec<f64>> {
     let finite = entries.iter().map(|(_, _, value)| value).chain(right).all(|value| value.is_finite());
     let mut left = Remainder::new(entries, right, scale);
     let mut pivots = Vec::new();
@@ -115,75 +115,6 @@ impl Remainder {
     }
 }
 
-/// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that the rows before them imply.
-pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> {
-    let strengths = row_strengths(rows, tolerance).into_iter().enumerate();
-    strengths.filter(|(_, strength)| *strength <= tolerance).map(|(row, _)| row).collect()
-}
-
-/// How far each row of a sparse matrix stands out of those before it, relative to its own size: the largest entry that
-/// elimination in the rows' order leaves of it, each time on the largest. Rows within the tolerance are not eliminated with.
-pub fn row_strengths(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<f64> {
-    let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
-    let mut strengths = Vec::with_capacity(rows.len());
-    for row in rows {
-        let size = row.iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
-        let mut left: BTreeMap<usize, f64> = row.iter().copied().collect();
-        // A pivot row has no entries in earlier pivots' columns only after them, so columns are cleared until none is left.
-        while let Some((&column, &value)) =
-            left.iter().find(|(column, value)| **value != 0.0 && reduced.contains_key(column))
-        {
-            for &(other, entry) in &reduced[&column] {
-                *left.entry(other).or_insert(0.0) -= value * entry;
-            }
-            left.insert(column, 0.0);
-        }
-        let pivot = left.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map(|(&column, &value)| (column, value));
-        let strength = pivot.map_or(0.0, |(_, value)| if size > 0.0 { value.abs() / size } else { 0.0 });
-        strengths.push(strength);
-        if let Some((column, value)) = pivot.filter(|_| strength > tolerance) {
-            let row = left
-                .into_iter()
-                .filter(|&(_, entry)| entry != 0.0)
-                .map(|(other, entry)| (other, entry / value))
-                .collect();
-            reduced.insert(column, row);
-        }
-    }
-    strengths
-}
-
-/// Columns of a matrix that its independent rows leave free, by elimination with complete pivoting; columns of large
-/// `weight` become pivots (dependent) first.
-pub fn free_columns(matrix: &DMatrix<f64>, weight: &[f64]) -> Vec<usize> {
-    let mut left = matrix.clone();
-    let mut free: Vec<usize> = (0..matrix.ncols()).collect();
-    let mut rows: Vec<usize> = (0..matrix.nrows()).collect();
-    let mut first = None;
-    while !rows.is_empty() && !free.is_empty() {
-        let entries = rows.iter().flat_map(|&row| free.iter().map(move |&column| (row, column)));
-        let size = |&(row, column): &(usize, usize)| left[(row, column)].abs() * weight[column];
-        let Some((row, column)) = entries.max_by(|a, b| size(a).total_cmp(&size(b))) else { break };
-        let pivot = left[(row, column)];
-        let largest = *first.get_or_insert(pivot.abs());
-        let negligible = pivot.abs() <= RANK_TOLERANCE * largest;
-        if negligible || !pivot.is_finite() {
-            break;
-        }
-        rows.retain(|&other| other != row);
-        free.retain(|&other| other != column);
-        for &other in &rows {
-            let factor = left[(other, column)] / pivot;
-            if factor != 0.0 {
-                for &right in &free {
-                    left[(other, right)] -= factor * left[(row, right)];
-                }
-            }
-        }
-    }
-    free
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,14 +123,14 @@ mod tests {
     fn a_singular_system_gives_its_smallest_solution() {
         let tiny = 1e-4;
         let entries = [(0, 0, tiny), (0, 1, tiny), (1, 0, tiny), (1, 1, tiny), (2, 2, 1.0)];
-        let x = solve_whatever_rank(&entries, &[2.0 * tiny, 2.0 * tiny, 5.0], &[1.0; 3]).unwrap();
+        let x = solve_rank_deficient(&entries, &[2.0 * tiny, 2.0 * tiny, 5.0], &[1.0; 3]).unwrap();
         assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 1.0).abs() < 1e-12 && x[2] == 5.0);
     }
 
     #[test]
     fn an_implied_row_is_no_hindrance() {
         let entries = [(0, 0, 1.0), (0, 1, 1.0), (1, 0, 1.0), (1, 2, -1.0), (2, 1, 1.0), (2, 2, 1.0)];
-        let x = solve_whatever_rank(&entries, &[3.0, 1.0, 2.0], &[1.0; 3]).unwrap();
+        let x = solve_rank_deficient(&entries, &[3.0, 1.0, 2.0], &[1.0; 3]).unwrap();
         for (row, right) in [3.0, 1.0, 2.0].into_iter().enumerate() {
             let sum: f64 = entries.iter().filter(|entry| entry.0 == row).map(|entry| entry.2 * x[entry.1]).sum();
             assert!((sum - right).abs() < 1e-14);
@@ -212,7 +143,7 @@ mod tests {
             .flat_map(|i| (0..6).map(move |j| (i, j, if i == j { 3.0 } else { 1.0 / (1.0 + (i + 2 * j) as f64) })))
             .collect();
         let right: Vec<f64> = (0..6).map(f64::from).collect();
-        let x = solve_whatever_rank(&entries, &right, &[1.0, 0.5, 2.0, 1.0, 3.0, 0.1]).unwrap();
+        let x = solve_rank_deficient(&entries, &right, &[1.0, 0.5, 2.0, 1.0, 3.0, 0.1]).unwrap();
         for (row, right) in right.into_iter().enumerate() {
             let sum: f64 = entries.iter().filter(|entry| entry.0 == row).map(|entry| entry.2 * x[entry.1]).sum();
             assert!((sum - right).abs() < 1e-13);
@@ -220,19 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn not_a_number_has_no_solution() {
-        assert_eq!(solve_whatever_rank(&[(0, 0, f64::NAN)], &[1.0], &[1.0]), None);
-    }
-
-    #[test]
-    fn implied_rows_are_found_in_order() {
-        let rows = vec![
-            vec![(0, 1.0), (1, 2.0)],
-            vec![(1, 1.0), (2, 1.0)],
-            vec![(0, 1.0), (1, 3.0), (2, 1.0)],
-            vec![(2, 5.0)],
-            vec![],
-        ];
-        assert_eq!(dependent_rows(&rows, 1e-9), [2, 4]);
+    fn nan_has_no_solution() {
+        assert_eq!(solve_rank_deficient(&[(0, 0, f64::NAN)], &[1.0], &[1.0]), None);
     }
 }

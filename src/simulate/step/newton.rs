@@ -7,9 +7,9 @@
 
 use symdiff::{Tile, Vectorise, vectorised};
 
-use super::initial::allowed_gap;
-use super::rank::solve_whatever_rank;
+use super::rank_revealing::solve_rank_deficient;
 use crate::compile::{Program, Watched};
+use crate::simulate::start::allowed_residual;
 
 /// Corrections with the step's first factorisation before each gets its own.
 const FROZEN_CORRECTIONS: usize = 4;
@@ -87,7 +87,7 @@ impl Newton {
     }
 
     /// Whether a lane's last step was solved whatever its rank.
-    pub(super) fn is_singular(&self, lane: usize) -> bool {
+    pub fn is_singular(&self, lane: usize) -> bool {
         self.singular[lane]
     }
 
@@ -115,7 +115,7 @@ impl Newton {
             self.iterate(program, tile, h);
         }
         if alive.iter().zip(&self.singular).any(|(alive, singular)| *alive && *singular) {
-            self.reject_gaps(program, tile, h);
+            self.reject_open_constraints(program, tile, h);
         }
         if self.pending.contains(&true) {
             self.restore_multipliers(program, tile);
@@ -175,7 +175,7 @@ impl Newton {
             }
             vectorised(Apply { program, tile, gain, pending: &self.pending, norm: &mut self.norm });
             self.counters.iterations += self.pending.iter().map(|&pending| u64::from(pending)).sum::<u64>();
-            vectorised(Judge {
+            vectorised(TestConvergence {
                 count,
                 norm: &self.norm,
                 last: &mut self.last,
@@ -209,7 +209,7 @@ impl Newton {
                 if residual.abs() <= *rounding { 0.0 } else { -residual }
             });
             let right: Vec<f64> = right.collect();
-            let solution = solve_whatever_rank(&entries, &right, &program.equilibration);
+            let solution = solve_rank_deficient(&entries, &right, &program.equilibration);
             for (place, slot) in program.layout.correction.clone().enumerate() {
                 tile.lane_mut(slot)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
             }
@@ -218,10 +218,10 @@ impl Newton {
 
     /// Lanes whose rank-revealing solve has settled without fulfilling the constraints have not converged: least squares
     /// also settle where they cannot be fulfilled.
-    fn reject_gaps(&mut self, program: &Program, tile: &mut Tile, h: f64) {
+    fn reject_open_constraints(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.constraint_gain(h);
-        let allowed = allowed_gap(&program.scale);
+        let allowed = allowed_residual(&program.scale);
         for &slot in &program.residual[program.scale.len()..] {
             for (lane, residual) in tile.lane(slot).iter().enumerate() {
                 let closed = (gain * residual).abs() <= allowed;
@@ -273,7 +273,7 @@ impl Vectorise for Watch<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { watched, tile, singular } = self;
-        // Not a number is not trusted either.
+        // NaN is not trusted either.
         let lost = |inverse: f64, largest: f64| inverse.is_nan() || inverse.abs() > largest;
         for Watched { mode, pivots } in watched {
             match mode {
@@ -325,7 +325,7 @@ impl Vectorise for Apply<'_> {
             let weight = gain / scale;
             for (norm, correction) in norm.iter_mut().zip(correction) {
                 let size = (weight * correction).abs();
-                // Written so that not a number wins and stays.
+                // Written so that NaN wins and stays.
                 *norm = if size <= *norm || norm.is_nan() { *norm } else { size };
             }
         }
@@ -344,7 +344,7 @@ fn add(chosen: &[bool], change: &[f64], to: &mut [f64]) {
 }
 
 /// Which lanes are done.
-struct Judge<'a> {
+struct TestConvergence<'a> {
     count: usize,
     norm: &'a [f64],
     last: &'a mut [f64],
@@ -352,7 +352,7 @@ struct Judge<'a> {
     pending: &'a mut [bool],
 }
 
-impl Vectorise for Judge<'_> {
+impl Vectorise for TestConvergence<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -1,6 +1,6 @@
-//! The step schedule that all samples share, and its control by a tolerance.
+//! The step schedule that all samples share: the rows of output and the steps between them.
 
-/// When to step and when to look.
+/// Rows of output, and the steps that lead from row to row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     /// s between rows of output.
@@ -54,7 +54,7 @@ impl Schedule {
         Self { steps, ..*self }
     }
 
-    /// How many steps there are between rows, where they are all of one length.
+    /// Number of steps between rows, if all steps have one length.
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
             Steps::Fixed { per_row, .. } => Some(*per_row),
@@ -62,13 +62,13 @@ impl Schedule {
         }
     }
 
-    /// The same rows, with so many steps of one length between them.
+    /// The same rows with this many steps of one length between them.
     #[must_use]
     pub fn with_steps_per_row(&self, per_row: usize) -> Self {
         Self { steps: Steps::Fixed { step: self.output_step / per_row as f64, per_row }, ..*self }
     }
 
-    /// Number of rows for a schedule still to be made.
+    /// Number of rows of a schedule of this duration.
     pub fn rows_of(duration: f64, output_step: f64) -> usize {
         rows(duration, output_step)
     }
@@ -108,39 +108,6 @@ impl Schedule {
             Steps::Fixed { per_row, .. } => row * per_row,
             Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
         }
-    }
-}
-
-/// Step-size control for HHT. The local position error δ of a step (Negrut et al. 2007, §5) is of third order; what it adds
-/// up to over the run is kept at the tolerance by allowing each step its share, δ ≤ tolerance · h / duration (an error per
-/// unit step). So the error at the end is proportional to the tolerance. Kept at the tolerance itself, as in the paper, the
-/// errors of ever more steps would add up: the error at the end would fall with tolerance^(2/3) only.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Controller {
-    /// Wanted position error over the duration, relative to max(1, |q|) of each coordinate's scale.
-    pub tolerance: f64,
-    /// s
-    pub duration: f64,
-}
-
-impl Controller {
-    /// A step below this share of the duration is given up.
-    pub const SMALLEST: f64 = 1e-13;
-
-    /// Local errors below this are round-off and not judged: positions carry an error of ε, and δ the same.
-    const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
-
-    /// A step's local error over its share of the tolerance: at most 1 where the step may stay.
-    pub fn strain(self, error: f64, h: f64) -> f64 {
-        error / (self.tolerance * h / self.duration).max(Self::ROUND_OFF)
-    }
-
-    /// Factor for the next step after one of this strain (the worst sample's): δ/h is of second order.
-    pub fn factor(self, strain: f64) -> f64 {
-        if !strain.is_finite() {
-            return 0.25;
-        }
-        (0.9 / strain.sqrt()).clamp(0.2, 2.0)
     }
 }
 

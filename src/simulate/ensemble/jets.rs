@@ -6,11 +6,11 @@
 
 use symdiff::{JetMemory, jet::JetSpace};
 
-use super::fleet::Stop;
-use super::hht::Stepper;
-use super::newton::Counters;
-use super::simulator::{SimulationError, Simulator};
-use super::steps::Schedule;
+use super::run::Stop;
+use crate::simulate::control::Schedule;
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::{Counters, Stepper};
 
 /// The run of one jet.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct JetRun<'s> {
 }
 
 impl<'s> JetRun<'s> {
-    /// Assembles the jet around `center` with the parameters' half widths as slopes.
+    /// Assembles the jet around `center`; the parameters' half widths are its first derivatives.
     ///
     /// # Errors
     /// Where the centre cannot be assembled.
@@ -59,8 +59,8 @@ impl<'s> JetRun<'s> {
         Ok(Self { simulator, order, center: Stepper::new(program, &assembled), memory, step_size: f64::NAN })
     }
 
-    /// Outputs at `rows`, which follow those asked for last: row by row, output by output, coefficient by coefficient.
-    /// Returns where it stopped, if it did.
+    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
+    /// coefficient by coefficient. Returns where the run stopped, if it did.
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
         for row in rows {
@@ -78,13 +78,16 @@ impl<'s> JetRun<'s> {
         None
     }
 
-    /// Iterations of the centre so far.
+    /// Newton iterations of the centre so far.
     pub fn counters(&self) -> Counters {
         self.center.counters()
     }
 
-    /// One step. Fails where the centre does not converge, or (`true`) only with the rank-revealing solve, whose matrix has
-    /// no inverse for the sweeps.
+    /// One step.
+    ///
+    /// # Errors
+    /// `false` where the centre does not converge; `true` where it converges with the rank-revealing solve only, whose
+    /// matrix has no inverse for the sweeps.
     fn step(&mut self, h: f64, end: f64) -> Result<(), bool> {
         let program = &self.simulator.program;
         let layout = &program.layout;
@@ -124,7 +127,7 @@ impl<'s> JetRun<'s> {
         Ok(())
     }
 
-    /// As for a tile: see [`Stepper`].
+    /// As for a tile: see [`Stepper::set_step_size`].
     fn set_step_size(&mut self, h: f64) {
         if self.step_size == h {
             return;
@@ -152,8 +155,8 @@ fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>,
     }
 }
 
-/// Makes the jet of the start consistent. Its constant terms are so already, and every Newton correction in jets doubles
-/// the orders that are.
+/// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in jets
+/// doubles the number of orders that are.
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;
@@ -164,7 +167,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         memory.run(start.position());
         add_correction(memory, layout.q.clone(), layout.correction.start);
     }
-    // Velocities that are kept may hang on the positions.
+    // Prescribed velocities may depend on the positions.
     memory.run(start.given());
     for _ in 0..corrections {
         memory.run(start.velocity());

@@ -1,0 +1,146 @@
+//! A step's program: the tapes of one step of a scheme, and the slots of what they compute.
+
+use symdiff::{Lowered, Tape};
+
+use super::layout::Layout;
+use super::scheme::Coefficients;
+
+/// A state that guides the choice of pivots: values of the layout's slots, at a step size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PivotSample {
+    /// Values of the slots below `layout.slots()`.
+    pub values: Vec<f64>,
+}
+
+/// A pivot that can change, and how small it may become before its factors are not trusted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WatchedPivot {
+    /// Slot of 1/pivot.
+    pub slot: usize,
+    /// Largest |1/pivot| that is trusted.
+    pub largest_inverse: f64,
+}
+
+/// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the factorisation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Slot of the active condition.
+    pub slot: usize,
+    /// Whether the lanes are those in which the condition is not positive.
+    pub inactive: bool,
+}
+
+impl Mode {
+    /// Whether a lane with this value of the condition is one of them.
+    #[inline(always)]
+    pub fn holds(&self, value: f64) -> bool {
+        (value <= 0.0) == self.inactive
+    }
+}
+
+/// The pivots of one version of the factors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watched {
+    /// Which lanes use the version; `None` for all, where there is one version.
+    pub mode: Option<Mode>,
+    /// The version's pivots that can change.
+    pub pivots: Vec<WatchedPivot>,
+}
+
+/// Compiled form of a system for one scheme. A tile of samples has [`Program::slots`] slots.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// The part of the memory that holds states.
+    pub layout: Layout,
+    /// The scheme's numbers.
+    pub coefficients: Coefficients,
+    /// Typical size of each coordinate, n.
+    pub scale: Vec<f64>,
+    /// Slots of the outputs after [`Program::observe`].
+    pub outputs: Vec<usize>,
+    /// Slots of the Newton matrix's entries (row, column, slot) after [`Program::matrix`].
+    pub matrix_entries: Vec<(usize, usize, usize)>,
+    /// Slots of the residual after [`Program::matrix`], n + m.
+    pub residual: Vec<usize>,
+    /// Slots of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
+    pub redundant: Vec<usize>,
+    /// Pivots that can become small, for each version of the factors.
+    pub watched: Vec<Watched>,
+    /// Symmetric scaling that equilibrates the Newton matrix, n + m.
+    pub equilibration: Vec<f64>,
+    /// Nonzeros of the Newton matrix and of its factors.
+    pub nonzeros: (usize, usize),
+    /// Equation and unknown of each pivot, in the order of elimination.
+    pub pivots: Vec<(usize, usize)>,
+    pub(super) lowered: Lowered,
+}
+
+pub(super) const FACTOR: usize = 0;
+pub(super) const CORRECT: usize = 1;
+pub(super) const ADVANCE: usize = 2;
+pub(super) const OBSERVE: usize = 3;
+pub(super) const MATRIX: usize = 4;
+pub(super) const ESTIMATE: usize = 5;
+
+impl Program {
+    /// Number of slots of a tile.
+    pub fn slots(&self) -> usize {
+        self.lowered.slots
+    }
+
+    /// Numbers that a new tile holds.
+    pub fn constants(&self) -> &[(u32, f64)] {
+        &self.lowered.constants
+    }
+
+    /// Once a sample: what depends on parameters only.
+    pub fn sample(&self) -> &Tape {
+        &self.lowered.stages[0]
+    }
+
+    /// Once after a change of h.
+    pub fn step_size(&self) -> &Tape {
+        &self.lowered.stages[1]
+    }
+
+    /// Once a step, after `time` was set to t₊: what the iteration does not change.
+    pub fn step(&self) -> &Tape {
+        &self.lowered.stages[2]
+    }
+
+    /// Newton matrix at the iterate, factorised.
+    pub fn factor(&self) -> &Tape {
+        &self.lowered.kernels[FACTOR]
+    }
+
+    /// Residual at the iterate and, with the last factors, the correction.
+    pub fn correct(&self) -> &Tape {
+        &self.lowered.kernels[CORRECT]
+    }
+
+    /// Replaces the state by the one at the step's end.
+    pub fn advance(&self) -> &Tape {
+        &self.lowered.kernels[ADVANCE]
+    }
+
+    /// Outputs of the state.
+    pub fn observe(&self) -> &Tape {
+        &self.lowered.kernels[OBSERVE]
+    }
+
+    /// Newton matrix and residual at the iterate, for the rank-revealing solve.
+    pub fn matrix(&self) -> &Tape {
+        &self.lowered.kernels[MATRIX]
+    }
+
+    /// In the correction's first n slots the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the last
+    /// factors: after the iteration, and before the state is advanced.
+    pub fn estimate(&self) -> &Tape {
+        &self.lowered.kernels[ESTIMATE]
+    }
+
+    /// Slots that the factors occupy.
+    pub fn factor_slots(&self) -> &[u32] {
+        &self.lowered.outputs[FACTOR]
+    }
+}

@@ -1,0 +1,56 @@
+//! The elimination, pivot by pivot.
+
+use symdiff::{Graph, SparseMatrix, Stages};
+
+use super::Numbers;
+use super::active::Active;
+use super::pivoting::{PivotSearch, Pivoting};
+use super::solve::Factors;
+
+/// Why a matrix has no factors.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoFactors {
+    /// The rows that are left have no acceptable pivot.
+    #[error("the matrix is singular: {} of its rows have no pivot", rows.len())]
+    Singular {
+        /// Those rows.
+        rows: Vec<usize>,
+    },
+    /// The graph was full before the elimination was done ([`Graph::limit`]).
+    #[error("the elimination takes too many operations")]
+    TooLong,
+}
+
+/// Factorises a square matrix.
+///
+/// `numbers` runs over the matrix's entries row by row. `scale` (one factor a row, symmetric) makes entries comparable for
+/// the threshold and changes nothing else. The elimination saves operations at the stage `costly`.
+///
+/// # Errors
+/// Where no entry of the rows left is large enough at every pivot sample, and where the graph is full.
+pub fn factorise(
+    graph: &mut Graph,
+    matrix: &SparseMatrix,
+    numbers: &[Numbers],
+    scale: &[f64],
+    stages: Stages,
+    costly: usize,
+    pivoting: Pivoting,
+) -> Result<Factors, NoFactors> {
+    let size = matrix.rows.len();
+    let mut active = Active::new(matrix, numbers, scale, pivoting.first_late());
+    let largest = active.largest;
+    let mut search = PivotSearch::new(pivoting, &active, stages, costly);
+    let mut pivots = Vec::with_capacity(size);
+    while pivots.len() < size {
+        let Some((row, column)) = search.choose(graph, &active) else {
+            return Err(NoFactors::Singular { rows: active.sparsest_rows.iter().map(|&(_, _, row)| row).collect() });
+        };
+        search.remove(row);
+        pivots.push(active.eliminate(graph, row, column));
+        if graph.is_full() {
+            return Err(NoFactors::TooLong);
+        }
+    }
+    Ok(Factors { pivots, growth: active.largest / largest })
+}

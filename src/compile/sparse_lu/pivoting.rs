@@ -1,0 +1,264 @@
+//! The choice of the next pivot: the cheapest entry that is large enough.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use symdiff::{Expr, Graph, Stages};
+
+use super::PIVOT_SAMPLES;
+use super::active::{Active, Entry};
+use super::ordering::block_order;
+
+/// A pivot is at least this large against the largest entry of its column, at every pivot sample.
+const THRESHOLD: f64 = 0.1;
+
+/// The same for pivots of [`Pivoting::Symmetric`], which cannot vanish: their order matters more. The corrections lose up
+/// to as many digits, and have more than they need.
+const THRESHOLD_SYMMETRIC: f64 = 1e-3;
+
+/// Where no pivot passes the threshold, it is lowered down to this; below it the matrix counts as singular.
+const SINGULAR: f64 = 1e-11;
+
+/// The same for a quasi-definite matrix, which is never singular: its pivots may be as small as its regularisation.
+const SINGULAR_DIAGONAL: f64 = 1e-15;
+
+/// Number of sparsest columns and rows that are searched for a pivot first; the search widens by [`WIDER`].
+const SEARCHED: usize = 4;
+
+/// Factor by which the search widens where it finds no pivot.
+const WIDER: usize = 8;
+
+/// Which entries may be pivots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pivoting<'m> {
+    /// Any entry, by cost and size.
+    Any,
+    /// Entries that cannot vanish wherever the mechanism moves, in a matrix [M Φᵀ; Φ 0] with M positive definite but for
+    /// massless coordinates: diagonal entries of M; a derivative of Φ that is constant or by a massless coordinate, twice,
+    /// which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
+    /// eliminated, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
+    ///
+    /// Bodies that rotate freely need it: each of their Euler parameters, and so each derivative by them, passes through
+    /// zero.
+    Symmetric {
+        /// Whether each coordinate has inertia; as many as there are coordinates.
+        massive: &'m [bool],
+        /// By coordinate, the first of those that M couples it with.
+        blocks: &'m [usize],
+    },
+    /// The diagonal only, the rows before `constraints` first: for quasi-definite matrices, where this order exists for all
+    /// numbers.
+    Diagonal {
+        /// First row of the block that is nearly zero until the others are eliminated.
+        constraints: usize,
+    },
+}
+
+impl Pivoting<'_> {
+    fn smallest(self) -> f64 {
+        match self {
+            Self::Any | Self::Symmetric { .. } => SINGULAR,
+            Self::Diagonal { .. } => SINGULAR_DIAGONAL,
+        }
+    }
+
+    fn threshold(self) -> f64 {
+        match self {
+            Self::Any | Self::Diagonal { .. } => THRESHOLD,
+            Self::Symmetric { .. } => THRESHOLD_SYMMETRIC,
+        }
+    }
+
+    /// Rows and columns from here on are searched last.
+    pub fn first_late(self) -> usize {
+        match self {
+            Self::Any | Self::Symmetric { .. } => usize::MAX,
+            Self::Diagonal { constraints } => constraints,
+        }
+    }
+}
+
+/// The search for pivots, and what it knows of the rows left.
+pub struct PivotSearch<'m> {
+    pivoting: Pivoting<'m>,
+    stages: Stages,
+    /// The stage whose operations count.
+    costly: usize,
+    /// For [`Pivoting::Symmetric`], by row: the coordinates that must be eliminated before the constraint. Fill in its row
+    /// from other eliminations is small against M and is not waited for; otherwise a chain's multipliers would all come
+    /// last, when every pair of them is coupled.
+    awaited: Vec<BTreeSet<usize>>,
+    /// For [`Pivoting::Symmetric`], by coordinate: the order of its block.
+    order: Vec<usize>,
+    /// The coordinates left, in that order.
+    in_order: BTreeSet<(usize, usize)>,
+    /// Constraints that wait for nothing any more.
+    ready: BTreeSet<usize>,
+    /// The second pivot of a pair, to be taken next.
+    second: Option<(usize, usize)>,
+}
+
+impl<'m> PivotSearch<'m> {
+    pub fn new(pivoting: Pivoting<'m>, active: &Active, stages: Stages, costly: usize) -> Self {
+        let (awaited, order) = match pivoting {
+            Pivoting::Symmetric { massive, blocks } => {
+                let of = |(row, entries): (usize, &BTreeMap<usize, Entry>)| -> BTreeSet<usize> {
+                    let coordinates = entries.range(..massive.len()).map(|(&column, _)| column);
+                    coordinates.filter(|_| row >= massive.len()).collect()
+                };
+                let awaited: Vec<BTreeSet<usize>> = active.rows.iter().enumerate().map(of).collect();
+                let order = block_order(blocks, &awaited);
+                (awaited, order)
+            }
+            Pivoting::Any | Pivoting::Diagonal { .. } => (Vec::new(), Vec::new()),
+        };
+        let in_order = order.iter().enumerate().map(|(row, &order)| (order, row)).collect();
+        Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None }
+    }
+
+    /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where no
+    /// row has one, the threshold is lowered.
+    pub fn choose(&mut self, graph: &Graph, active: &Active) -> Option<(usize, usize)> {
+        if let Some(second) = self.second.take() {
+            return Some(second);
+        }
+        self.stages.update(graph);
+        let singular = self.pivoting.smallest();
+        let mut threshold = self.pivoting.threshold();
+        while threshold > singular {
+            let mut searched = SEARCHED;
+            loop {
+                if let Some((row, column)) = self.best_of(active, searched, threshold) {
+                    if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
+                        self.second = Some((column, row));
+                    }
+                    self.stop_awaiting(active, row, column);
+                    return Some((row, column));
+                }
+                if searched >= active.sparsest_columns.len() {
+                    break;
+                }
+                searched *= WIDER;
+            }
+            threshold *= 0.1;
+        }
+        None
+    }
+
+    /// A row that has been eliminated is no candidate any more.
+    pub fn remove(&mut self, row: usize) {
+        self.ready.remove(&row);
+        if let Some(&order) = self.order.get(row) {
+            self.in_order.remove(&(order, row));
+        }
+    }
+
+    /// A pivot of [`Pivoting::Symmetric`] eliminates a coordinate. Where the coordinate is expressed by the others of a
+    /// constraint, the rows that awaited it await those.
+    fn stop_awaiting(&mut self, active: &Active, row: usize, column: usize) {
+        if self.awaited.is_empty() || !active.columns[row].iter().any(|&other| self.awaited[other].contains(&row)) {
+            return;
+        }
+        let others = if column == row { BTreeSet::new() } else { self.awaited[column].clone() };
+        for &constraint in &active.columns[row] {
+            if self.awaited[constraint].remove(&row) {
+                self.awaited[constraint].extend(others.iter().filter(|&&other| other != row));
+                if self.awaited[constraint].is_empty() {
+                    self.ready.insert(constraint);
+                }
+            }
+        }
+    }
+
+    fn best_of(&self, active: &Active, searched: usize, threshold: f64) -> Option<(usize, usize)> {
+        // (order, cost, off the diagonal, row, column): the least is the best, and ties have one outcome everywhere.
+        let mut best: Option<(usize, usize, bool, usize, usize)> = None;
+        for (row, column) in self.candidates(active, searched) {
+            let cost = self.cost(active, row, column);
+            let order = if cost == 0 { 0 } else { self.order.get(row).copied().unwrap_or(0) };
+            let merit = (order, cost, row != column, row, column);
+            let better = best.is_none_or(|least| merit < least);
+            if better && size_against_column(active, row, column, self.pivoting.smallest()) >= threshold {
+                best = Some(merit);
+            }
+        }
+        best.map(|(_, _, _, row, column)| (row, column))
+    }
+
+    /// Entries in the sparsest columns and rows, in the next block and in constraints that are ready.
+    fn candidates(&self, active: &Active, searched: usize) -> impl Iterator<Item = (usize, usize)> {
+        let in_columns = active
+            .sparsest_columns
+            .iter()
+            .take(searched)
+            .flat_map(|&(_, _, column)| active.columns[column].iter().map(move |&row| (row, column)));
+        let in_rows = active
+            .sparsest_rows
+            .iter()
+            .take(searched)
+            .flat_map(|&(_, _, row)| active.rows[row].keys().map(move |&column| (row, column)));
+        let next = self.in_order.first().map(|&(order, _)| order);
+        let of_block = self.in_order.iter().take_while(move |&&(order, _)| Some(order) == next).map(|&(_, row)| row);
+        let in_block = of_block
+            .chain(self.ready.iter().copied())
+            .flat_map(|row| active.rows[row].keys().map(move |&column| (row, column)));
+        in_columns.chain(in_rows).chain(in_block).filter(|&(row, column)| self.may_be_pivot(active, row, column))
+    }
+
+    fn may_be_pivot(&self, active: &Active, row: usize, column: usize) -> bool {
+        match self.pivoting {
+            Pivoting::Any => true,
+            Pivoting::Diagonal { .. } => row == column,
+            Pivoting::Symmetric { massive, .. } if row == column => match massive.get(row) {
+                Some(massive) => *massive,
+                None => self.awaited[row].is_empty(),
+            },
+            Pivoting::Symmetric { massive, .. } => {
+                let is_derivative = row < massive.len() && column >= massive.len();
+                let is_constant = |value: Expr| !self.is_costly(value);
+                let transposed = active.rows[column].get(&row).filter(|_| is_derivative);
+                transposed.is_some_and(|transposed| {
+                    !massive[row]
+                        || !active.rows[column].contains_key(&column)
+                            && is_constant(transposed.value)
+                            && is_constant(active.rows[row][&column].value)
+                })
+            }
+        }
+    }
+
+    fn is_costly(&self, value: Expr) -> bool {
+        self.stages.of(value) == Some(self.costly)
+    }
+
+    /// Operations at the costly stage that eliminating with this pivot takes: updates, multipliers, the inverse.
+    fn cost(&self, active: &Active, row: usize, column: usize) -> usize {
+        let pivot = self.is_costly(active.rows[row][&column].value);
+        let others = active.columns[column].iter().filter(|&&other| other != row);
+        let right: Vec<bool> = active.rows[row]
+            .iter()
+            .filter(|&(&other, _)| other != column)
+            .map(|(_, entry)| self.is_costly(entry.value))
+            .collect();
+        let costly_right = right.iter().filter(|&&is_costly| is_costly).count();
+        let mut cost = 4 * usize::from(pivot);
+        for &other in others {
+            let multiplier = pivot || self.is_costly(active.rows[other][&column].value);
+            cost += usize::from(multiplier) + if multiplier { right.len() } else { costly_right };
+        }
+        cost
+    }
+}
+
+/// |entry| over the largest of its column, at the worst pivot sample.
+fn size_against_column(active: &Active, row: usize, column: usize, singular: f64) -> f64 {
+    let numbers = active.rows[row][&column].numbers;
+    (0..PIVOT_SAMPLES)
+        .map(|sample| {
+            let largest = active.columns[column]
+                .iter()
+                .map(|&other| active.rows[other][&column].numbers[sample].abs())
+                .fold(0.0, f64::max);
+            if largest > singular && numbers[sample].is_finite() { numbers[sample].abs() / largest } else { 0.0 }
+        })
+        .fold(f64::INFINITY, f64::min)
+}

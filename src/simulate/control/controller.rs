@@ -1,0 +1,36 @@
+//! Step-size control by a tolerance.
+
+/// Step-size control for HHT.
+///
+/// The local position error δ of a step (Negrut et al. 2007, §5) is of third order. Each step may have its share of the
+/// tolerance, δ ≤ tolerance · h / duration (an error per unit step), so that the error at the end is proportional to the
+/// tolerance. With δ ≤ tolerance for every step, as in the paper, the errors of ever more steps would add up, and the error
+/// at the end would fall with tolerance^(2/3) only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Controller {
+    /// Wanted position error over the duration, relative to max(1, |q|) of each coordinate's scale.
+    pub tolerance: f64,
+    /// s
+    pub duration: f64,
+}
+
+impl Controller {
+    /// Smallest step, as a share of the duration; below it the control gives up.
+    pub const SMALLEST: f64 = 1e-13;
+
+    /// Local errors below this are round-off and are not controlled: positions carry an error of ε, and so does δ.
+    const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+    /// A step's local error over its share of the tolerance; the step is accepted where this is at most 1.
+    pub fn error_ratio(self, error: f64, h: f64) -> f64 {
+        error / (self.tolerance * h / self.duration).max(Self::ROUND_OFF)
+    }
+
+    /// Factor for the next step size after a step with this error ratio (the worst sample's): δ/h is of second order.
+    pub fn factor(self, error_ratio: f64) -> f64 {
+        if !error_ratio.is_finite() {
+            return 0.25;
+        }
+        (0.9 / error_ratio.sqrt()).clamp(0.2, 2.0)
+    }
+}

@@ -1,0 +1,9 @@
+//! The step schedule that all samples share: fixed, or controlled by a tolerance.
+
+mod controller;
+mod samples;
+mod schedule;
+
+pub use controller::Controller;
+pub use samples::{ToleranceSchedule, schedule_for_tolerance};
+pub use schedule::Schedule;

@@ -1,0 +1,201 @@
+//! A step schedule from a tolerance: controlling samples, stepped together, decide the steps that all samples take.
+
+use symdiff::WIDTHS;
+
+use super::controller::Controller;
+use super::schedule::Schedule;
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::{LocalError, Stepper};
+
+/// The first step, as a share of the output step.
+const FIRST_STEP: f64 = 1e-2;
+
+/// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to grow.
+const LOOK_AHEAD: f64 = 0.5;
+
+/// A step longer than this share of the time left up to a row is cut to half of that time, so that no sliver remains.
+const HALVE: f64 = 0.55;
+
+/// Most steps of a schedule: where it needs more, no step resolves the motion.
+const MOST_STEPS: usize = 2_000_000;
+
+/// A schedule from a tolerance, and what ended it before the duration did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToleranceSchedule {
+    /// Up to the last row that a controlling sample reached.
+    pub schedule: Schedule,
+    /// Rows that all controlling samples have reached.
+    pub complete_rows: usize,
+    /// Controlling samples that were dropped on the way.
+    pub dropped: Vec<usize>,
+    /// Why not all samples reached more rows.
+    pub failure: Option<SimulationError>,
+}
+
+/// The schedule at which every controlling sample keeps its local position errors within their shares of `tolerance`. Rows
+/// are whole multiples of `output_step`; a step is repeated with a smaller size where the largest error is too large or a
+/// sample does not converge.
+///
+/// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
+/// schedule ends.
+///
+/// # Errors
+/// Where a controlling sample cannot be assembled.
+pub fn schedule_for_tolerance(
+    simulator: &Simulator,
+    samples: &[Vec<f64>],
+    duration: f64,
+    output_step: f64,
+    tolerance: f64,
+) -> Result<ToleranceSchedule, SimulationError> {
+    let controller = Controller { tolerance, duration };
+    let mut control = Control::start(simulator, samples, controller, output_step)?;
+    let rows = Schedule::rows_of(duration, output_step);
+    let mut ends = Vec::with_capacity(rows - 1);
+    let (mut complete_rows, mut failure) = (rows, None);
+    for row in 1..rows {
+        let (mut time, goal) = ((row - 1) as f64 * output_step, row as f64 * output_step);
+        let mut list = Vec::new();
+        while time < goal {
+            match control.step(time, goal) {
+                Outcome::Accepted(end) => {
+                    time = end;
+                    list.push(end);
+                }
+                Outcome::Rejected => {}
+                Outcome::Dropped(error) => {
+                    complete_rows = complete_rows.min(row);
+                    failure.get_or_insert(error);
+                    if control.is_over() {
+                        let schedule = Schedule::listed(output_step, ends);
+                        return Ok(ToleranceSchedule { schedule, complete_rows, dropped: control.dropped, failure });
+                    }
+                }
+            }
+        }
+        ends.push(list);
+    }
+    let schedule = Schedule::listed(output_step, ends);
+    Ok(ToleranceSchedule { schedule, complete_rows, dropped: control.dropped, failure })
+}
+
+/// The controlling samples in step, and the step size to try next.
+struct Control<'s> {
+    simulator: &'s Simulator,
+    samples: &'s [Vec<f64>],
+    controller: Controller,
+    output_step: f64,
+    stepper: Stepper<'s>,
+    /// The step size to try next, s.
+    h: f64,
+    /// Accepted steps.
+    count: usize,
+    dropped: Vec<usize>,
+}
+
+/// What became of a step.
+enum Outcome {
+    /// The step stands; it ends at this time.
+    Accepted(f64),
+    /// The step is to be repeated with a smaller size.
+    Rejected,
+    /// No step is small enough for some samples, which no longer run.
+    Dropped(SimulationError),
+}
+
+impl<'s> Control<'s> {
+    fn start(
+        simulator: &'s Simulator,
+        samples: &'s [Vec<f64>],
+        controller: Controller,
+        output_step: f64,
+    ) -> Result<Self, SimulationError> {
+        let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
+        let h = FIRST_STEP * output_step;
+        let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
+        let mut stepper = Stepper::new(&simulator.program, &start);
+        stepper.estimate_errors();
+        Ok(Self { simulator, samples, controller, output_step, stepper, h, count: 0, dropped: Vec::new() })
+    }
+
+    /// Whether no sample runs any more, or the schedule has as many steps as it may have.
+    fn is_over(&self) -> bool {
+        !self.stepper.alive().contains(&true) || self.count == MOST_STEPS
+    }
+
+    /// Tries a step from `time` towards the row at `goal`.
+    fn step(&mut self, time: f64, goal: f64) -> Outcome {
+        let left = goal - time;
+        let (step, end) = match self.h {
+            h if h >= left * (1.0 - 1e-9) => (left, goal),
+            h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
+            h => (h, time + h),
+        };
+        self.stepper.set_step_size(step);
+        let before = self.stepper.save();
+        let ratios = self.error_ratios(step, end);
+        let largest = ratios.iter().copied().fold(0.0, f64::max);
+        let (factor, accepted) = (self.controller.factor(largest), largest <= 1.0);
+        let next = step * if accepted { factor } else { factor.min(0.9) };
+        // A step cut short at a row is no reason against the longer one.
+        self.h = if accepted && step < self.h { self.h.max(next) } else { next };
+        if self.h < Controller::SMALLEST * self.controller.duration || self.count == MOST_STEPS {
+            Outcome::Dropped(self.drop_failing(&ratios, &before, time, step, goal))
+        } else if accepted {
+            self.count += 1;
+            Outcome::Accepted(end)
+        } else {
+            self.stepper.rewind(&before, step);
+            Outcome::Rejected
+        }
+    }
+
+    /// Every lane's error ratio in a step: infinite where it does not converge, 0 where it no longer runs.
+    fn error_ratios(&mut self, step: f64, end: f64) -> Vec<f64> {
+        let converged = self.stepper.try_step(step, end);
+        let lanes = self.stepper.alive().iter().zip(converged).zip(self.stepper.local_errors());
+        let ratio = |((running, converged), error): ((&bool, bool), &LocalError)| match self
+            .controller
+            .error_ratio(error.size, step)
+        {
+            _ if !running => 0.0,
+            ratio if converged && !ratio.is_nan() => ratio,
+            _ => f64::INFINITY,
+        };
+        lanes.map(ratio).collect()
+    }
+
+    /// Drops the samples whose error ratios are too large, restores the others' state and says why.
+    fn drop_failing(&mut self, ratios: &[f64], before: &[f64], time: f64, step: f64, goal: f64) -> SimulationError {
+        let largest = ratios.iter().copied().fold(0.0, f64::max);
+        let failing: Vec<usize> = (0..ratios.len()).filter(|&lane| ratios[lane] >= largest.min(1.0)).collect();
+        // One of them has the largest ratio.
+        let lane = *failing.iter().find(|&&lane| ratios[lane] == largest).unwrap_or(&failing[0]);
+        let cause = self.cause(lane, largest);
+        self.stepper.rewind(before, step);
+        let parameters = self.simulator.with_names(&self.samples[lane.min(self.samples.len() - 1)]);
+        let later = goal.max(time + LOOK_AHEAD * self.output_step);
+        let error = match self.simulator.open_constraint(&self.stepper.lane(lane), later) {
+            Some(open) => self.simulator.locked(open, time, parameters),
+            None if self.count == MOST_STEPS => SimulationError::TooManySteps { steps: self.count, step, time, cause },
+            None => SimulationError::StepTooSmall { step: self.h, time, cause, parameters },
+        };
+        failing.iter().for_each(|&lane| self.stepper.retire(lane..lane + 1));
+        // Lanes beyond the samples repeat the last one.
+        self.dropped.extend(failing.into_iter().filter(|&lane| lane < self.samples.len()));
+        self.h = FIRST_STEP * self.output_step;
+        error
+    }
+
+    /// Why a lane misses its tolerance: an equation that does not converge, or the acceleration that changes most.
+    fn cause(&mut self, lane: usize, error_ratio: f64) -> String {
+        if error_ratio.is_finite() {
+            let LocalError { coordinate, change, .. } = self.stepper.local_errors()[lane];
+            let name = &self.simulator.system.coordinates[coordinate].name;
+            return format!("the acceleration of `{name}` changes by {change:.3e} within one of them");
+        }
+        let equation = self.simulator.equation_name(self.stepper.worst_equation(lane));
+        format!("Newton's iteration does not converge, and the largest residual is that of `{equation}`")
+    }
+}

@@ -1,0 +1,42 @@
+//! Whether a mechanism locks: then a constraint cannot be closed wherever positions are sought.
+
+use crate::compile::compile_start;
+use crate::simulate::error::{NamedValues, SimulationError, residual_text};
+use crate::simulate::simulator::Simulator;
+use crate::simulate::start::Assembly;
+
+/// A constraint that cannot be closed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenConstraint {
+    /// Number of the constraint.
+    pub constraint: usize,
+    /// The size of the smallest residual found, in the constraint's unit.
+    pub residual: f64,
+}
+
+impl Simulator {
+    /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's slots), and
+    /// its residual. `None` where all constraints can be closed.
+    pub(in crate::simulate) fn open_constraint(&self, state: &[f64], time: f64) -> Option<OpenConstraint> {
+        // Of the start only the constraints are kept.
+        let mut free = self.system.clone();
+        free.start.position.fill(None);
+        let start = compile_start(&free, &self.mobility.redundant, state).ok()?;
+        let layout = &start.layout;
+        let parameters = layout.parameters.clone();
+        let mut assembly = Assembly::new(&start, &free, 1, |parameter, _| state[parameters.start + parameter]);
+        for slot in layout.q.clone() {
+            assembly.tile_mut().lane_mut(slot)[0] = state[slot];
+        }
+        assembly.tile_mut().lane_mut(layout.time)[0] = time;
+        let worst = assembly.descend().err()?;
+        Some(OpenConstraint { constraint: worst.constraint, residual: worst.residual.abs() })
+    }
+
+    /// The error of a mechanism that locks at a time.
+    pub fn locked(&self, open: OpenConstraint, time: f64, parameters: NamedValues) -> SimulationError {
+        let constraint = &self.system.constraints[open.constraint];
+        let residual = residual_text(open.residual, constraint, false);
+        SimulationError::Locked { time, constraint: constraint.name.clone(), residual, parameters }
+    }
+}

@@ -1,0 +1,218 @@
+//! Reasons why a mechanism cannot be simulated, in words for the user.
+
+use super::start::ConstraintResidual;
+use crate::assemble::{ConstraintInfo, ResidualUnit, StartCondition, System};
+use crate::compile::NoFactors;
+
+/// Parameters of a sample: name and value in SI units.
+pub type NamedValues = Vec<(String, f64)>;
+
+/// Why a mechanism cannot be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// No consistent start exists.
+    #[error("{}", assembly_message(owner, constraint, residual, *of_velocities, parameters))]
+    Assembly {
+        /// The joint or the beam that cannot be closed, with its kind.
+        owner: String,
+        /// Name of the constraint with the largest residual.
+        constraint: String,
+        /// The residual, with its unit.
+        residual: String,
+        /// Whether positions are consistent and velocities are not.
+        of_velocities: bool,
+        /// The sample.
+        parameters: NamedValues,
+    },
+    /// The equations of motion cannot be solved at the start.
+    #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
+    Singular {
+        /// Names of the equations without a pivot.
+        equations: Vec<String>,
+    },
+    /// The program would have more operations than allowed.
+    #[error("the equations take too many operations")]
+    TooLong,
+    /// Newton's iteration of a step did not converge, and smaller steps did not either.
+    #[error(
+        "sample {sample} ({}) did not converge at t = {time} s; the largest residual is that of `{equation}`",
+        parameter_list(parameters)
+    )]
+    NotConverged {
+        /// Number of the sample.
+        sample: usize,
+        /// End of the step, s.
+        time: f64,
+        /// Name of the equation with the largest scaled residual.
+        equation: String,
+        /// The sample.
+        parameters: NamedValues,
+    },
+    /// A jet reached a state in which the Newton matrix has no inverse.
+    #[error("the Newton matrix is singular at t = {time} s, so the response has no Taylor coefficients there")]
+    SingularJet {
+        /// End of the step, s.
+        time: f64,
+    },
+    /// No position fulfils the constraints any more.
+    #[error(
+        "the mechanism locks at t = {time} s ({}): the loop cannot be closed beyond this position; {residual} remain in `{constraint}`",
+        parameter_list(parameters)
+    )]
+    Locked {
+        /// Beginning of the step, s.
+        time: f64,
+        /// Name of the constraint that cannot be closed.
+        constraint: String,
+        /// Its smallest residual, with its unit.
+        residual: String,
+        /// The sample.
+        parameters: NamedValues,
+    },
+    /// Step-size control asks for steps too small to advance.
+    #[error(
+        "at t = {time} s ({}) the steps fell below {step:.1e} s without meeting the tolerance: {cause}",
+        parameter_list(parameters)
+    )]
+    StepTooSmall {
+        /// s
+        step: f64,
+        /// s
+        time: f64,
+        /// What keeps the error above the tolerance.
+        cause: String,
+        /// The sample.
+        parameters: NamedValues,
+    },
+    /// The steps that meet the tolerance are too many.
+    #[error("the tolerance takes more than {steps} steps; they are {step:.1e} s long at t = {time} s, where {cause}")]
+    TooManySteps {
+        /// Most steps.
+        steps: usize,
+        /// s
+        step: f64,
+        /// s
+        time: f64,
+        /// What keeps the steps short.
+        cause: String,
+    },
+}
+
+fn parameter_list(parameters: &[(String, f64)]) -> String {
+    if parameters.is_empty() {
+        return "no uncertain parameters".to_owned();
+    }
+    parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
+}
+
+fn assembly_message(
+    owner: &str,
+    constraint: &str,
+    residual: &str,
+    of_velocities: bool,
+    parameters: &[(String, f64)],
+) -> String {
+    let with = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
+    if of_velocities {
+        format!("the initial velocities are inconsistent with {owner}{with}: {residual} remain in `{constraint}`")
+    } else {
+        format!(
+            "{owner} cannot be closed{with}: {residual} remain in `{constraint}`; \
+             check lengths, initial positions and joint kinds"
+        )
+    }
+}
+
+/// Names of a step's equations: equations of motion, then constraints, then conditions of the start.
+pub(super) fn equation_names(system: &System, equations: &[usize]) -> Vec<String> {
+    let n = system.q.len();
+    let name = |&equation: &usize| match equation.checked_sub(n) {
+        None => format!("motion of {}", system.coordinates[equation].name),
+        Some(row) => match row.checked_sub(system.constraints.len()) {
+            None => system.constraints[row].name.clone(),
+            Some(condition) => format!("start of {}", system.start.conditions[condition].info.name),
+        },
+    };
+    equations.iter().map(name).collect()
+}
+
+/// Why a matrix of this system has no factors.
+pub(super) fn no_factors(system: &System, none: &NoFactors) -> SimulationError {
+    match none {
+        NoFactors::Singular { rows } => SimulationError::Singular { equations: equation_names(system, rows) },
+        NoFactors::TooLong => SimulationError::TooLong,
+    }
+}
+
+/// Why a sample with these parameters cannot be assembled.
+pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parameters: &[f64]) -> SimulationError {
+    let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+    let (owner, info) = match worst.constraint.checked_sub(system.constraints.len()) {
+        None => {
+            let info = &system.constraints[worst.constraint];
+            (format!("joint `{}`", info.joint), info)
+        }
+        Some(place) => {
+            let of_kind = |condition: &&StartCondition| {
+                if worst.of_velocities { condition.velocity } else { condition.position }
+            };
+            let info = system.start.conditions.iter().filter(of_kind).nth(place).map(|condition| &condition.info);
+            // Rows of a residual beyond the constraints are those of the conditions of its kind.
+            let info = info.expect("a residual belongs to a row");
+            let (how, names) = match worst.of_velocities {
+                false => ("straight", "x, y and angle"),
+                true => ("as a rigid body", "vx, vy and angular_velocity"),
+            };
+            let beam = &info.joint;
+            (format!("beam `{beam}` (it starts {how} unless `initial` gives {names} of all its nodes)"), info)
+        }
+    };
+    SimulationError::Assembly {
+        owner,
+        constraint: info.name.clone(),
+        residual: residual_text(worst.residual, info, worst.of_velocities),
+        of_velocities: worst.of_velocities,
+        parameters: names.zip(parameters.iter().copied()).collect(),
+    }
+}
+
+/// The size of a residual in engineering units: mm below a metre, degrees for angles.
+pub(super) fn residual_text(residual: f64, constraint: &ConstraintInfo, of_velocities: bool) -> String {
+    let size = residual.abs();
+    let (value, unit) = match constraint.unit {
+        ResidualUnit::Length if size < 1.0 => (1e3 * size, " mm"),
+        ResidualUnit::Length => (size, " m"),
+        ResidualUnit::Angle => (size.to_degrees(), "°"),
+        ResidualUnit::Number => (size, ""),
+    };
+    let value = if (1e-2..1e4).contains(&value) { significant(value, 3) } else { format!("{value:.1e}") };
+    format!("{value}{unit}{}", if of_velocities { "/s" } else { "" })
+}
+
+/// A positive number in so many significant digits, without trailing zeros.
+fn significant(value: f64, digits: i32) -> String {
+    let before_point = value.log10().floor() as i32 + 1;
+    let decimals = (digits - before_point).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn residuals_are_in_engineering_units() {
+        let text = |residual, unit, of_velocities| {
+            let constraint = ConstraintInfo { name: "C.x".into(), joint: "C".into(), unit };
+            residual_text(residual, &constraint, of_velocities)
+        };
+        assert_eq!(text(5.5e-2, ResidualUnit::Length, false), "55 mm");
+        assert_eq!(text(-0.123_456, ResidualUnit::Length, false), "123 mm");
+        assert_eq!(text(1.5, ResidualUnit::Length, true), "1.5 m/s");
+        assert_eq!(text(1.139e-6, ResidualUnit::Length, false), "1.1e-3 mm");
+        assert_eq!(text(1.0, ResidualUnit::Angle, false), "57.3°");
+        assert_eq!(text(0.25, ResidualUnit::Number, false), "0.25");
+        assert_eq!(text(f64::NAN, ResidualUnit::Length, false), "NaN m");
+    }
+}

@@ -1,0 +1,77 @@
+//! States in general position: near a given state, but on none of its symmetries or singularities.
+
+use symdiff::Tile;
+
+use crate::assemble::System;
+use crate::compile::{Layout, PIVOT_SAMPLES, PivotSample, compile_start};
+
+/// How far pivot samples are moved from the nominal start, in coordinate scales.
+const PIVOT_SAMPLE_SPREAD: f64 = 0.7;
+
+/// How far a configuration in general position is from the start, in coordinate scales.
+const APART: f64 = 0.05;
+
+/// Corrections that bring a moved configuration back onto the constraints.
+const CORRECTIONS: usize = 30;
+
+/// Evenly spread numbers in [−1, 1) by an additive recurrence, the same on every machine.
+pub fn spread(series: usize, place: usize) -> f64 {
+    2.0 * ((place + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
+}
+
+/// A state in general position near the model's guess: values of the layout's slots.
+pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; layout.slots()];
+    values[layout.parameters.clone()].copy_from_slice(parameters);
+    let value_of = |symbol| system.parameters.iter().position(|parameter| parameter.symbol == symbol);
+    let guess =
+        system.graph.evaluate(&system.start.guess, |symbol| value_of(symbol).map_or(f64::NAN, |k| parameters[k]));
+    for (place, slot) in layout.q.clone().enumerate() {
+        values[slot] = guess[place] + 0.1 * system.coordinates[place].scale * spread(0, place);
+    }
+    for (place, slot) in (layout.v.start..layout.correction.end).enumerate() {
+        values[slot] = spread(1, place);
+    }
+    values
+}
+
+/// States that guide the choice of pivots: the nominal start, and states in general position around it, for steps of `h`.
+pub fn pivot_samples(system: &System, layout: &Layout, nominal: &[f64], h: f64) -> [PivotSample; PIVOT_SAMPLES] {
+    std::array::from_fn(|series| {
+        let mut values = nominal.to_vec();
+        values[layout.step] = h;
+        for (place, (w, x)) in layout.w.clone().zip(layout.iterate.clone()).enumerate() {
+            values[x] = values[w];
+            if series > 0 {
+                let scale = system.coordinates[place].scale;
+                values[layout.q.start + place] += PIVOT_SAMPLE_SPREAD * scale * spread(series, place);
+                values[layout.v.start + place] += PIVOT_SAMPLE_SPREAD * scale * spread(series + PIVOT_SAMPLES, place);
+            }
+        }
+        PivotSample { values }
+    })
+}
+
+/// An assembled state in general position near another one; the start's own conditions are dropped. `None` where the
+/// corrections do not reach one.
+pub fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
+    let mut free = system.clone();
+    free.start.position.fill(None);
+    free.start.conditions.clear();
+    let start = compile_start(&free, &[], state).ok()?;
+    let mut tile = Tile::new(1, start.slots(), start.constants());
+    tile.values_mut()[..state.len()].copy_from_slice(state);
+    tile.run(start.sample());
+    for (place, slot) in start.layout.q.clone().enumerate() {
+        tile.lane_mut(slot)[0] += APART * system.coordinates[place].scale * spread(7, place);
+    }
+    for _ in 0..CORRECTIONS {
+        tile.run(start.position());
+        for (slot, correction) in start.layout.q.clone().zip(start.layout.correction.clone()) {
+            tile.lane_mut(slot)[0] += tile.lane(correction)[0];
+        }
+    }
+    tile.run(start.position());
+    let assembled = start.constraint.iter().all(|&slot| tile.lane(slot)[0].abs() < 1e-9);
+    assembled.then(|| tile.values()[..state.len()].to_vec())
+}

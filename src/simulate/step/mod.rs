@@ -1,0 +1,8 @@
+//! One step of a scheme for a tile of samples.
+
+mod newton;
+mod rank_revealing;
+mod stepper;
+
+pub use newton::Counters;
+pub use stepper::{LocalError, StepFailure, Stepper};
