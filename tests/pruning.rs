@@ -171,7 +171,7 @@ fn subsystems_are_models_run_apart() {
     assert_eq!(certain.parameters, Vec::<String>::new());
     let solves: Vec<(&str, usize)> =
         certain.methods.iter().map(|method| (method.method.as_str(), method.solves)).collect();
-    assert_eq!(solves, [("nominal", 1), ("probes", 1), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
+    assert_eq!(solves, [("nominal", 1), ("validation", 1), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
     for output in together.outputs.iter().filter(|output| output.name.ends_with("_c")) {
         for band in &output.bands {
             assert_eq!(band.lower, output.nominal);

@@ -1,9 +1,7 @@
 //! A part of a model as a model of its own.
 
 use super::couplings::{Couplings, Named, Part};
-use crate::model::{
-    ChebyshevRequest, Degree, Description, ParameterValue, PointRef, Reference, ScanRequest, StartValue,
-};
+use crate::model::{Description, ParameterValue, PointRef, Reference, StartValue};
 
 /// What is kept of a description, by index.
 struct Kept {
@@ -77,14 +75,7 @@ pub fn extract(
 
 /// Leaves in the requests what is said of these of the uncertain parameters.
 pub fn narrow(description: &mut Description, left: &[usize]) {
-    let pick = |list: &mut Vec<usize>| *list = left.iter().filter_map(|&number| list.get(number)).copied().collect();
-    if let Some(ChebyshevRequest { degree: Degree::Fixed { order, nodes }, .. }) = &mut description.bounds.chebyshev {
-        pick(order);
-        pick(nodes);
-    }
-    if let Some(ScanRequest { points }) = &mut description.bounds.scan {
-        pick(points);
-    }
+    description.bounds.methods_mut().into_iter().for_each(|(_, method)| method.narrow(left));
 }
 
 impl Kept {

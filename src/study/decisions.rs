@@ -4,7 +4,7 @@ use symdiff::{Formula, Input, lower};
 
 use super::formulation::{as_chosen, compiled, instructions};
 use super::subsystems::{Prepared, prepare};
-use crate::model::{ChebyshevRequest, Degree, Description, Output, ParameterValue, ScanRequest};
+use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};
 
@@ -75,17 +75,12 @@ fn saving(without: usize, with: usize, each: Each) -> Saving {
     Saving { instructions: without as i64 - with as i64, each }
 }
 
-/// Samples that the methods with grids ask for; the nominal one where there is no such method.
+/// Samples that the methods ask for beside the nominal one; none where that depends on the response.
 fn samples(description: &Description) -> Option<usize> {
-    let chebyshev = match &description.bounds.chebyshev {
-        Some(ChebyshevRequest { degree: Degree::Fixed { nodes, .. }, .. }) => nodes.iter().product(),
-        Some(_) => return None,
-        None => 0,
-    };
-    let scan = |ScanRequest { points }: &ScanRequest| points.iter().product::<usize>();
-    let certain = uncertain(description).is_empty();
-    let grids = if certain { 0 } else { chebyshev + description.bounds.scan.as_ref().map_or(0, scan) };
-    Some(1 + grids)
+    let methods = description.bounds.methods();
+    let counts = methods.iter().map(|(_, method)| method.samples()).collect::<Option<Vec<f64>>>()?;
+    let deterministic = uncertain(description).is_empty();
+    Some(1 + if deterministic { 0 } else { counts.into_iter().sum::<f64>() as usize })
 }
 
 /// Parts that move on their own, with what reaches them.

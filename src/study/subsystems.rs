@@ -6,13 +6,15 @@
 
 use symdiff::Formula;
 
-use super::run::{Ran, Study, contributions, summarised_errors};
+use super::single::{Ran, Study};
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::{Choices, Island, Reduction, narrow};
-use crate::results::{Bounds, Contribution, Method, OutputBounds, ParameterSummary, SubsystemSummary, Summary};
+use crate::results::{
+    Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
+};
 use crate::simulate::Simulator;
 
 /// A subsystem, compiled.
@@ -188,7 +190,7 @@ impl<'a> Whole<'a> {
         let rows = bounds.nominal.len();
         let unknown = || vec![f64::NAN; rows];
         let of_subsystem = done.bounds.contributions.get(place);
-        let band = bounds.bands.iter().find(|band| band.method == Method::Chebyshev);
+        let band = bounds.bands.iter().find(|band| band.method.about().has_sensitivities);
         let contribution = |(number, parameter): (usize, &ParameterSummary)| {
             let name = parameter.name.clone();
             match done.island.parameters.iter().position(|&own| own == number) {
@@ -233,8 +235,8 @@ impl<'a> Whole<'a> {
             if ran.len() > 1 { ran.iter().map(|done| self.subsystem(done)).collect() } else { Vec::new() };
         let mut summary = Summary::of_subsystems(ran.into_iter().map(|done| done.summary).collect());
         if !subsystems.is_empty() {
-            summary.errors = summarised_errors(bounds);
-            summary.contributions = contributions(bounds);
+            summary.errors = ErrorSummary::of(bounds);
+            summary.contributions = ContributionSummary::of(bounds);
         }
         summary.parameters = self.parameters;
         summary.not_simulated = self.left_out;

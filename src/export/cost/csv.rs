@@ -90,7 +90,7 @@ pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ExportE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::CostMethod;
+    use crate::results::cost_tests::SCAN;
     use crate::results::cost_tests::sample;
 
     #[test]
@@ -100,7 +100,7 @@ mod tests {
         study.bounds.push(CostPoint {
             points: Some(5),
             failure: Some("a, b".into()),
-            ..CostPoint::without_result(CostMethod::Scan, Stepping::Fixed(0.01))
+            ..CostPoint::without_result(SCAN, Stepping::Fixed(0.01))
         });
         study.bounds[0].front = true;
         let text = String::from_utf8(cost_csv(&study).unwrap()).unwrap();

@@ -33,11 +33,10 @@ const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// The colours of the plots of bounds, and others that are apart from them for every colour vision.
 fn color(method: CostMethod) -> RGBColor {
     match method {
-        CostMethod::Composed => RGBColor(0, 114, 178),
-        CostMethod::Tight => RGBColor(86, 180, 233),
-        CostMethod::Interval => RGBColor(0, 158, 115),
-        CostMethod::Taylor => RGBColor(240, 160, 20),
-        CostMethod::Scan => RGBColor(130, 25, 80),
+        CostMethod::Bounds(curve) => {
+            let [red, green, blue] = curve.about().color;
+            RGBColor(red, green, blue)
+        }
         CostMethod::Scheme(Scheme::Hht { .. }) => RGBColor(0, 114, 178),
         CostMethod::Scheme(Scheme::TrapezoidalIndex2) => RGBColor(130, 25, 80),
         CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.65 => {
@@ -205,12 +204,13 @@ impl Panel<'_, '_> {
 mod tests {
     use super::*;
     use crate::model::Stepping;
+    use crate::results::cost_tests::COMPOSED;
     use crate::results::cost_tests::{sample, study};
 
     #[test]
     fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
         let mut whole = sample();
-        whole.bounds.push(CostPoint::without_result(CostMethod::Composed, Stepping::Fixed(1e-2)));
+        whole.bounds.push(CostPoint::without_result(COMPOSED, Stepping::Fixed(1e-2)));
         for study in [whole, study(vec![])] {
             let svg = cost_svg(&study).unwrap();
             assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));
