@@ -12,6 +12,7 @@ mod effects;
 mod explain;
 mod interrupt;
 mod load;
+mod methods;
 mod new;
 mod progress;
 mod run;

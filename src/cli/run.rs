@@ -281,7 +281,7 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
         let shares: Vec<String> = of_output.iter().filter(varies).take(MOST).map(share).collect();
         // One parameter alone is no news.
         if of_output.len() > 1 && !shares.is_empty() {
-            text += &format!("  {}: {} of its variance\n", of_output[0].output, shares.join(", "));
+            text += &format!("  tolerances that matter for {}: {}\n", of_output[0].output, shares.join(", "));
         }
     }
     if text.is_empty() { text } else { text + "\n" }

@@ -29,8 +29,12 @@ pub use taylor::Taylor;
 pub use validation::{Validation, ValidationTable};
 
 registry::methods! {
-    chebyshev: Chebyshev,
-    taylor: Taylor,
-    scan: Scan,
-    certified: Certified,
+    /// A Chebyshev polynomial in the parameters.
+    chebyshev: Chebyshev, keys chebyshev::keys::Chebyshev;
+    /// A Taylor polynomial in the parameters.
+    taylor: Taylor, keys taylor::keys::Taylor;
+    /// Many samples; inner bounds.
+    scan: Scan, keys scan::keys::Scan;
+    /// Proven enclosures; asked for by `--certify`.
+    certified: Certified;
 }

@@ -95,8 +95,6 @@ mod tests {
         same_keys::<Contact>();
         same_keys::<Impact>();
         same_keys::<Simulation>();
-        same_keys::<Bounds>();
-        same_keys::<Budget>();
-        same_keys::<Chebyshev>();
+        same_keys::<crate::methods::keys::Bounds>();
     }
 }

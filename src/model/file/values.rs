@@ -120,24 +120,6 @@ pub enum RestitutionLawName {
     LankaraniNikravesh,
 }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Range {
-    /// The polynomial's own range.
-    Tight,
-    /// Interval arithmetic term by term, as in the paper: wider.
-    Interval,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Expand {
-    /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
-    Coordinates,
-    /// Each output, as in the paper.
-    Output,
-}
-
 /// Either the mapping or, where it needs nothing else, the list of what it is between.
 #[derive(JsonSchema)]
 #[schemars(untagged, inline)]
@@ -159,14 +141,6 @@ pub enum AllEffects {
 pub enum Without {
     All(AllEffects),
     Names(Vec<String>),
-}
-
-/// A whole number for all parameters, or one for each uncertain parameter.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PerParameter {
-    All(u32),
-    Each(IndexMap<String, u32>),
 }
 
 #[derive(JsonSchema)]
