@@ -298,10 +298,13 @@ fn unresolved(summary: &Summary) -> Option<String> {
     let total = bands.len();
     bands.sort_by(|a, b| a.0.total_cmp(&b.0));
     bands.truncate(MOST);
-    let named: Vec<String> = bands.iter().map(|(time, band)| format!("{band} from {time} s")).collect();
+    let named = |(place, (time, band)): (usize, &(f64, String))| {
+        format!("of `{band}`{} from {time} s", if place == 0 { " are unreliable" } else { "" })
+    };
+    let named: Vec<String> = bands.iter().enumerate().map(named).collect();
     let more = if total > MOST { format!(" and {} more", total - MOST) } else { String::new() };
-    let help = "their errors are too large there: see the `.error` columns";
-    (total > 0).then(|| format!("bounds are not resolved: {}{more}; {help}", named.join(", ")))
+    let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
+    (total > 0).then(|| format!("bounds {}{more}: {help}", named.join(", ")))
 }
 
 /// Singular configurations, and outputs that no equilibrium determines.
