@@ -1,6 +1,5 @@
 //! What stands behind a key: numbers, names of things, and short forms.
 
-use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
