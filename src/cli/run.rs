@@ -252,7 +252,7 @@ fn errors(errors: &[ErrorSummary]) -> String {
     const MOST: usize = 24;
     let mut table = Table::new([
         ("bounds", Align::Left),
-        ("widest", Align::Right),
+        ("largest width", Align::Right),
         ("error", Align::Right),
         ("of the surrogate", Align::Right),
         ("of the steps", Align::Right),
@@ -367,7 +367,7 @@ fn left_out(bounds: &Bounds, summary: &Summary) -> Option<String> {
 fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     let mut table = Table::new([
         ("method", Align::Left),
-        ("solves", Align::Right),
+        ("simulations", Align::Right),
         ("steps", Align::Right),
         ("Newton iterations", Align::Right),
         ("seconds", Align::Right),
@@ -375,7 +375,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     for method in &summary.methods {
         table.row([
             method.method.clone(),
-            method.solves.to_string(),
+            method.simulations.to_string(),
             method.steps.to_string(),
             method.newton_iterations.to_string(),
             method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
@@ -407,11 +407,11 @@ mod tests {
 
     #[test]
     fn the_overview_is_aligned() {
-        let method = |method: &str, solves, seconds, rank_revealing_solves| MethodSummary {
+        let method = |method: &str, simulations, seconds, rank_revealing_solves| MethodSummary {
             method: method.into(),
-            solves,
-            steps: 2000 * solves,
-            newton_iterations: 4013 * solves as u64,
+            simulations,
+            steps: 2000 * simulations,
+            newton_iterations: 4013 * simulations as u64,
             rank_revealing_solves,
             order: None,
             boxes: None,
@@ -452,12 +452,12 @@ mod tests {
         insta::assert_snapshot!(plain, @r"
         slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
 
-          method   solves    steps  Newton iterations  seconds
-          nominal       1     2000               4013    0.004
-          scan        900  1800000            3611700        –
+          method   simulations    steps  Newton iterations  seconds
+          nominal            1     2000               4013    0.004
+          scan             900  1800000            3611700        –
 
-          bounds    widest    error  of the surrogate  of the steps
-          x3.scan  2.00e-1  2.00e-3           unknown       1.50e-3
+          bounds   largest width    error  of the surrogate  of the steps
+          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3
 
           scan: 12 steps through a singular matrix, by the rank-revealing solve
           results/slider_crank: bounds.csv, x3.svg

@@ -339,7 +339,7 @@ pub(super) fn timed<T>(
     let simulated = &result.simulated;
     let summary = MethodSummary {
         method: method.to_owned(),
-        solves: result.simulations,
+        simulations: result.simulations,
         steps: steps(schedule, simulated.stop.as_ref().map(|(stop, _)| stop)),
         newton_iterations: simulated.effort.iterations,
         rank_revealing_solves: simulated.effort.rank_revealing,
@@ -359,7 +359,7 @@ pub(super) fn validation_summary(
 ) -> MethodSummary {
     MethodSummary {
         method: "validation".to_owned(),
-        solves: validation.simulations,
+        simulations: validation.simulations,
         steps: steps(schedule, stop),
         newton_iterations: validation.effort.iterations,
         rank_revealing_solves: validation.effort.rank_revealing,
