@@ -21,8 +21,8 @@ pub use ensemble::{
     Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
     lines,
 };
-pub use registry::{About, BoundingMethod, CostCurve, Curve, Problem, Refusal, Registered, Varied};
-pub use request::{Budget, MOST_SIMULATIONS};
+pub use registry::{About, BoundingMethod, CostCurve, Curve, Refusal, Registered, Varied};
+pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, Estimate, MethodResult, Sensitivity};
 pub use scan::Scan;
 pub use taylor::Taylor;

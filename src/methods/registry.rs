@@ -3,24 +3,11 @@
 use std::fmt::Debug;
 
 use super::ensemble::{Ensemble, EnsembleError, Observed};
-use super::request::Budget;
+use super::request::{Budget, Problem};
 use super::result::MethodResult;
 use super::validation::Validation;
 use super::{BoundsRequest, Method};
 use crate::numerics::ParameterBox;
-
-/// What a method is asked to bound, before anything is simulated.
-#[derive(Clone, Copy, Debug)]
-pub struct Problem {
-    /// Number of uncertain parameters.
-    pub parameters: usize,
-    /// Whether outputs can follow from expanded coordinates.
-    pub composes: bool,
-    /// Whether all steps have a given length.
-    pub has_fixed_steps: bool,
-    /// Error allowed of the bounds.
-    pub tolerance: Option<f64>,
-}
 
 /// Why a method cannot be run, for people.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use super::registry::Problem;
 use super::{BoundsRequest, Method};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
@@ -31,6 +30,19 @@ impl Default for Budget {
     fn default() -> Self {
         Self { solves: 3000, seconds: None }
     }
+}
+
+/// What a method is asked to bound, before anything is simulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem {
+    /// Number of uncertain parameters.
+    pub parameters: usize,
+    /// Whether outputs can follow from expanded coordinates.
+    pub composes: bool,
+    /// Whether all steps have a given length.
+    pub has_fixed_steps: bool,
+    /// Error allowed of the bounds.
+    pub tolerance: Option<f64>,
 }
 
 impl BoundsRequest {

@@ -3,8 +3,8 @@
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
-use super::request::{self, MOST_SIMULATIONS};
+use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
+use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};

@@ -5,8 +5,8 @@ use symdiff::jet::JetSpace;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Registered, Varied};
-use super::request::{self, Budget};
+use super::registry::{About, BoundingMethod, CostCurve, Registered, Varied};
+use super::request::{self, Budget, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};

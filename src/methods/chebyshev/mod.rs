@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
-use super::request::{self, MOST_SIMULATIONS};
+use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
+use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
