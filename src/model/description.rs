@@ -2,8 +2,8 @@
 
 use symdiff::Formula;
 
-use super::effect_kinds::EffectKind;
 use crate::elements::JointKind;
+use crate::elements::effects::EffectKind;
 use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
 use crate::methods::BoundsRequest;
 
