@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::{BoundsRequest, Method};
+use crate::grammar::mapping::Grammar;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;
@@ -71,13 +72,19 @@ impl BoundsRequest {
         {
             request.budget = budget(reader, &fields);
         }
-        let named = Method::ALL.into_iter().any(|method| fields.get(method.name()).is_some());
+        let has_keys = |method: &Method| keys_of_bounds().contains(&method.name());
+        let named = Method::ALL.into_iter().filter(has_keys).any(|method| fields.get(method.name()).is_some());
         if fields.get("tolerance").is_some() && !named {
             request.ask(Method::ALL[0], &unspecified(uncertain.len(), Some(Self::TOLERANCE)));
         }
         request.read_methods(reader, fields, uncertain);
         request
     }
+}
+
+/// Keys of `bounds:`; `certified` is none.
+fn keys_of_bounds() -> &'static [&'static str] {
+    <super::keys::Bounds as Grammar>::KEYS
 }
 
 /// A problem of which only the request is known.
