@@ -8,6 +8,7 @@ use std::process::Command;
 
 use mbint::{model, study};
 
+mod joints;
 mod keys;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_mbint");
@@ -77,6 +78,11 @@ fn the_page_of_keys_is_that_of_the_schema() {
 }
 
 #[test]
+fn the_page_of_joints_is_that_of_their_files() {
+    expect_page(&docs().join("reference/joints.md"), &joints::page());
+}
+
+#[test]
 fn the_examples_can_be_assembled() {
     let files: Vec<PathBuf> =
         std::fs::read_dir(docs().join("examples")).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -87,18 +93,4 @@ fn the_examples_can_be_assembled() {
             model::load_str(&file.display().to_string(), &text, &[]).unwrap_or_else(|e| panic!("{}", e.render(false)));
         study::prepare(&description).unwrap();
     }
-}
-
-#[test]
-fn the_help_has_the_exit_statuses_of_the_page() {
-    let help = Command::new(BINARY).arg("--help").output().unwrap().stdout;
-    let help = String::from_utf8(help).unwrap();
-    let statuses = |text: &str, before: &str| -> Vec<u8> {
-        let lines = text.lines().filter_map(|line| line.strip_prefix(before));
-        lines.filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect()
-    };
-    let page = std::fs::read_to_string(docs().join("reference/exit-codes.md")).unwrap();
-    let (_, listed) = help.split_once("Exit status:").unwrap();
-    assert_eq!(statuses(listed, "  "), statuses(&page, "| "));
-    assert!(!statuses(&page, "| ").is_empty());
 }
