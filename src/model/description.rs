@@ -7,8 +7,8 @@ mod start;
 
 use symdiff::Formula;
 
-use super::effect_kinds::EffectKind;
 use crate::elements::JointKind;
+use crate::elements::effects::EffectKind;
 use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 pub use robot::{RobotTree, TreeJoint, TreeLink};

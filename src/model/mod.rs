@@ -3,9 +3,7 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
-mod catalog;
 mod description;
-mod effect_kinds;
 mod names;
 mod references;
 
@@ -17,7 +15,6 @@ mod bounds;
 mod effects;
 mod joints;
 mod load;
-mod motors;
 mod overrides;
 mod parameters;
 mod requests;
@@ -29,13 +26,12 @@ mod tests;
 mod urdf;
 
 pub use crate::elements::JointKind;
+pub use crate::elements::effects::*;
 pub use crate::grammar::{
-    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
-    Rotation, TimeOrder, Turning,
+    Coordinate, EnergyKind, FrictionMode, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference,
+    Referent, Rotation, TimeOrder, Turning,
 };
-pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
-pub use effect_kinds::*;
 pub use file::schema;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;

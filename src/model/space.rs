@@ -3,13 +3,12 @@
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
 use super::description::Space;
-use crate::grammar::plane::{leaves_plane, leaves_plane_about, points_out, turns_out};
+use crate::elements::JointKind;
+use crate::elements::effects::EffectKind;
+use crate::grammar::plane::leaves_plane;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
-
-/// Kinds of joints that only make sense in space.
-pub const SPATIAL_JOINTS: [&str; 5] = ["spherical", "cylindrical", "screw", "universal", "planar"];
 
 /// Parts of names at the start that only bodies in space have.
 const SPATIAL_STARTS: [&str; 5] = ["z", "vz", "orientation", "omega", "omega_body"];
@@ -78,25 +77,10 @@ fn body_leaves(body: &Node) -> Option<String> {
 
 fn joint_leaves(joint: &Node) -> Option<String> {
     let [kind] = mapping(joint) else { return None };
-    if SPATIAL_JOINTS.contains(&kind.key.as_str()) {
-        return Some("the kind".to_owned());
-    }
-    let axis = get(&kind.value, "axis").or_else(|| get(&kind.value, "normal"))?;
-    let leaves = if kind.key == "revolute" { turns_out(axis) } else { points_out(axis) };
-    leaves.then(|| "the axis".to_owned())
+    JointKind::leaves_plane(&kind.key, &kind.value).map(|what| format!("the {what}"))
 }
 
 fn effect_leaves(effect: &Node) -> Option<String> {
     let [kind] = mapping(effect) else { return None };
-    if kind.key == "torque" && get(&kind.value, "value").is_some_and(leaves_plane_about) {
-        return Some("`value`".to_owned());
-    }
-    if get(&kind.value, "axis").is_some_and(turns_out) {
-        return Some("`axis`".to_owned());
-    }
-    let components = ["acceleration", "value", "along", "plane", "wind"].into_iter().find(|key| {
-        let value = get(&kind.value, key);
-        kind.key != "torque" && value.is_some_and(points_out)
-    });
-    components.map(|key| format!("`{key}`"))
+    EffectKind::leaves_plane(&kind.key, &kind.value).map(|key| format!("`{key}`"))
 }

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, Effect, EffectKind, Joint, Reference, Referent};
+use crate::model::{Description, Effect, Joint, Reference, Referent, Scope};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -119,9 +119,9 @@ impl Couplings {
             |Effect { kind, .. }: &Effect| Named::by_part(description, kind.formulas(), kind.clone().references());
         let effects: Vec<Named> = description.effects.iter().map(effect).collect();
         let outputs = description.outputs.iter().map(|output| Named::by(description, [&output.formula])).collect();
-        let is_gravity = |effect: usize| matches!(description.effects[effect].kind, EffectKind::Gravity { .. });
+        let on_every_body = |effect: usize| description.effects[effect].kind.scope() == Scope::EveryBody;
         let fields: Vec<bool> =
-            effects.iter().enumerate().map(|(effect, named)| is_gravity(effect) && named.parts.is_empty()).collect();
+            effects.iter().enumerate().map(|(effect, named)| on_every_body(effect) && named.parts.is_empty()).collect();
         let still = still(description);
         let mut holds = vec![false; joints.len()];
         still.iter().flatten().for_each(|&joint| holds[joint] = true);
@@ -133,7 +133,7 @@ impl Couplings {
         }
         for effect in (0..description.effects.len()).filter(|&effect| !couplings.fields[effect]).collect::<Vec<_>>() {
             let mut parts = couplings.effects[effect].parts.clone();
-            if is_gravity(effect) {
+            if on_every_body(effect) {
                 parts.extend((1..description.bodies.len()).map(Part::Body));
             }
             couplings.join(Part::Effect(effect), &parts);

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Beam, Description, EffectKind, Referent, StartValue};
+use crate::model::{Description, LineMass, Referent, StartValue};
 
 /// A fixed joint, and why its bodies stay two; or that they became one.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ fn held(description: &Description) -> Vec<bool> {
 fn nodes(description: &Description) -> Vec<bool> {
     let mut nodes = vec![false; description.bodies.len()];
     for effect in &description.effects {
-        if let EffectKind::Beam(Beam { between, mass_per_length: Some(_), .. }) = &effect.kind {
+        if let Some(LineMass { between, .. }) = effect.kind.inertia() {
             between.iter().for_each(|end| nodes[end.body] = true);
         }
     }

@@ -19,20 +19,12 @@
 use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::joints::Pair;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::rotation;
 use crate::assemble::space::{self, Vector};
 use crate::model::PointRef;
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "bushing",
-    formulas: &["F = −(K d + C ḋ), τ = −(K_t 2e + C_t ω), or six by six; d, 2e in the first frame's axes"],
-    source: "Shabana, Dynamics of Multibody Systems, 5th ed. (2020)",
-};
+use super::Loads;
 
 /// Stiffness or damping: by axis and, where there is one, the full matrix.
 pub struct Law {
@@ -87,7 +79,7 @@ pub fn apply(
     stiffness: &Law,
     damping: &Law,
 ) -> Result<(), BuildError> {
-    let pair = Pair::of(g, m, between);
+    let pair = m.pair(g, between);
     let axes: [Vector; 3] = std::array::from_fn(|axis| {
         let unit = space::along(g, axis);
         pair.outward(g, unit)

@@ -6,7 +6,7 @@ use super::algebra::{self, Value};
 use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
 use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
-use crate::grammar::{PointRef, Turning};
+use crate::grammar::{Axis, Direction, PointRef, Turning};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
 
@@ -30,9 +30,9 @@ pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
     let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
     let axis = unit(joint.axis).map(Formula::number);
     let kind: JointKind = match joint.kind {
-        Kind::Prismatic => Prismatic { between, axis, angle: Formula::number(0.0) }.into(),
-        Kind::Planar => Planar { between, normal: axis }.into(),
-        _ => Revolute { between, axis }.into(),
+        Kind::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
+        Kind::Planar => Planar { between, normal: Direction(axis) }.into(),
+        _ => Revolute { between, axis: Axis(axis) }.into(),
     };
     reader.model.joints.push(Joint::new(joint.name.clone(), kind));
     Some(reader.model.joints.len() - 1)
