@@ -26,7 +26,7 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
-        /// What holds the bodies together.
+        /// What constrains the bodies.
         joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,

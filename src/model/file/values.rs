@@ -21,7 +21,7 @@ pub enum CoordinateName {
 pub enum SpaceName {
     /// z = 0, and rotations about z only.
     Planar,
-    /// Bodies that say nothing else have six freedoms.
+    /// Bodies have six degrees of freedom unless they declare their coordinates.
     Spatial,
 }
 
