@@ -156,7 +156,10 @@ fn expand(text: &str) -> (Vec<Module>, usize) {
         let Some(rest) = text[word..].strip_prefix("::") else { return (vec![vec![own]], word) };
         let (inner, taken) = expand(rest);
         let inner: Vec<Module> = if inner.is_empty() { vec![Module::new()] } else { inner };
-        return (inner.into_iter().map(|path| [std::slice::from_ref(&own), &path[..]].concat()).collect(), word + 2 + taken);
+        return (
+            inner.into_iter().map(|path| [std::slice::from_ref(&own), &path[..]].concat()).collect(),
+            word + 2 + taken,
+        );
     }
     let (mut paths, mut at) = (Vec::new(), 1);
     if !text.starts_with('{') {
