@@ -62,7 +62,7 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     }
     text += &format!("{}\n", trajectories(study).render(2));
     text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
-    text += match study.is_certain() {
+    text += match study.is_deterministic() {
         false => {
             "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n"
         }

@@ -55,18 +55,12 @@ const CIRCLING: &[&str] = &[
     "expr",
     "grammar::element",
     "grammar::reader",
-    "methods::result",
-    "methods::validation",
     "model::load",
     "model::parameters",
     "model::scenes",
     "model::tables",
     "model::urdf",
-    "numerics::bernstein",
-    "numerics::range",
     "scalar",
-    "study::conclude",
-    "study::single",
 ];
 
 /// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.
