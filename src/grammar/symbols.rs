@@ -238,6 +238,13 @@ pub struct OnJoint {
     pub coordinate: JointCoordinate,
 }
 
+impl OnJoint {
+    /// The angle of a joint.
+    pub fn angle(joint: usize) -> Self {
+        Self { joint, coordinate: JointCoordinate::Angle }
+    }
+}
+
 /// Something that an effect measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)] // the names say it

@@ -1,20 +1,24 @@
 //! Effects: what moves bodies.
 //!
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
-//! what it refers to, what it costs.
+//! what it refers to, its forces, what it costs.
 
 mod dry_friction;
+mod forces;
 mod impact;
+mod positive_part;
 mod registry;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
 
 pub use self::dry_friction::{DryFriction, Friction};
+pub use self::forces::{Forces, MovingPoint};
 pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, Measure, OnJoint, PointRef};
+use crate::multibody::BuildError;
 
 effects! {
     gravity::Gravity,
@@ -38,10 +42,16 @@ effects! {
 /// Something that an effect measures, and what it is.
 pub type Sensor = (Measure, Dimension);
 
-/// What an effect does beside its forces.
+/// What an effect does.
 pub trait ForceElement: Element {
     /// What it may measure; its own formulas may refer to what of this follows from the motion.
     const SENSORS: &'static [Sensor];
+
+    /// Adds its forces to a mechanism.
+    ///
+    /// # Errors
+    /// A formula with a name that cannot stand in it; the reader of model files lets none through.
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError>;
 
     /// What it measures.
     fn sensors(&self) -> Vec<Sensor> {

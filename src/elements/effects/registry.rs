@@ -98,6 +98,16 @@ macro_rules! effects {
                 }
             }
 
+            /// Adds its forces to a mechanism.
+            ///
+            /// # Errors
+            /// A formula with a name that cannot stand in it; the reader of model files lets none through.
+            pub fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), $crate::multibody::BuildError> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::apply(effect, forces),)*
+                }
+            }
+
             /// What it acts on.
             pub fn scope(&self) -> Scope {
                 match self {

@@ -1,107 +1,18 @@
-//! Applied forces, one file each.
+//! The sum of the forces on a mechanism.
 //!
-//! An effect adds forces and torques on bodies, and potential energy where it has one. Their generalised forces follow
-//! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion, which [`Loads`] sees to. Values may depend on
+//! Generalised forces follow from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion. Values may depend on
 //! parameters, t, positions, velocities and reactions.
-//!
-//! To add an effect: its file in `elements::effects`, and its line here.
-
-mod backlash;
-mod beam;
-mod bushing;
-mod cable;
-mod clearance_joint;
-mod contact;
-mod drag;
-mod dry_friction;
-mod force;
-mod gravity;
-mod impact;
-mod joint_friction;
-mod positive_part;
-mod preload;
-mod servo;
-mod spring_damper;
-mod stop;
-mod torque;
-mod torsional_spring_damper;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symdiff::{Builder, Expr, Formula, Scalar};
-
-use crate::model::force::Frame;
-use crate::model::torque::TorqueOn;
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, SpringDamper, TimeOrder};
+use symdiff::{Builder, Expr};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints;
-use super::mechanism::{Context, Mechanism};
+use super::mechanism::Mechanism;
 use super::space::{self, Vector};
-
-/// Applies an effect.
-pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
-    match kind {
-        EffectKind::Gravity(gravity) => gravity::apply(g, m, loads, &gravity.acceleration),
-        EffectKind::Force(force) => force::apply(g, m, loads, force.on, &force.value, force.frame == Frame::Body),
-        EffectKind::Torque(torque) => match torque.on {
-            TorqueOn::Body(on) => {
-                torque::apply(g, m, loads, on, torque.reaction_on(), &torque.value.0, torque.frame == Frame::Body)
-            }
-            TorqueOn::Joint(joint) => torque::apply_at_joint(g, m, loads, joint, &torque.value.0[2]),
-        },
-        EffectKind::SpringDamper(spring) => {
-            let SpringDamper { between, along, stiffness, damping, free_length, force } = spring;
-            let spring = spring_damper::Spring { stiffness, damping, free_length };
-            spring_damper::apply(g, m, loads, *between, along.as_deref(), spring, force.as_ref())
-        }
-        EffectKind::TorsionalSpringDamper(spring) => torsional_spring_damper::apply(
-            g,
-            m,
-            loads,
-            spring,
-            [&spring.stiffness, &spring.damping, &spring.free_angle],
-            spring.torque.as_ref(),
-        ),
-        EffectKind::Bushing(bushing) => {
-            let full = [&bushing.stiffness_matrix, &bushing.damping_matrix];
-            let [full_stiffness, full_damping] = full.map(|matrix| matrix.as_ref().map(|matrix| &*matrix.0));
-            let stiffness =
-                bushing::Law::new(g, m, [&bushing.stiffness, &bushing.torsional_stiffness], full_stiffness)?;
-            let damping = bushing::Law::new(g, m, [&bushing.damping, &bushing.torsional_damping], full_damping)?;
-            bushing::apply(g, m, loads, bushing.between, &stiffness, &damping)
-        }
-        EffectKind::JointFriction(friction) => joint_friction::apply(g, m, loads, friction),
-        EffectKind::Stop(stop) => stop::apply(g, m, loads, stop),
-        EffectKind::Contact(contact) => contact::apply(g, m, loads, contact),
-        EffectKind::ClearanceJoint(joint) => clearance_joint::apply(g, m, loads, joint),
-        EffectKind::Servo(servo) => servo::apply(g, m, loads, servo),
-        EffectKind::Drag(drag) => drag::apply(g, m, loads, drag),
-        EffectKind::Cable(cable) => cable::apply(g, m, loads, cable),
-        EffectKind::Backlash(backlash) => backlash::apply(g, m, loads, backlash),
-        EffectKind::Preload(preload) => preload::apply(g, m, loads, preload),
-        EffectKind::Beam(beam) => beam::apply(g, m, loads, beam),
-    }
-}
-
-impl Mechanism<'_> {
-    /// A formula of parameters, t and the motion, to compute with.
-    fn value<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        Ok(g.scalar(self.formula(g, formula, Context::Motion)?))
-    }
-
-    /// A formula of parameters and t, to compute with.
-    fn given<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        Ok(g.scalar(self.formula(g, formula, Context::Time)?))
-    }
-
-    /// A joint's coordinate and its rate, to compute with.
-    fn coordinate_and_rate<'g>(&self, g: &'g Builder, on: OnJoint) -> [Scalar<'g>; 2] {
-        let of = |order| g.scalar(self.joint_coordinate(g, on.joint, on.coordinate, order));
-        [of(TimeOrder::Position), of(TimeOrder::Velocity)]
-    }
-}
+use crate::grammar::{JointCoordinate, Measure, OnJoint};
 
 /// What is added to: a component of a body's force or torque (0 to 5), or a joint's own coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -112,7 +23,7 @@ enum Target {
 
 /// The forces on all bodies.
 #[derive(Clone)]
-pub struct Loads {
+pub struct AppliedForces {
     /// Force on each body, and torque about its frame's origin, in the ground's axes: N, N m.
     bodies: Vec<[Expr; 6]>,
     /// Generalised forces on joints' own coordinates, by their place in q.
@@ -121,7 +32,7 @@ pub struct Loads {
     pub field: Vector,
     /// Potential energies, J.
     pub potentials: Vec<Expr>,
-    /// What was added to since the last [`Loads::begin`].
+    /// What was added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
     /// What was measured since then.
     measured: Vec<(Measure, Expr)>,
@@ -131,7 +42,7 @@ pub struct Loads {
     guarded: Vec<(Expr, Target, Expr)>,
 }
 
-impl Loads {
+impl AppliedForces {
     /// No forces.
     pub fn new(g: &Builder, bodies: usize) -> Self {
         let zero = g.constant(0.0);
@@ -186,7 +97,7 @@ impl Loads {
     }
 
     /// Something that the effect measures, for outputs.
-    pub fn measure(&mut self, measure: Measure, value: Expr) {
+    pub fn sensor(&mut self, measure: Measure, value: Expr) {
         self.measured.push((measure, value));
     }
 
@@ -341,20 +252,6 @@ impl Loads {
             self.add_force_pair(g, &there, &at, force);
         }
         Ok(())
-    }
-
-    /// A force or torque that pushes a joint's coordinate up.
-    pub fn add_joint_effort(
-        &mut self,
-        g: &Builder,
-        m: &Mechanism,
-        on: OnJoint,
-        effort: Expr,
-    ) -> Result<(), BuildError> {
-        match on.coordinate {
-            JointCoordinate::Angle => self.add_joint_torque(g, m, on.joint, effort),
-            JointCoordinate::Displacement => self.add_joint_force(g, m, on.joint, effort),
-        }
     }
 
     /// Whether the joint's coordinate is one of its own, which the force then acts on.
