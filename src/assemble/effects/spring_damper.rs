@@ -13,43 +13,35 @@
 //! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may speak of.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Builder, Expr};
 
 use crate::assemble::body::MaterialPoint;
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
-use crate::model::{Measure, PointRef};
+use crate::model::{Measure, SpringDamper};
 
 use super::Loads;
 
 /// Its numbers.
 #[derive(Clone, Copy)]
-pub struct Spring<T> {
+pub struct Spring {
     /// k, N/m
-    pub stiffness: T,
+    pub stiffness: Expr,
     /// c, N s/m
-    pub damping: T,
+    pub damping: Expr,
     /// ℓ₀, m
-    pub free_length: T,
+    pub free_length: Expr,
 }
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    between: [PointRef; 2],
-    along: Option<&[Formula; 3]>,
-    spring: Spring<&Formula>,
-    further: Option<&Formula>,
-) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &SpringDamper) -> Result<(), BuildError> {
     let spring = Spring {
-        stiffness: m.formula(g, spring.stiffness, Context::Motion)?,
-        damping: m.formula(g, spring.damping, Context::Motion)?,
-        free_length: m.formula(g, spring.free_length, Context::Motion)?,
+        stiffness: m.formula(g, &effect.stiffness, Context::Motion)?,
+        damping: m.formula(g, &effect.damping, Context::Motion)?,
+        free_length: m.formula(g, &effect.free_length, Context::Motion)?,
     };
-    let [a, b] = between.map(|point| m.point(g, point));
-    let Stretched { mut pull, direction, length, rate, tension } = match along {
+    let [a, b] = effect.between.map(|point| m.point(g, point));
+    let Stretched { mut pull, direction, length, rate, tension } = match &effect.along {
         Some(axis) => {
             let axis = m.vector(g, axis, Context::Motion)?;
             along_axis(g, &a, &b, axis, spring)
@@ -57,7 +49,7 @@ pub fn apply(
         None => along_line(g, &a, &b, spring),
     };
     let mut tension = tension;
-    if let Some(further) = further {
+    if let Some(further) = &effect.force {
         let further = m.own_formula(g, further, &[(Measure::Length, length), (Measure::Rate, rate)])?;
         let further_pull = space::scale(g, further, direction);
         pull = space::add(g, pull, further_pull);
@@ -69,7 +61,7 @@ pub fn apply(
     let square = g.mul(stretch, stretch);
     let doubled = g.mul(spring.stiffness, square);
     let potential = g.scale(0.5, doubled);
-    if further.is_none() {
+    if effect.force.is_none() {
         loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
     }
     for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
@@ -92,7 +84,7 @@ struct Stretched {
     tension: Expr,
 }
 
-fn along_line(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> Stretched {
+fn along_line(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, spring: Spring) -> Stretched {
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);
     let square = space::dot(g, line, line);
@@ -110,7 +102,7 @@ fn along_line(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<
     Stretched { pull, direction, length, rate: g.div(growth, length), tension: g.mul(density, length) }
 }
 
-fn along_axis(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring<Expr>) -> Stretched {
+fn along_axis(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring) -> Stretched {
     let axis = space::unit(g, axis);
     let line = space::sub(g, b.position, a.position);
     let rate = space::sub(g, b.velocity, a.velocity);

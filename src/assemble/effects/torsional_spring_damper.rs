@@ -8,7 +8,7 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
 //! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Builder, Formula};
+use symdiff::Builder;
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -17,17 +17,10 @@ use crate::model::{JointCoordinate, Measure, TimeOrder, TorsionalSpringDamper};
 
 use super::Loads;
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    spring: &TorsionalSpringDamper,
-    [stiffness, damping, free_angle]: [&Formula; 3],
-    further: Option<&Formula>,
-) -> Result<(), BuildError> {
-    let stiffness = m.formula(g, stiffness, Context::Motion)?;
-    let damping = m.formula(g, damping, Context::Motion)?;
-    let free_angle = m.formula(g, free_angle, Context::Motion)?;
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, spring: &TorsionalSpringDamper) -> Result<(), BuildError> {
+    let stiffness = m.formula(g, &spring.stiffness, Context::Motion)?;
+    let damping = m.formula(g, &spring.damping, Context::Motion)?;
+    let free_angle = m.formula(g, &spring.free_angle, Context::Motion)?;
     let bodies = spring.between.map(|bodies| bodies.map(|body| body.0));
     let (turned, rate) = match (bodies, spring.on) {
         (Some([first, second]), None) => (
@@ -45,7 +38,7 @@ pub fn apply(
     let elastic = g.mul(stiffness, twist);
     let viscous = g.mul(damping, rate);
     let mut torque = g.add(elastic, viscous);
-    if let Some(further) = further {
+    if let Some(further) = &spring.torque {
         let further = m.own_formula(g, further, &[(Measure::Angle, turned), (Measure::Rate, rate)])?;
         torque = g.add(torque, further);
     }
@@ -66,7 +59,7 @@ pub fn apply(
     let square = g.mul(twist, twist);
     let doubled = g.mul(stiffness, square);
     let potential = g.scale(0.5, doubled);
-    if further.is_none() {
+    if spring.torque.is_none() {
         loads.add_potential(g, m, &[stiffness, free_angle], potential);
     }
     Ok(())
