@@ -299,6 +299,8 @@ pub struct ElementDocs {
     pub example: &'static str,
     /// Its keys.
     pub keys: Vec<KeyDocs>,
+    /// What it measures, for outputs, with units.
+    pub sensors: Vec<(&'static str, String)>,
 }
 
 /// A key of an element, for people.
@@ -330,6 +332,7 @@ impl ElementDocs {
             source: E::SOURCE,
             example: E::EXAMPLE,
             keys: keys.iter().map(docs).collect(),
+            sensors: Vec::new(),
         }
     }
 }

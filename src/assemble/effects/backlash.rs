@@ -53,7 +53,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
     let potential = g.mul(stiffness, stored);
     let potential = g.only_where(bearing_at, potential);
     loads.add_potential(g, m, &[stiffness, play, corner, ratio, offset], potential);
-    for (measure, value) in [(Measure::Angle, place), (Measure::Rate, rate), (Measure::Torque, torque)] {
+    for (measure, value) in [(Measure::ANGLE, place), (Measure::RATE, rate), (Measure::TORQUE, torque)] {
         loads.measure(measure, value);
     }
     Ok(())

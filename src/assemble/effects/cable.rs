@@ -47,7 +47,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Re
     let potential = g.mul(stiffness, taut.integral);
     let potential = g.only_where(tight, potential);
     loads.add_potential(g, m, &[stiffness, free, corner], potential);
-    for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
+    for (measure, value) in [(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)] {
         loads.measure(measure, value);
     }
     Ok(())

@@ -121,14 +121,14 @@ impl Touch {
                 space::dot(g, back, drag)
             };
             let felt = g.only_where(overlap, felt);
-            loads.measure(Measure::Friction, felt);
+            loads.measure(Measure::FRICTION, felt);
         }
         loads.add_force_pair(g, &first, &second, force);
         let push = g.only_where(overlap, push);
         let potential = self.impact.potential(g, depth);
         let potential = g.only_where(depth, potential);
         loads.add_potential(g, m, &[self.impact.stiffness], potential);
-        for (measure, value) in [(Measure::Gap, gap), (Measure::Rate, parting), (Measure::Force, push)] {
+        for (measure, value) in [(Measure::GAP, gap), (Measure::RATE, parting), (Measure::FORCE, push)] {
             loads.measure(measure, value);
         }
     }

@@ -38,6 +38,6 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Resu
     let force = space::scale(g, against, relative);
     loads.add_force(g, &point, force);
     let felt = g.mul(resistance, speed);
-    loads.measure(Measure::Force, felt);
+    loads.measure(Measure::FORCE, felt);
     Ok(())
 }

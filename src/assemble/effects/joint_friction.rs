@@ -68,7 +68,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFric
             efforts.push((JointCoordinate::Angle, g.mul(radius, against[1])));
         }
     }
-    loads.measure(Measure::Load, load);
+    loads.measure(Measure::LOAD, load);
     for (coordinate, effort) in efforts {
         match coordinate {
             JointCoordinate::Angle => loads.add_joint_torque(g, m, joint, effort)?,

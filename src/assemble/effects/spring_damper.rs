@@ -50,7 +50,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &SpringDampe
     };
     let mut tension = tension;
     if let Some(further) = &effect.force {
-        let further = m.own_formula(g, further, &[(Measure::Length, length), (Measure::Rate, rate)])?;
+        let further = m.own_formula(g, further, &[(Measure::LENGTH, length), (Measure::RATE, rate)])?;
         let further_pull = space::scale(g, further, direction);
         pull = space::add(g, pull, further_pull);
         tension = g.add(tension, further);
@@ -64,7 +64,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &SpringDampe
     if effect.force.is_none() {
         loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
     }
-    for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
+    for (measure, value) in [(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)] {
         loads.measure(measure, value);
     }
     Ok(())

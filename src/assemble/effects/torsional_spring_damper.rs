@@ -39,10 +39,10 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, spring: &TorsionalSp
     let viscous = g.mul(damping, rate);
     let mut torque = g.add(elastic, viscous);
     if let Some(further) = &spring.torque {
-        let further = m.own_formula(g, further, &[(Measure::Angle, turned), (Measure::Rate, rate)])?;
+        let further = m.own_formula(g, further, &[(Measure::ANGLE, turned), (Measure::RATE, rate)])?;
         torque = g.add(torque, further);
     }
-    for (measure, value) in [(Measure::Angle, turned), (Measure::Rate, rate), (Measure::Torque, torque)] {
+    for (measure, value) in [(Measure::ANGLE, turned), (Measure::RATE, rate), (Measure::TORQUE, torque)] {
         loads.measure(measure, value);
     }
     match (bodies, spring.on) {

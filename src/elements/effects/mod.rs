@@ -15,7 +15,7 @@ pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
 pub(crate) use self::registry::registry;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Element, Measure, OnJoint, PointRef};
+use crate::grammar::{Element, ElementDocs, Measure, OnJoint, PointRef};
 
 registry!(effects);
 
@@ -81,4 +81,10 @@ pub struct LineMass<'a> {
 fn effort(on: OnJoint) -> Sensor {
     let [_, _, dimension] = crate::grammar::motions::dimensions_of(on.coordinate);
     (Measure::of_effort(on.coordinate), dimension)
+}
+
+/// What people are told of an effect.
+fn with_sensors<E: ForceElement>() -> ElementDocs {
+    let sensors = E::SENSORS.iter().map(|(measure, dimension)| (measure.name(), dimension.unit())).collect();
+    ElementDocs { sensors, ..ElementDocs::of::<E>() }
 }
