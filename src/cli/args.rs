@@ -163,16 +163,20 @@ pub(super) struct CheckArgs {
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
     /// Model file.
-    #[arg(value_name = "MODEL", required_unless_present = "effects")]
+    #[arg(value_name = "MODEL", required_unless_present_any = ["effects", "joints"])]
     pub model: Option<PathBuf>,
 
     /// A scene of the model, instead of the model itself.
-    #[arg(long, value_name = "NAME", conflicts_with = "effects")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["effects", "joints"])]
     pub scene: Option<String>,
 
     /// Instead of a model: every effect that there is, with its keys, units, formula and source.
     #[arg(long, conflicts_with = "model")]
     pub effects: bool,
+
+    /// Instead of a model: every joint that there is, with its keys, units, equations and the signs of its reaction.
+    #[arg(long, conflicts_with_all = ["model", "effects"])]
+    pub joints: bool,
 
     /// Text for people, or a JSON object.
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -1,16 +1,24 @@
-//! `mbint explain`: what a model is compiled to, or which effects there are.
+//! `mbint explain`: what a model is compiled to, or which effects and joints there are.
 
 use super::args::{ExplainArgs, Format};
 use super::check::to_json;
 use super::console::{BOLD, Console, count};
 use super::effects::adds;
 use super::table::{Align, Table};
-use super::{Failure, Status, effects, load};
+use super::{Failure, Status, effects, joints, load};
+use crate::elements::JointKind;
 use crate::results::{Decision, Explanation};
 use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
+        if args.joints {
+            console.print(&match args.format {
+                Format::Text => joints::text(),
+                Format::Json => to_json(&JointKind::docs())?,
+            })?;
+            return Ok(Status::Done);
+        }
         console.print(&match args.format {
             Format::Text => effects::text()?,
             Format::Json => to_json(&effects::all()?)?,

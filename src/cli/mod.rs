@@ -11,6 +11,7 @@ mod cost;
 mod effects;
 mod explain;
 mod interrupt;
+mod joints;
 mod load;
 mod new;
 mod progress;

@@ -39,7 +39,8 @@ fn section(name: &str, definition: &Value) -> String {
         let mark = if required.iter().any(|required| *required == key) { " *" } else { "" };
         text += &format!("| `{key}`{mark} | {} | {} |\n", value(property), description(property));
     }
-    text
+    let examples = definition["examples"].as_array().into_iter().flatten();
+    text + &examples.map(|example| format!("\nExample: `{example}`\n")).collect::<String>()
 }
 
 /// What may stand as a value, in words.

@@ -8,6 +8,7 @@ use std::process::Command;
 
 use mbint::{model, study};
 
+mod joints;
 mod keys;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_mbint");
@@ -74,6 +75,11 @@ fn the_tutorials_commands_print_what_it_says() {
 fn the_page_of_keys_is_that_of_the_schema() {
     let schema = Command::new(BINARY).arg("schema").output().unwrap().stdout;
     expect_page(&docs().join("reference/keys.md"), &keys::page(std::str::from_utf8(&schema).unwrap()));
+}
+
+#[test]
+fn the_page_of_joints_is_that_of_their_files() {
+    expect_page(&docs().join("reference/joints.md"), &joints::page());
 }
 
 #[test]

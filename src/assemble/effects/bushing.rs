@@ -19,7 +19,6 @@
 use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::joints::Pair;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::rotation;
 use crate::assemble::space::{self, Vector};
@@ -76,7 +75,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &Bushing) ->
     let full = [&effect.stiffness_matrix, &effect.damping_matrix].map(|full| full.as_ref().map(|full| &*full.0));
     let stiffness = Law::new(g, m, [&effect.stiffness, &effect.torsional_stiffness], full[0])?;
     let damping = Law::new(g, m, [&effect.damping, &effect.torsional_damping], full[1])?;
-    let pair = Pair::of(g, m, effect.between);
+    let pair = m.pair(g, effect.between);
     let axes: [Vector; 3] = std::array::from_fn(|axis| {
         let unit = space::along(g, axis);
         pair.outward(g, unit)

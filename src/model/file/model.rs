@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
+use crate::elements::JointKind;
 use crate::elements::effects::{EffectKind, Impact};
 
 grammar! {
@@ -26,7 +27,7 @@ grammar! {
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What holds the bodies together.
-        joints: Option<IndexMap<String, Joint>>,
+        joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
@@ -60,7 +61,7 @@ grammar! {
         /// New values of the model's parameters, in the model's units.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Instead of the model's of the same name, or on top.
-        joints: Option<IndexMap<String, Joint>>,
+        joints: Option<IndexMap<String, JointKind>>,
         /// Instead of the model's of the same name, or on top.
         effects: Option<IndexMap<String, EffectKind>>,
         /// Instead of the model's of the same name, or on top.

@@ -92,26 +92,6 @@ pub enum Column {
 }
 
 #[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum JointCoordinateName {
-    /// About the joint's axis.
-    Angle,
-    /// Along it.
-    Displacement,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum ProfileName {
-    /// Its acceleration is a sine.
-    Cycloidal,
-    /// A polynomial that begins and ends without rate and acceleration.
-    Quintic,
-    /// A constant rate between constant accelerations.
-    Trapezoidal,
-}
-
-#[derive(JsonSchema)]
 #[schemars(rename_all = "snake_case", inline)]
 pub enum RestitutionLawName {
     /// 3 (1 - e)/(2 v)
@@ -136,15 +116,6 @@ pub enum Expand {
     Coordinates,
     /// Each output, as in the paper.
     Output,
-}
-
-/// Either the mapping or, where it needs nothing else, the list of what it is between.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum OrBetween<T> {
-    /// Short for `{ between: [a, b] }`.
-    Short([String; 2]),
-    Full(T),
 }
 
 #[derive(JsonSchema)]

@@ -8,7 +8,7 @@
 //!
 //! The others are frames at points of it, named after them.
 
-use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder, Turning};
+use crate::grammar::{Axis, Coordinate, Direction, JointCoordinate, PointRef, Rotation, TimeOrder, Turning};
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
@@ -295,9 +295,9 @@ fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> O
     let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
     let axis = unit(joint.axis).map(Formula::number);
     let kind: JointKind = match joint.kind {
-        Kind::Prismatic => Prismatic { between, axis, angle: Formula::number(0.0) }.into(),
-        Kind::Planar => Planar { between, normal: axis }.into(),
-        _ => Revolute { between, axis }.into(),
+        Kind::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
+        Kind::Planar => Planar { between, normal: Direction(axis) }.into(),
+        _ => Revolute { between, axis: Axis(axis) }.into(),
     };
     reader.model.joints.push(Joint::new(joint.name.clone(), kind));
     Some(reader.model.joints.len() - 1)

@@ -1,6 +1,6 @@
 //! What can be wrong with a mechanism that only shows when its equations are written down.
 
-use super::mechanism::Context;
+use super::context::Context;
 
 /// Why a description has no equations of motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -20,7 +20,7 @@ pub enum BuildError {
         /// Where between the bounds of the parameters; `None` where it is so at the nominal values.
         at: Option<&'static str>,
     },
-    /// Joint coordinates are asked for where they do not do.
+    /// Joint coordinates are asked for where they are not possible.
     #[error("`formulation: joint` does not do here: {why}")]
     NotCarried {
         /// What is in the way.
@@ -34,7 +34,7 @@ pub enum BuildError {
     Name {
         /// The name.
         name: String,
-        /// What the formula may speak of.
+        /// What the formula may depend on.
         allowed: Context,
     },
 }
