@@ -94,17 +94,3 @@ fn the_examples_can_be_assembled() {
         study::prepare(&description).unwrap();
     }
 }
-
-#[test]
-fn the_help_has_the_exit_statuses_of_the_page() {
-    let help = Command::new(BINARY).arg("--help").output().unwrap().stdout;
-    let help = String::from_utf8(help).unwrap();
-    let statuses = |text: &str, before: &str| -> Vec<u8> {
-        let lines = text.lines().filter_map(|line| line.strip_prefix(before));
-        lines.filter_map(|line| line.split_whitespace().next()?.parse().ok()).collect()
-    };
-    let page = std::fs::read_to_string(docs().join("reference/exit-codes.md")).unwrap();
-    let (_, listed) = help.split_once("Exit status:").unwrap();
-    assert_eq!(statuses(listed, "  "), statuses(&page, "| "));
-    assert!(!statuses(&page, "| ").is_empty());
-}

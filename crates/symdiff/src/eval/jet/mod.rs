@@ -10,13 +10,15 @@
 //! as in [`Graph::derivative`](crate::Graph::derivative). Where it has a singularity (√0, log 0, asin 1, …) the
 //! coefficients are infinite or not a number, unless the argument is a constant.
 
+mod memory;
 mod monomials;
 
 use rustc_hash::FxHashMap;
 
+use crate::eval::functions;
 use crate::expr::{Binary, Unary};
-use crate::scalar;
 
+pub use memory::JetMemory;
 pub use monomials::Monomials;
 
 /// Which products of two monomials make which, for jets of one shape. Immutable: one serves all threads.
@@ -196,8 +198,8 @@ impl JetSpace {
 
     fn sin_cos_with(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], slope: &mut [f64]) {
         self.euler(a, slope);
-        sine[0] = scalar::unary(Unary::Sin, a[0]);
-        cosine[0] = scalar::unary(Unary::Cos, a[0]);
+        sine[0] = functions::unary(Unary::Sin, a[0]);
+        cosine[0] = functions::unary(Unary::Cos, a[0]);
         for r in 1..self.len() {
             let (s, c) = (sum(self.upper(r), slope, cosine), sum(self.upper(r), slope, sine));
             sine[r] = s / self.degrees[r];
@@ -207,7 +209,7 @@ impl JetSpace {
 
     /// `out = function(a)`.
     pub fn unary(&self, function: Unary, a: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
-        let value = scalar::unary(function, a[0]);
+        let value = functions::unary(function, a[0]);
         // A constant stays one, whatever the function does there.
         if is_constant(a) {
             return self.constant(value, out);
@@ -247,7 +249,7 @@ impl JetSpace {
                 self.integrate(first, a, value, out, second);
             }
             Unary::Abs => {
-                self.scale(scalar::sign(a[0]), a, out);
+                self.scale(functions::sign(a[0]), a, out);
                 out[0] = value;
             }
             Unary::Sign => self.constant(value, out),
@@ -284,7 +286,7 @@ impl JetSpace {
                 } else {
                     out.copy_from_slice(b);
                 }
-                out[0] = scalar::binary(function, a[0], b[0]);
+                out[0] = functions::binary(function, a[0], b[0]);
             }
             Binary::Where | Binary::Elsewhere if (a[0] <= 0.0) == (function == Binary::Elsewhere) => {
                 out.copy_from_slice(b);
@@ -310,7 +312,7 @@ impl JetSpace {
 
     /// `out = √a`: h h = a.
     fn root(&self, a: &[f64], out: &mut [f64]) {
-        out[0] = scalar::unary(Unary::Sqrt, a[0]);
+        out[0] = functions::unary(Unary::Sqrt, a[0]);
         for r in 1..self.len() {
             out[r] = (a[r] - sum(self.inner(r), out, out)) / (2.0 * out[0]);
         }
@@ -338,11 +340,11 @@ impl JetSpace {
 
     /// `out = a^b`. For a constant b = p: a E h = p h E a. Otherwise h = exp(b log a): E h = h E(b log a).
     fn power(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
-        let value = scalar::binary(Binary::Pow, a[0], b[0]);
+        let value = functions::binary(Binary::Pow, a[0], b[0]);
         let [first, second, third, fourth] = &mut scratch.slots;
         if !is_constant(b) {
             self.euler(a, first);
-            self.integrate(first, a, scalar::unary(Unary::Log, a[0]), second, third);
+            self.integrate(first, a, functions::unary(Unary::Log, a[0]), second, third);
             self.mul(b, second, fourth);
             return self.exponential(fourth, value, out, first);
         }
@@ -375,7 +377,7 @@ impl JetSpace {
 
     /// `out = atan2(a, b)`: (a² + b²) E h = b E a - a E b.
     fn atan2(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
-        let value = scalar::binary(Binary::Atan2, a[0], b[0]);
+        let value = functions::binary(Binary::Atan2, a[0], b[0]);
         if is_constant(a) && is_constant(b) {
             return self.constant(value, out);
         }

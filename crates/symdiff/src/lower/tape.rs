@@ -1,8 +1,8 @@
-//! Tapes: programs of three-address instructions over slots, in one line but for blocks that may be skipped.
+//! Tapes: programs of three-address instructions over slots, in one line but for regions that may be skipped.
 //!
-//! What stands in a block only matters where a condition is positive (or only where it is not). A block is skipped where no
-//! sample of the memory wants it. That changes no result: what is read outside a block is chosen, sample by sample, by
-//! [`Op::Select`] and its kin, which take nothing of a block from a sample that does not want it.
+//! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped where no
+//! sample of the memory wants it. That changes no result: what is read outside a region is chosen, sample by sample, by
+//! [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
 
 use crate::expr::{Binary, Expr, Unary};
 
@@ -69,16 +69,16 @@ pub struct Guard {
 
 /// A stretch of a tape that may be skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Block {
+pub(crate) struct Region {
     /// Slot of the condition.
     pub condition: u32,
     elsewhere: bool,
-    /// Part of the tape that follows the block.
+    /// Part of the tape that follows the region.
     end: usize,
 }
 
-impl Block {
-    /// Whether a sample with this condition wants the block.
+impl Region {
+    /// Whether a sample with this condition wants the region.
     #[inline(always)]
     pub fn wants(&self, condition: f64) -> bool {
         (condition <= 0.0) == self.elsewhere
@@ -93,7 +93,7 @@ impl Block {
     }
 }
 
-/// Instructions of one operation that stand together (one dispatch serves them all), or the beginning of a block.
+/// Instructions of one operation that stand together (one dispatch serves them all), or the beginning of a region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Piece {
     Run {
@@ -102,22 +102,22 @@ enum Piece {
         start: usize,
         end: usize,
     },
-    Block(Block),
+    Region(Region),
 }
 
-/// What an evaluator meets: instructions of one operation, [`Op::arity`] slots each, or the beginning of a block.
+/// What an evaluator meets: instructions of one operation, [`Op::arity`] slots each, or the beginning of a region.
 pub(crate) enum Part<'t> {
     Run(Op, &'t [u32]),
-    Block(&'t Block),
+    Region(&'t Region),
 }
 
 /// What a tape is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Item {
     Do(Op, Operands),
-    /// A block begins; its condition's slot, and whether it is wanted elsewhere.
+    /// A region begins; its condition's slot, and whether it is wanted elsewhere.
     Enter(u32, bool),
-    /// The innermost block ends.
+    /// The innermost region ends.
     Leave,
 }
 
@@ -135,7 +135,7 @@ impl Tape {
     /// A tape of these items in this order.
     ///
     /// # Panics
-    /// If a block ends that has not begun: a defect of the caller.
+    /// If a region ends that has not begun: a defect of the caller.
     pub(crate) fn new(items: impl IntoIterator<Item = Item>) -> Self {
         let mut tape = Self::default();
         let mut open = Vec::new();
@@ -157,14 +157,14 @@ impl Tape {
                 }
                 Item::Enter(condition, elsewhere) => {
                     open.push(tape.pieces.len());
-                    tape.pieces.push(Piece::Block(Block { condition, elsewhere, end: 0 }));
+                    tape.pieces.push(Piece::Region(Region { condition, elsewhere, end: 0 }));
                     tape.slots = tape.slots.max(condition as usize + 1);
                 }
                 Item::Leave => {
                     let end = tape.pieces.len();
                     let start = open.pop().expect("what ends has begun");
-                    if let Piece::Block(block) = &mut tape.pieces[start] {
-                        block.end = end;
+                    if let Piece::Region(region) = &mut tape.pieces[start] {
+                        region.end = end;
                     }
                     joined = false;
                 }
@@ -184,7 +184,7 @@ impl Tape {
         while let Some(part) = self.part(&mut place) {
             match part {
                 Part::Run(op, operands) => count += operands.len() / op.arity(),
-                Part::Block(block) => block.skip_unless(block.wants(if positive { 1.0 } else { 0.0 }), &mut place),
+                Part::Region(region) => region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut place),
             }
         }
         count
@@ -207,7 +207,7 @@ impl Tape {
         *place += 1;
         Some(match piece {
             Piece::Run { op, start, end } => Part::Run(*op, &self.operands[*start..*end]),
-            Piece::Block(block) => Part::Block(block),
+            Piece::Region(region) => Part::Region(region),
         })
     }
 }

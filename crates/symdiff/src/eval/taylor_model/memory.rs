@@ -1,9 +1,9 @@
 //! The evaluator over Taylor models: the same tapes, with a polynomial and its radius in every slot.
 
+use crate::eval::interval::Interval;
+use crate::eval::taylor_model::{ModelScratch, ModelSpace};
 use crate::expr::{Binary, Unary};
-use crate::interval::Interval;
-use crate::tape::{Op, Operands, Part, Tape};
-use crate::taylor_model::{ModelScratch, ModelSpace};
+use crate::lower::tape::{Op, Operands, Part, Tape};
 
 /// Memory of a program whose values are enclosed over a whole box of parameters.
 #[derive(Clone, Debug)]
@@ -51,10 +51,10 @@ impl<'s> ModelMemory<'s> {
         while let Some(part) = tape.part(&mut place) {
             let (op, operands) = match part {
                 Part::Run(op, operands) => (op, operands),
-                Part::Block(block) => {
+                Part::Region(region) => {
                     // Undecided is neither.
-                    let sign = space.sign(&values[block.condition as usize * size..][..size]);
-                    block.skip_unless(sign.is_none_or(|sign| block.wants(sign)), &mut place);
+                    let sign = space.sign(&values[region.condition as usize * size..][..size]);
+                    region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut place);
                     continue;
                 }
             };

@@ -143,7 +143,7 @@ impl std::fmt::Debug for Spline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::jet::{JetScratch, JetSpace};
+    use crate::eval::jet::{JetScratch, JetSpace};
     use crate::{Graph, Unary};
 
     fn sine() -> Spline {

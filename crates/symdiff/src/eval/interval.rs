@@ -17,7 +17,7 @@ pub struct Interval {
 /// From here on the multiple of π/2 has more bits than the reduction's exact products leave for it.
 const LARGE: f64 = 1e5;
 
-/// π/2 = the sum of three, the last between its neighbours (see [`sincos`](crate::sincos)).
+/// π/2 = the sum of three, the last between its neighbours (see [`sincos`](crate::eval::sincos)).
 const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA3_198A_2E03_7073];
 
 /// Terms of the series for |x| < 0.8; what is left out is below 0.8²¹/21! < 2e-22.

@@ -2,9 +2,9 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::schedule::Step;
+use super::tape::{Item, Op, Operands, Tape};
 use crate::expr::Expr;
-use crate::steps::Step;
-use crate::tape::{Item, Op, Operands, Tape};
 
 /// Slots by linear scan: a scratch slot is free again after its value's last use. A target is written at once
 /// unless this tape still reads what stands there; then it is copied at the end. `slot_of` tells where values stand that are
@@ -114,7 +114,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], slot_of: &FxHash
     Tape::new(items)
 }
 
-/// Values that take one slot after the other: what holds elsewhere, and then the choice that a block makes in its place.
+/// Values that take one slot after the other: what holds elsewhere, and then the choice that a region makes in its place.
 #[derive(Debug, Default)]
 struct Shared {
     next: FxHashMap<Expr, Expr>,

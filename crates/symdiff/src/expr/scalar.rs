@@ -6,8 +6,9 @@ use std::cell::{Ref, RefCell};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::derivative::SparseMatrix;
-use crate::expr::{Binary, Expr, Graph, Node, Unary};
+use super::derivative::SparseMatrix;
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node, Unary};
 
 /// A graph under construction, which any number of [`Scalar`]s add nodes to.
 #[derive(Debug, Default)]

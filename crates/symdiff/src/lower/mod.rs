@@ -4,14 +4,22 @@
 //! depends on. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
 //! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
 
+mod regions;
+mod registers;
+mod schedule;
+mod stages;
+pub(crate) mod tape;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::blocks::Blocks;
+pub use self::stages::{Input, Stages};
+pub use self::tape::{Guard, Op, Operands, Tape};
+
+use self::regions::Regions;
+use self::registers::allocate;
+use self::schedule::{Pending, in_regions};
+use self::stages::UNKNOWN;
 use crate::expr::{Binary, Choice, Expr, Graph, Node, Unary};
-use crate::slots::allocate;
-use crate::stages::{Input, Stages, UNKNOWN};
-use crate::steps::{Pending, in_blocks};
-use crate::tape::{Guard, Op, Tape};
 
 /// What a kernel computes: expressions, each with the slot that it must end up in or `None` for any.
 pub type Outputs = Vec<(Expr, Option<u32>)>;
@@ -175,22 +183,22 @@ impl Lowering<'_> {
         order
     }
 
-    /// One tape: fused, in blocks, grouped, with slots. `wanted` are the nodes that are used outside, some under a guard only.
+    /// One tape: fused, in regions, grouped, with slots. `wanted` are the nodes that are used outside, some under a guard only.
     fn emit(
         &self,
         body: &[Expr],
         wanted: impl Iterator<Item = (Expr, Option<Guard>)>,
         targets: &[(Expr, u32)],
     ) -> Tape {
-        let blocks = Blocks::new(self.graph, body, wanted);
+        let regions = Regions::new(self.graph, body, wanted);
         let wanted: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
-        let pending = self.fuse(body, &wanted, &blocks);
-        allocate(&in_blocks(pending, &blocks), targets, &self.slot_of, self.next)
+        let pending = self.fuse(body, &wanted, &regions);
+        allocate(&in_regions(pending, &regions), targets, &self.slot_of, self.next)
     }
 
     /// Nodes → operations: a product that a single sum needs becomes part of it, and sine and cosine of one argument
     /// are found together.
-    fn fuse(&self, body: &[Expr], wanted: &FxHashSet<Expr>, blocks: &Blocks) -> Vec<Pending> {
+    fn fuse(&self, body: &[Expr], wanted: &FxHashSet<Expr>, regions: &Regions) -> Vec<Pending> {
         let inside: FxHashSet<Expr> = body.iter().copied().collect();
         let mut uses: FxHashMap<Expr, usize> = FxHashMap::default();
         let mut circular: FxHashMap<Expr, [Option<Expr>; 2]> = FxHashMap::default();
@@ -213,23 +221,23 @@ impl Lowering<'_> {
         let mut absorbed = FxHashSet::default();
         let mut pending: Vec<Pending> = Vec::with_capacity(body.len());
         for &expr in body {
-            let block = blocks.of(expr);
+            let region = regions.of(expr);
             if let Node::Binary(Binary::Add, x, y) = self.graph.node(expr)
                 && let Some(choice) = self.graph.choice(x, y)
             {
                 let Choice { condition, halves: [(wanted, a), (elsewhere, b)] } = choice;
-                match blocks.inner(block, Guard { condition, elsewhere: false }) {
-                    // What holds elsewhere is put down first; the block, where it is not skipped, chooses.
+                match regions.inner(region, Guard { condition, elsewhere: false }) {
+                    // What holds elsewhere is put down first; the region, where it is not skipped, chooses.
                     Some(inner) if only_here(wanted) && only_here(elsewhere) => {
                         absorbed.extend([wanted, elsewhere]);
-                        pending.push(Pending::new(Op::Copy, [b; 3], 1, elsewhere).within(block));
+                        pending.push(Pending::new(Op::Copy, [b; 3], 1, elsewhere).within(region));
                         pending.push(Pending::new(Op::Select, [condition, a, elsewhere], 3, expr).within(inner));
                     }
                     _ => {
                         // A half may be needed as such, or have been computed at an earlier stage.
                         let [a, b] = choice.halves.map(|(half, value)| if only_here(half) { value } else { half });
                         absorbed.extend([wanted, elsewhere].into_iter().filter(|&half| only_here(half)));
-                        pending.push(Pending::new(Op::Select, [condition, a, b], 3, expr).within(block));
+                        pending.push(Pending::new(Op::Select, [condition, a, b], 3, expr).within(region));
                     }
                 }
                 continue;
@@ -250,13 +258,13 @@ impl Lowering<'_> {
                 },
                 Node::Binary(function, a, b) => Pending::new(Op::Binary(function), [a, b, a], 2, expr),
                 Node::Unary(Unary::Sin | Unary::Cos, a) => match circular.remove(&a) {
-                    Some(writes) => Pending { op: Op::SinCos, reads: [a; 3], count: 1, writes, block },
+                    Some(writes) => Pending { op: Op::SinCos, reads: [a; 3], count: 1, writes, region },
                     None => continue,
                 },
                 Node::Unary(function, a) => Pending::new(Op::Unary(function), [a; 3], 1, expr),
                 Node::Constant(_) | Node::Symbol(_) => continue,
             };
-            pending.push(instruction.within(block));
+            pending.push(instruction.within(region));
         }
         pending.retain(|pending| pending.op == Op::Copy || !pending.written().any(|expr| absorbed.contains(&expr)));
         pending
@@ -266,7 +274,7 @@ impl Lowering<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::Tile;
+    use crate::eval::tile::Tile;
 
     #[test]
     fn each_value_is_computed_at_its_stage() {

@@ -1,7 +1,7 @@
 //! What each function means for one `f64`: the single definition that folding, direct evaluation and tapes share.
 
+use crate::eval::sincos::sin_cos;
 use crate::expr::{Binary, Unary};
-use crate::sincos::sin_cos;
 
 /// `function(a)`. Transcendental functions are `libm`'s, so that every platform gives the same bits.
 #[inline(always)]

@@ -1,10 +1,10 @@
-//! A tape's instructions before they have slots, and their order: block by block, equal operations together.
+//! A tape's instructions before they have slots, and their order: region by region, equal operations together.
 
 use rustc_hash::FxHashMap;
 
-use crate::blocks::{BlockId, Blocks, OUTSIDE, order};
+use super::regions::{OUTSIDE, RegionId, Regions, order};
+use super::tape::{Guard, Op};
 use crate::expr::Expr;
-use crate::tape::{Guard, Op};
 
 /// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit keeps what
 /// is alive within the first-level cache.
@@ -19,16 +19,16 @@ pub(crate) struct Pending {
     pub count: usize,
     /// Result, and for `SinCos` the sine and the cosine, of which one may not be wanted.
     pub writes: [Option<Expr>; 2],
-    pub block: BlockId,
+    pub region: RegionId,
 }
 
 impl Pending {
     pub fn new(op: Op, reads: [Expr; 3], count: usize, write: Expr) -> Self {
-        Self { op, reads, count, writes: [Some(write), None], block: OUTSIDE }
+        Self { op, reads, count, writes: [Some(write), None], region: OUTSIDE }
     }
 
-    pub fn within(self, block: BlockId) -> Self {
-        Self { block, ..self }
+    pub fn within(self, region: RegionId) -> Self {
+        Self { region, ..self }
     }
 
     pub fn read(&self) -> impl Iterator<Item = Expr> {
@@ -58,9 +58,9 @@ impl Step {
     }
 }
 
-/// Brings together what belongs to one block, and equal operations within it.
-pub(crate) fn in_blocks(pending: Vec<Pending>, blocks: &Blocks) -> Vec<Step> {
-    if blocks.is_empty() {
+/// Brings together what belongs to one region, and equal operations within it.
+pub(crate) fn in_regions(pending: Vec<Pending>, regions: &Regions) -> Vec<Step> {
+    if regions.is_empty() {
         return group(pending).into_iter().map(Step::Do).collect();
     }
     let writers = pending.iter().enumerate();
@@ -68,20 +68,20 @@ pub(crate) fn in_blocks(pending: Vec<Pending>, blocks: &Blocks) -> Vec<Step> {
         writers.flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
     let needs = |place: usize| {
         let one: &Pending = &pending[place];
-        let needed = one.read().chain(blocks.conditions(one.block));
+        let needed = one.read().chain(regions.conditions(one.region));
         needed.filter_map(|expr| writer.get(&expr).copied()).collect()
     };
-    let order = order(blocks, pending.len(), |place| pending[place].block, needs);
+    let order = order(regions, pending.len(), |place| pending[place].region, needs);
     let mut steps = Vec::with_capacity(pending.len());
     let mut current = OUTSIDE;
-    let mut go_to = |steps: &mut Vec<Step>, block: BlockId| {
-        let (left, entered) = blocks.way(current, block);
+    let mut go_to = |steps: &mut Vec<Step>, region: RegionId| {
+        let (left, entered) = regions.way(current, region);
         steps.extend((0..left).map(|_| Step::Leave));
-        steps.extend(entered.into_iter().filter_map(|block| blocks.guard(block)).map(Step::Enter));
-        current = block;
+        steps.extend(entered.into_iter().filter_map(|region| regions.guard(region)).map(Step::Enter));
+        current = region;
     };
-    for together in order.chunk_by(|&a, &b| pending[a].block == pending[b].block) {
-        go_to(&mut steps, pending[together[0]].block);
+    for together in order.chunk_by(|&a, &b| pending[a].region == pending[b].region) {
+        go_to(&mut steps, pending[together[0]].region);
         steps.extend(group(together.iter().map(|&place| pending[place].clone()).collect()).into_iter().map(Step::Do));
     }
     go_to(&mut steps, OUTSIDE);

@@ -3,11 +3,11 @@
 //! One dispatch serves all instructions of a run and all lanes of the tile. Every lane sees the same IEEE operations in the same order
 //! whatever the width and the instruction set: Rust contracts nothing, and sine and cosine are our own.
 
+use crate::eval::functions;
+use crate::eval::sincos;
+use crate::eval::vectorised::{InstructionSet, Vectorise};
 use crate::expr::{Binary, Unary};
-use crate::scalar;
-use crate::sincos;
-use crate::tape::{Block, Op, Operands, Part, Tape};
-use crate::vectorised::{InstructionSet, Vectorise};
+use crate::lower::tape::{Op, Operands, Part, Region, Tape};
 
 /// Widths that a tile can have.
 pub const WIDTHS: [usize; 6] = [1, 4, 8, 16, 32, 64];
@@ -129,9 +129,9 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
     while let Some(part) = tape.part(&mut place) {
         let (op, operands) = match part {
             Part::Run(op, operands) => (op, operands),
-            Part::Block(block) => {
+            Part::Region(region) => {
                 // SAFETY: the caller's.
-                block.skip_unless(unsafe { wanted::<W>(block, memory) }, &mut place);
+                region.skip_unless(unsafe { wanted::<W>(region, memory) }, &mut place);
                 continue;
             }
         };
@@ -145,17 +145,19 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
                 Op::Binary(Binary::Add) => each::<W, C, 3>(operands, memory, |a, b, _| a + b),
                 Op::Binary(Binary::Sub) => each::<W, C, 3>(operands, memory, |a, b, _| a - b),
                 Op::Binary(Binary::Mul) => each::<W, C, 3>(operands, memory, |a, b, _| a * b),
-                Op::Select => each::<W, C, 4>(operands, memory, scalar::select),
-                Op::Binary(Binary::Where) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::select(a, b, 0.0)),
-                Op::Binary(Binary::Elsewhere) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::select(a, 0.0, b)),
-                Op::Binary(Binary::Min) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::min(a, b)),
-                Op::Binary(Binary::Max) => each::<W, C, 3>(operands, memory, |a, b, _| scalar::max(a, b)),
+                Op::Select => each::<W, C, 4>(operands, memory, functions::select),
+                Op::Binary(Binary::Where) => each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, b, 0.0)),
+                Op::Binary(Binary::Elsewhere) => {
+                    each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, 0.0, b))
+                }
+                Op::Binary(Binary::Min) => each::<W, C, 3>(operands, memory, |a, b, _| functions::min(a, b)),
+                Op::Binary(Binary::Max) => each::<W, C, 3>(operands, memory, |a, b, _| functions::max(a, b)),
                 Op::Binary(Binary::Div) => each::<W, C, 3>(operands, memory, |a, b, _| a / b),
                 Op::Unary(Unary::Neg) => each::<W, C, 2>(operands, memory, |a, _, _| -a),
                 Op::Unary(Unary::Abs) => each::<W, C, 2>(operands, memory, |a, _, _| a.abs()),
                 Op::Unary(Unary::Sqrt) => each::<W, C, 2>(operands, memory, |a, _, _| a.sqrt()),
-                Op::Unary(function) => each::<W, 1, 2>(operands, memory, |a, _, _| scalar::unary(function, a)),
-                Op::Binary(function) => each::<W, 1, 3>(operands, memory, |a, b, _| scalar::binary(function, a, b)),
+                Op::Unary(function) => each::<W, 1, 2>(operands, memory, |a, _, _| functions::unary(function, a)),
+                Op::Binary(function) => each::<W, 1, 3>(operands, memory, |a, b, _| functions::binary(function, a, b)),
                 Op::SinCos => sin_cos::<W, C>(operands, memory),
             }
         }
@@ -188,12 +190,12 @@ unsafe fn each<const W: usize, const C: usize, const A: usize>(
     }
 }
 
-/// Whether any lane wants a block.
+/// Whether any lane wants a region.
 #[inline(always)]
-unsafe fn wanted<const W: usize>(block: &Block, memory: *mut f64) -> bool {
+unsafe fn wanted<const W: usize>(region: &Region, memory: *mut f64) -> bool {
     // SAFETY: slots are in range (the caller's promise).
-    let condition = unsafe { memory.add(block.condition as usize * W).cast::<[f64; W]>().read() };
-    condition.iter().fold(false, |wanted, &condition| wanted | block.wants(condition))
+    let condition = unsafe { memory.add(region.condition as usize * W).cast::<[f64; W]>().read() };
+    condition.iter().fold(false, |wanted, &condition| wanted | region.wants(condition))
 }
 
 /// `d = sin a`, `b = cos a` for each instruction and lane.

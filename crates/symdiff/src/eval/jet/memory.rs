@@ -1,7 +1,7 @@
 //! The evaluator over jets: the same tapes, with a truncated polynomial in every slot.
 
-use crate::jet::{JetScratch, JetSpace};
-use crate::tape::{Op, Operands, Part, Tape};
+use crate::eval::jet::{JetScratch, JetSpace};
+use crate::lower::tape::{Op, Operands, Part, Tape};
 
 /// Memory of a program for one sample whose values are polynomials in the uncertain parameters.
 #[derive(Clone, Debug)]
@@ -55,9 +55,9 @@ impl<'s> JetMemory<'s> {
         while let Some(part) = tape.part(&mut place) {
             let (op, operands) = match part {
                 Part::Run(op, operands) => (op, operands),
-                Part::Block(block) => {
-                    let condition = values[block.condition as usize * length];
-                    block.skip_unless(block.wants(condition), &mut place);
+                Part::Region(region) => {
+                    let condition = values[region.condition as usize * length];
+                    region.skip_unless(region.wants(condition), &mut place);
                     continue;
                 }
             };

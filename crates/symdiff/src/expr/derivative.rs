@@ -2,7 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::expr::{Binary, Expr, Graph, Node, Unary};
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node, Unary};
 
 /// A matrix of expressions of which most are zero: its nonzero entries by row, columns ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -12,7 +12,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::expr::{Binary, Expr, Graph, Node, Unary};
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node, Unary};
 
 /// Degree of a polynomial that is still seen to be one.
 const MOST: usize = 12;
