@@ -16,6 +16,7 @@ mod convergence;
 mod effects_beam;
 mod effects_clearance;
 mod effects_contact;
+mod belt;
 mod effects_drives;
 mod effects_friction;
 mod far;

@@ -20,6 +20,7 @@ macro_rules! registry {
             backlash::Backlash,
             preload::Preload,
             beam::Beam,
+            belt::Belt,
         }
     };
 }
