@@ -1,79 +1,73 @@
 //! The forces of a belt: see `elements::effects::belt` for the equations.
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Expr, Scalar};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::assemble::space;
+use crate::assemble::mechanism::Mechanism;
 use crate::model::belt::Run;
-use crate::model::{Belt, Coordinate, JointCoordinate, Referent, TimeOrder, Turning};
+use crate::model::{Belt, Coordinate, JointCoordinate, OnJoint, Referent, TimeOrder, Turning};
+use crate::multibody::Vector;
 
 use super::Loads;
 use super::positive_part::{PositivePart, clipped};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, belt: &Belt) -> Result<(), BuildError> {
-    let number = |formula| m.formula(g, formula, Context::Motion);
-    let radius = [number(&belt.first_radius)?, number(&belt.second_radius)?];
-    let (stiffness, damping) = (number(&belt.stiffness)?, number(&belt.damping)?);
-    let (preload, corner) = (number(&belt.preload)?, number(&belt.transition)?);
+    let radius = [m.value(g, &belt.first_radius)?, m.value(g, &belt.second_radius)?];
+    let (stiffness, damping) = (m.value(g, &belt.stiffness)?, m.value(g, &belt.damping)?);
+    let (preload, corner) = (m.value(g, &belt.preload)?, m.value(g, &belt.transition)?);
     // −σ r₂
     let opposite = match belt.run {
-        Run::Open => g.neg(radius[1]),
+        Run::Open => -radius[1],
         Run::Crossed => radius[1],
     };
-    let run = |order: TimeOrder| {
-        let [first, second] = belt.between.map(|turning| turned(g, m, turning, order));
-        g.add(g.mul(radius[0], first), g.mul(opposite, second))
-    };
-    let shift = g.sub(run(TimeOrder::Position), g.mul(opposite, number(&belt.offset)?));
-    let rate = run(TimeOrder::Velocity);
+    let [first, second] = belt.between.map(|pulley| angle_and_rate(g, m, pulley));
+    let shift = radius[0] * first[0] + opposite * (second[0] - m.value(g, &belt.offset)?);
+    let rate = radius[0] * first[1] + opposite * second[1];
 
-    let mut parting = g.div(preload, stiffness);
-    let mut parting_rate = g.constant(0.0);
+    let mut parting = preload / stiffness;
+    let mut parting_rate = g.number(0.0);
     let mut line = None;
     if let (Some(centers), Some(distance)) = (belt.centers, &belt.distance) {
         let [a, b] = centers.map(|point| m.point(g, point));
-        let offset = space::sub(g, b.position, a.position);
-        let across = g.add(radius[0], opposite);
-        let across = g.mul(across, across);
-        let strand = g.sqrt(g.sub(space::dot(g, offset, offset), across));
-        let distance = number(distance)?;
-        let original = g.sqrt(g.sub(g.mul(distance, distance), across));
-        parting = g.add(parting, g.sub(strand, original));
+        let offset = Vector::of(g, b.position) - Vector::of(g, a.position);
+        let across = (radius[0] + opposite) * (radius[0] + opposite);
+        let strand = (offset.dot(offset) - across).sqrt();
+        let distance = m.value(g, distance)?;
+        parting += strand - (distance * distance - across).sqrt();
         // ∂L/∂r_B
-        let direction = offset.map(|component| g.div(component, strand));
-        parting_rate = space::dot(g, direction, space::sub(g, b.velocity, a.velocity));
+        let direction = offset / strand;
+        parting_rate = direction.dot(Vector::of(g, b.velocity) - Vector::of(g, a.velocity));
         line = Some((a, b, direction));
     }
-    let strand = |stretch: Expr, rate: Expr| {
-        let taut = PositivePart::of(g, stretch, corner);
-        let elastic = g.mul(stiffness, taut.value);
-        let viscous = g.mul(g.mul(damping, taut.slope), rate);
-        (clipped(g, g.add(elastic, viscous)), g.mul(stiffness, taut.integral))
+    // The longer strand is taut.
+    let taut = parting + shift.abs() + corner;
+    loads.only_where(taut.expr());
+    let strand = |stretch, rate| {
+        let taut = PositivePart::of(stretch, corner);
+        (clipped(stiffness * taut.value + damping * taut.slope * rate), stiffness * taut.integral)
     };
-    let (first, first_energy) = strand(g.add(parting, shift), g.add(parting_rate, rate));
-    let (second, second_energy) = strand(g.sub(parting, shift), g.sub(parting_rate, rate));
+    let (first, first_energy) = strand(parting + shift, parting_rate + rate);
+    let (second, second_energy) = strand(parting - shift, parting_rate - rate);
 
-    let carried = g.sub(second, first);
-    for (turning, arm) in belt.between.into_iter().zip([radius[0], opposite]) {
-        add_torque(g, m, loads, turning, g.mul(arm, carried))?;
+    let carried = second - first;
+    for (pulley, arm) in belt.between.into_iter().zip([radius[0], opposite]) {
+        add_torque(g, m, loads, pulley, (arm * carried).expr())?;
     }
     if let Some((a, b, direction)) = line {
-        let pull = space::scale(g, g.add(first, second), direction);
-        loads.add_force_pair(g, &b, &a, pull);
+        loads.add_force_pair(g, &b, &a, ((first + second) * direction).exprs());
     }
-    let coefficients = [stiffness, preload, corner, radius[0], radius[1]];
-    loads.add_potential(g, m, &coefficients, g.add(first_energy, second_energy));
-    loads.measure(Belt::FIRST_TENSION, first);
-    loads.measure(Belt::SECOND_TENSION, second);
+    let coefficients = [stiffness, preload, corner, radius[0], radius[1]].map(Scalar::expr);
+    loads.add_potential(g, m, &coefficients, (first_energy + second_energy).only_where(taut).expr());
+    loads.measure(Belt::FIRST_TENSION, first.only_where(taut).expr());
+    loads.measure(Belt::SECOND_TENSION, second.only_where(taut).expr());
     Ok(())
 }
 
-/// An angle, or its rate.
-fn turned(g: &Builder, m: &Mechanism, turning: Turning, order: TimeOrder) -> Expr {
-    match turning {
-        Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
-        Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),
+fn angle_and_rate<'g>(g: &'g Builder, m: &Mechanism, pulley: Turning) -> [Scalar<'g>; 2] {
+    match pulley {
+        Turning::Body(body) => [TimeOrder::Position, TimeOrder::Velocity]
+            .map(|order| g.scalar(m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }))),
+        Turning::Joint(joint) => m.coordinate_and_rate(g, OnJoint { joint, coordinate: JointCoordinate::Angle }),
     }
 }
 

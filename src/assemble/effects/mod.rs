@@ -12,15 +12,15 @@ mod positive_part;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Expr, Formula, Scalar};
 
 use crate::elements::effects::registry;
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint};
+use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, TimeOrder};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints;
-use super::mechanism::Mechanism;
+use super::mechanism::{Context, Mechanism};
 use super::space::{self, Vector};
 
 /// The modules of the effects, and the dispatch to them.
@@ -38,6 +38,23 @@ macro_rules! physics {
 }
 
 registry!(physics);
+impl Mechanism<'_> {
+    /// A formula of parameters, t and the motion, to compute with.
+    fn value<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
+        Ok(g.scalar(self.formula(g, formula, Context::Motion)?))
+    }
+
+    /// A formula of parameters and t, to compute with.
+    fn given<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
+        Ok(g.scalar(self.formula(g, formula, Context::Time)?))
+    }
+
+    /// A joint's coordinate and its rate, to compute with.
+    fn coordinate_and_rate<'g>(&self, g: &'g Builder, on: OnJoint) -> [Scalar<'g>; 2] {
+        let of = |order| g.scalar(self.joint_coordinate(g, on.joint, on.coordinate, order));
+        [of(TimeOrder::Position), of(TimeOrder::Velocity)]
+    }
+}
 
 /// What is added to: a component of a body's force or torque (0 to 5), or a joint's own coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
