@@ -90,7 +90,7 @@ impl Package {
                 if name == "tests" {
                     continue;
                 }
-                let module = [&within[..], &[name.clone()]].concat();
+                let module = [&within[..], std::slice::from_ref(&name)].concat();
                 if path.is_dir() {
                     folders.push((path, module));
                 } else if path.extension().is_some_and(|extension| extension == "rs") {
@@ -162,7 +162,10 @@ fn expand(text: &str) -> (Vec<Module>, usize) {
         let Some(rest) = text[word..].strip_prefix("::") else { return (vec![vec![own]], word) };
         let (inner, taken) = expand(rest);
         let inner: Vec<Module> = if inner.is_empty() { vec![Module::new()] } else { inner };
-        return (inner.into_iter().map(|path| [&[own.clone()], &path[..]].concat()).collect(), word + 2 + taken);
+        return (
+            inner.into_iter().map(|path| [std::slice::from_ref(&own), &path[..]].concat()).collect(),
+            word + 2 + taken,
+        );
     }
     let (mut paths, mut at) = (Vec::new(), 1);
     if !text.starts_with('{') {
