@@ -163,11 +163,11 @@ pub(super) struct CheckArgs {
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
     /// Model file.
-    #[arg(value_name = "MODEL", required_unless_present_any = ["effects", "joints"])]
+    #[arg(value_name = "MODEL", required_unless_present_any = ["effects", "joints", "methods"])]
     pub model: Option<PathBuf>,
 
     /// A scene of the model, instead of the model itself.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["effects", "joints"])]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["effects", "joints", "methods"])]
     pub scene: Option<String>,
 
     /// Instead of a model: every effect that there is, with its keys, units, formula and source.
@@ -177,6 +177,10 @@ pub(super) struct ExplainArgs {
     /// Instead of a model: every joint that there is, with its keys, units, equations and the signs of its reaction.
     #[arg(long, conflicts_with_all = ["model", "effects"])]
     pub joints: bool,
+
+    /// Instead of a model: every bounding method that there is, with its keys and source.
+    #[arg(long, conflicts_with_all = ["model", "effects", "joints"])]
+    pub methods: bool,
 
     /// Text for people, or a JSON object.
     #[arg(long, value_enum, default_value_t = Format::Text)]

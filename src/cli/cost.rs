@@ -62,7 +62,7 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     }
     text += &format!("{}\n", trajectories(study).render(2));
     text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
-    text += match study.is_certain() {
+    text += match study.is_deterministic() {
         false => {
             "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n"
         }
@@ -93,7 +93,7 @@ fn bounds(study: &CostStudy) -> Table<8> {
         ("order", Align::Right),
         ("points", Align::Right),
         ("step", Align::Right),
-        ("solves", Align::Right),
+        ("simulations", Align::Right),
         ("seconds", Align::Right),
         ("too wide", Align::Right),
         ("too narrow", Align::Right),
@@ -107,7 +107,7 @@ fn bounds(study: &CostStudy) -> Table<8> {
             whole(point.order),
             whole(point.points),
             step(point.step),
-            point.solves.to_string(),
+            point.simulations.to_string(),
             format!("{:.1e}", point.seconds),
             error(over_width, own),
             error(under_coverage, own),
@@ -194,8 +194,9 @@ fn choice(study: &CostStudy) -> String {
             }
             Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
         };
-        let (label, step, solves) = (point.method.label(), step(point.step), count(point.solves, "solve", "solves"));
-        format!("{label}{count_of}, steps of {step}: {solves} in {}, {off}", seconds(point.seconds))
+        let (label, step) = (point.method.label(), step(point.step));
+        let simulations = count(point.simulations, "simulation", "simulations");
+        format!("{label}{count_of}, steps of {step}: {simulations} in {}, {off}", seconds(point.seconds))
     };
     match (study.cheapest(), study.nearest()) {
         _ if own >= wanted => {
@@ -218,7 +219,7 @@ mod tests {
         let point = |method, order, points, seconds, over_width, under_coverage| CostPoint {
             order,
             points,
-            solves: 36,
+            simulations: 36,
             steps: 2000,
             seconds,
             deviation: Deviation::Bounds { over_width, under_coverage },
@@ -265,9 +266,9 @@ mod tests {
         insta::assert_snapshot!(plain(&text), @r"
         crank: what accuracy costs
 
-          bounds                 order  points    step  solves  seconds  too wide  too narrow
-          * Chebyshev, composed      5          1e-3 s      36   2.5e-2    4.0e-4    ≤ 1.0e-5
-            Scan                             5  1e-3 s      36   1.0e-2         0      2.0e-3
+          bounds                 order  points    step  simulations  seconds  too wide  too narrow
+          * Chebyshev, composed      5          1e-3 s           36   2.5e-2    4.0e-4    ≤ 1.0e-5
+            Scan                             5  1e-3 s           36   1.0e-2         0      2.0e-3
 
           nominal trajectory        step  steps  seconds   error
             HHT-I3, α = −0.1  3.333e-4 s   6000   2.0e-3  2.0e-5
@@ -277,7 +278,7 @@ mod tests {
           reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
           left out: Scan: 3 of its settings
 
-        The cheapest within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        The cheapest within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
           results/crank: cost.csv, cost.svg
         ");
     }
@@ -286,8 +287,8 @@ mod tests {
     fn the_sentence_says_when_nothing_can_be_chosen() {
         let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
         insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
-        The cheapest within 3e-3 is Scan of 5 points a parameter, steps of 1e-3 s: 36 solves in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
-        No setting tried is within 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 solves in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        The cheapest within 3e-3 is Scan of 5 points a parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
+        No setting tried is within 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
         Nothing can be said of 1e-5: the reference itself is only known to 1.0e-5.
         ");
     }

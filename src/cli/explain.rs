@@ -1,16 +1,23 @@
-//! `mbint explain`: what a model is compiled to, or which effects and joints there are.
+//! `mbint explain`: what a model is compiled to, or which effects, joints and bounding methods there are.
 
 use super::args::{ExplainArgs, Format};
 use super::check::to_json;
 use super::console::{BOLD, Console, count};
 use super::effects::adds;
 use super::table::{Align, Table};
-use super::{Failure, Status, effects, joints, load};
+use super::{Failure, Status, effects, joints, load, methods};
 use crate::elements::JointKind;
 use crate::results::{Decision, Explanation};
 use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
+    if args.methods {
+        console.print(&match args.format {
+            Format::Text => methods::text(),
+            Format::Json => to_json(&methods::all())?,
+        })?;
+        return Ok(Status::Done);
+    }
     let Some(path) = &args.model else {
         if args.joints {
             console.print(&match args.format {

@@ -13,6 +13,7 @@ mod explain;
 mod interrupt;
 mod joints;
 mod load;
+mod methods;
 mod new;
 mod progress;
 mod run;

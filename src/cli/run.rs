@@ -252,7 +252,7 @@ fn errors(errors: &[ErrorSummary]) -> String {
     const MOST: usize = 24;
     let mut table = Table::new([
         ("bounds", Align::Left),
-        ("widest", Align::Right),
+        ("largest width", Align::Right),
         ("error", Align::Right),
         ("of the surrogate", Align::Right),
         ("of the steps", Align::Right),
@@ -281,7 +281,7 @@ fn contributions(contributions: &[ContributionSummary]) -> String {
         let shares: Vec<String> = of_output.iter().filter(varies).take(MOST).map(share).collect();
         // One parameter alone is no news.
         if of_output.len() > 1 && !shares.is_empty() {
-            text += &format!("  {}: {} of its variance\n", of_output[0].output, shares.join(", "));
+            text += &format!("  tolerances that matter for {}: {}\n", of_output[0].output, shares.join(", "));
         }
     }
     if text.is_empty() { text } else { text + "\n" }
@@ -298,10 +298,13 @@ fn unresolved(summary: &Summary) -> Option<String> {
     let total = bands.len();
     bands.sort_by(|a, b| a.0.total_cmp(&b.0));
     bands.truncate(MOST);
-    let named: Vec<String> = bands.iter().map(|(time, band)| format!("{band} from {time} s")).collect();
+    let named = |(place, (time, band)): (usize, &(f64, String))| {
+        format!("of `{band}`{} from {time} s", if place == 0 { " are unreliable" } else { "" })
+    };
+    let named: Vec<String> = bands.iter().enumerate().map(named).collect();
     let more = if total > MOST { format!(" and {} more", total - MOST) } else { String::new() };
-    let help = "their errors are too large there: see the `.error` columns";
-    (total > 0).then(|| format!("bounds are not resolved: {}{more}; {help}", named.join(", ")))
+    let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
+    (total > 0).then(|| format!("bounds {}{more}: {help}", named.join(", ")))
 }
 
 /// Singular configurations, and outputs that no equilibrium determines.
@@ -364,7 +367,7 @@ fn left_out(bounds: &Bounds, summary: &Summary) -> Option<String> {
 fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     let mut table = Table::new([
         ("method", Align::Left),
-        ("solves", Align::Right),
+        ("simulations", Align::Right),
         ("steps", Align::Right),
         ("Newton iterations", Align::Right),
         ("seconds", Align::Right),
@@ -372,7 +375,7 @@ fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
     for method in &summary.methods {
         table.row([
             method.method.clone(),
-            method.solves.to_string(),
+            method.simulations.to_string(),
             method.steps.to_string(),
             method.newton_iterations.to_string(),
             method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
@@ -404,11 +407,11 @@ mod tests {
 
     #[test]
     fn the_overview_is_aligned() {
-        let method = |method: &str, solves, seconds, rank_revealing_solves| MethodSummary {
+        let method = |method: &str, simulations, seconds, rank_revealing_solves| MethodSummary {
             method: method.into(),
-            solves,
-            steps: 2000 * solves,
-            newton_iterations: 4013 * solves as u64,
+            simulations,
+            steps: 2000 * simulations,
+            newton_iterations: 4013 * simulations as u64,
             rank_revealing_solves,
             order: None,
             boxes: None,
@@ -449,12 +452,12 @@ mod tests {
         insta::assert_snapshot!(plain, @r"
         slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
 
-          method   solves    steps  Newton iterations  seconds
-          nominal       1     2000               4013    0.004
-          scan        900  1800000            3611700        –
+          method   simulations    steps  Newton iterations  seconds
+          nominal            1     2000               4013    0.004
+          scan             900  1800000            3611700        –
 
-          bounds    widest    error  of the surrogate  of the steps
-          x3.scan  2.00e-1  2.00e-3           unknown       1.50e-3
+          bounds   largest width    error  of the surrogate  of the steps
+          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3
 
           scan: 12 steps through a singular matrix, by the rank-revealing solve
           results/slider_crank: bounds.csv, x3.svg

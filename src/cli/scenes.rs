@@ -99,7 +99,7 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         ("coordinates", Align::Right),
         ("seconds", Align::Right),
         ("bounds", Align::Left),
-        ("widest", Align::Right),
+        ("largest width", Align::Right),
         ("error", Align::Right),
     ]);
     for (scene, seconds, summary) in scenes {

@@ -3,9 +3,9 @@
 //! - `welds`: bodies that are welded together become one, unless an output asks for the weld's reaction;
 //! - `couplings`: what hangs together; the ground does not connect;
 //! - what no output depends on is left out;
-//! - what hangs together is an island, a model of its own (`extract`), with those of the uncertain parameters that it names.
+//! - what hangs together is a subsystem, a model of its own (`extract`), with those of the uncertain parameters that it names.
 //!
-//! A model of one island, of which nothing is left out, is itself.
+//! A model of one subsystem, of which nothing is left out, is itself.
 
 mod couplings;
 mod extract;
@@ -28,7 +28,7 @@ pub struct Choices {
     pub merge: bool,
     /// Whether parts that no output depends on are left out.
     pub prune: bool,
-    /// Whether islands are taken apart.
+    /// Whether subsystems are taken apart.
     pub part: bool,
 }
 
@@ -40,7 +40,7 @@ impl Default for Choices {
 
 /// A part of a model that moves on its own.
 #[derive(Clone, Debug)]
-pub struct Island {
+pub struct Subsystem {
     /// A model of its own, with the whole one's name.
     pub description: Description,
     /// Its outputs, by their numbers in the whole model.
@@ -53,7 +53,7 @@ pub struct Island {
 #[derive(Clone, Debug)]
 pub struct Reduction {
     /// In the order of their first outputs.
-    pub islands: Vec<Island>,
+    pub subsystems: Vec<Subsystem>,
     /// Parts that no output depends on, by kind and name: `body pendulum`.
     pub left_out: Vec<String>,
     /// Fixed joints of what is simulated: their names, and why their bodies stay two if they do.
@@ -72,24 +72,24 @@ impl Reduction {
             return Self::of(description, Choices { merge: false, ..choices });
         }
         let sets = sets_of_outputs(&mut couplings, &movable, choices);
-        let mut islands: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
+        let mut subsystems: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
         for (output, set) in sets.into_iter().enumerate() {
-            match islands.iter_mut().find(|(known, _)| *known == set) {
+            match subsystems.iter_mut().find(|(known, _)| *known == set) {
                 Some((_, outputs)) => outputs.push(output),
-                None => islands.push((set, vec![output])),
+                None => subsystems.push((set, vec![output])),
             }
         }
-        if islands.is_empty() {
+        if subsystems.is_empty() {
             // A robot without joints has no outputs.
-            islands.push((movable.first().map(|&part| couplings.set(part)), Vec::new()));
+            subsystems.push((movable.first().map(|&part| couplings.set(part)), Vec::new()));
         }
-        let kept: HashSet<usize> = islands.iter().filter_map(|(set, _)| *set).collect();
+        let kept: HashSet<usize> = subsystems.iter().filter_map(|(set, _)| *set).collect();
         let left_out: Vec<Part> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
-        let islands = islands.into_iter().map(|(set, outputs)| {
+        let subsystems = subsystems.into_iter().map(|(set, outputs)| {
             let (description, parameters) = extract::extract(&whole, &mut couplings, set, &outputs);
-            Island { description, outputs, parameters }
+            Subsystem { description, outputs, parameters }
         });
-        let islands = islands.collect();
+        let subsystems = subsystems.collect();
         let name = |part: &Part| match *part {
             Part::Body(body) => format!("body {}", whole.bodies[body].name),
             Part::Joint(joint) => format!("joint {}", whole.joints[joint].name),
@@ -100,14 +100,14 @@ impl Reduction {
         Self {
             left_out: left_out.iter().map(name).collect(),
             welds: welds.map(|weld| (whole.joints[weld.joint].name.clone(), weld.obstacle)).collect(),
-            islands,
+            subsystems,
         }
     }
 
     /// What is simulated as one model.
-    pub fn joined(description: &Description) -> Island {
-        let mut islands = Self::of(description, Choices { part: false, ..Choices::default() }).islands;
-        islands.swap_remove(0)
+    pub fn joined(description: &Description) -> Subsystem {
+        let mut subsystems = Self::of(description, Choices { part: false, ..Choices::default() }).subsystems;
+        subsystems.swap_remove(0)
     }
 }
 

@@ -88,18 +88,18 @@ fn subsystems(description: &Description, prepared: &[Prepared]) -> Vec<Decision>
     let uncertain = uncertain(description);
     let whole = samples(description);
     let mut found = Vec::new();
-    for Prepared { island, simulator } in prepared {
-        let fewer = island.parameters.len() < uncertain.len();
+    for Prepared { subsystem, simulator } in prepared {
+        let fewer = subsystem.parameters.len() < uncertain.len();
         if prepared.len() == 1 && !fewer {
             continue;
         }
-        let own = samples(&island.description);
+        let own = samples(&subsystem.description);
         let saved = |(whole, own): (usize, usize)| {
             let each = instructions(simulator);
             saving(whole * each, own * each, Each::StepOfAllSamples)
         };
-        let names: Vec<String> = island.parameters.iter().map(|&number| uncertain[number].clone()).collect();
-        let bodies: Vec<String> = island.description.bodies.iter().skip(1).map(|body| body.name.clone()).collect();
+        let names: Vec<String> = subsystem.parameters.iter().map(|&number| uncertain[number].clone()).collect();
+        let bodies: Vec<String> = subsystem.description.bodies.iter().skip(1).map(|body| body.name.clone()).collect();
         let reached = match (names.as_slice(), own) {
             ([], _) => "no uncertain parameter reaches it".to_owned(),
             (_, Some(own)) => format!("of the uncertain parameters only {} reach it: {own} samples", named(&names)),
@@ -182,7 +182,7 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
 fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     let (mut other, mut count) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.island.description, &one.simulator);
+        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
         for parameter in &mut description.parameters {
             let ParameterValue::Formula(formula) = &parameter.value else { continue };
             if let Some(value) = formula.as_number() {
@@ -206,7 +206,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
 fn unasked(prepared: &[Prepared]) -> Option<Decision> {
     let (mut other, mut own) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.island.description, &one.simulator);
+        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
         let reactions = description
             .joints
             .iter()

@@ -52,7 +52,7 @@ fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
     let description = within(model("slider_crank"), 1e-4, 60);
     let (bounds, summary) = run_methods(&description, None);
     let solves: usize =
-        summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.solves).sum();
+        summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.simulations).sum();
     assert!(solves <= 60 + 26, "{solves}");
     assert!(unresolved(&bounds) > 0);
     assert!(summary.errors[0].unresolved_from.is_some());
@@ -169,7 +169,7 @@ fn eight_parameters_take_five_hundred_simulations() {
         assert!((found - expected).abs() < 1e-8, "the other equations are wrong: {found}, {expected}");
     }
     let (bounds, summary) = run_methods(&within(eight().rows_every(0.1), 2e-3, 500), None);
-    let solves: usize = summary.methods.iter().map(|method| method.solves).sum();
+    let solves: usize = summary.methods.iter().map(|method| method.simulations).sum();
     assert!(solves <= 501, "{solves}");
     let band = band(&bounds.outputs[0], Method::Chebyshev);
     let (mut width, mut true_width, mut covered) = (0.0, 0.0, 0);

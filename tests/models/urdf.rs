@@ -349,7 +349,7 @@ fn numbers_are_those_of_urdf_rs() {
         assert_eq!(found.friction, dynamics.map_or(0.0, |dynamics| dynamics.friction));
         if let Some(axis) = found.axis {
             assert_eq!(axis, *joint.axis.xyz);
-            assert_eq!(found.limits.unwrap(), [joint.limit.lower, joint.limit.upper]);
+            assert_eq!(found.limits, [joint.limit.lower, joint.limit.upper].map(Some));
         }
     }
 }

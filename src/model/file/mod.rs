@@ -86,8 +86,6 @@ mod tests {
         same_keys::<Held>();
         same_keys::<Rotation>();
         same_keys::<Simulation>();
-        same_keys::<Bounds>();
-        same_keys::<Budget>();
-        same_keys::<Chebyshev>();
+        same_keys::<crate::methods::keys::Bounds>();
     }
 }

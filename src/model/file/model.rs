@@ -26,7 +26,7 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
-        /// What holds the bodies together.
+        /// What constrains the bodies.
         joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
@@ -39,7 +39,7 @@ grammar! {
         /// How long, and in which steps.
         simulation: Simulation,
         /// Which bounds to compute; without this, Chebyshev of order 5.
-        bounds: Option<Bounds>,
+        bounds: Option<crate::methods::keys::Bounds>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
         limits: Option<Limits>,
         /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
@@ -73,7 +73,7 @@ grammar! {
         /// Keys that are not as in the model.
         simulation: Option<SceneSimulation>,
         /// Instead of the model's.
-        bounds: Option<Bounds>,
+        bounds: Option<crate::methods::keys::Bounds>,
         /// Instead of the model's.
         limits: Option<Limits>,
     }

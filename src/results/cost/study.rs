@@ -24,20 +24,20 @@ pub struct CostStudy {
 
 impl CostStudy {
     /// Whether nothing is uncertain, so that there is nothing to bound.
-    pub fn is_certain(&self) -> bool {
+    pub fn is_deterministic(&self) -> bool {
         matches!(self.reference.method, CostMethod::Scheme(_))
     }
 
     /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
     fn choices(&self) -> impl Iterator<Item = &CostPoint> {
         let own = |point: &&CostPoint| matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }));
-        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_certain());
+        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_deterministic());
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
 
     /// The reference's own error in what is chosen from.
     pub fn own_error(&self) -> f64 {
-        if self.is_certain() { self.reference.trajectory_error } else { self.reference.bounds_error }
+        if self.is_deterministic() { self.reference.trajectory_error } else { self.reference.bounds_error }
     }
 
     /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own error
@@ -88,7 +88,7 @@ pub struct CostPoint {
     /// Step size, s, or the tolerance of step-size control.
     pub step: Stepping,
     /// Simulations.
-    pub solves: usize,
+    pub simulations: usize,
     /// Steps of each.
     pub steps: usize,
     /// The best of a few runs, s; compiling the model is not in it.
@@ -145,7 +145,7 @@ impl CostPoint {
             order: None,
             points: None,
             step,
-            solves: 0,
+            simulations: 0,
             steps: 0,
             seconds: f64::INFINITY,
             deviation,
@@ -228,7 +228,7 @@ pub(crate) mod tests {
     pub fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
         let deviation = Deviation::Bounds { over_width, under_coverage };
         let point = CostPoint::without_result(method, Stepping::Fixed(1e-3));
-        CostPoint { order: Some(5), solves: 36, steps: 2000, seconds, deviation, ..point }
+        CostPoint { order: Some(5), simulations: 36, steps: 2000, seconds, deviation, ..point }
     }
 
     pub fn study(bounds: Vec<CostPoint>) -> CostStudy {

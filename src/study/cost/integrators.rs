@@ -36,7 +36,7 @@ pub(super) fn trajectories(
             let (run, seconds) = best_of(|| Course::run(&simulator, &model.simulation, stepping), |_, seconds| seconds)
                 .map_err(RunError::from)?;
             points.push(CostPoint {
-                solves: 1,
+                simulations: 1,
                 steps: run.steps,
                 seconds,
                 deviation: known.of_courses(run.outputs.iter().map(Vec::as_slice)),
@@ -63,9 +63,9 @@ impl Course {
         let (schedule, mut failure) = match stepping {
             Stepping::Fixed(step) => (Schedule::fixed(simulation.duration, step, simulation.output_step), None),
             Stepping::Tolerance(tolerance) => {
-                let pilots = std::slice::from_ref(&nominal);
+                let samples = std::slice::from_ref(&nominal);
                 let piloted =
-                    schedule_for_tolerance(simulator, pilots, simulation.duration, simulation.output_step, tolerance)?;
+                    schedule_for_tolerance(simulator, samples, simulation.duration, simulation.output_step, tolerance)?;
                 (piloted.schedule, piloted.failure.map(|failure| failure.to_string()))
             }
         };

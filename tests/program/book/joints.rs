@@ -2,7 +2,7 @@
 
 /// The page.
 pub fn page() -> String {
-    let mut page = "# Joints\n\nMade from the joints' own files: `MBINT_UPDATE_DOCS=1 cargo test --test book` writes it, and \
+    let mut page = "# Joints\n\nMade from the joints' own files: `MBINT_UPDATE_DOCS=1 cargo test --test program book` writes it, and \
         `mbint explain --joints` prints the same.\nKeys marked with * are required.\n\n\
         A is the first point of `between`, B the second; r is a position in the ground's frame, e the vector part of the\n\
         rotation of the second point's frame against the first's. The equations of motion are M w = Q − Φ_qᵀ λ.\n\

@@ -10,6 +10,7 @@ use mbint::{model, study};
 
 mod joints;
 mod keys;
+mod methods;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_mbint");
 
@@ -69,6 +70,12 @@ fn the_tutorials_commands_print_what_it_says() {
         }
     }
     expect_page(&file, &current);
+}
+
+#[test]
+fn the_page_of_methods_is_that_of_the_registry() {
+    let methods = Command::new(BINARY).args(["explain", "--methods", "--format", "json"]).output().unwrap().stdout;
+    expect_page(&docs().join("reference/methods.md"), &methods::page(std::str::from_utf8(&methods).unwrap()));
 }
 
 #[test]
