@@ -61,9 +61,9 @@ pub struct Backlash {
 
 impl ForceElement for Backlash {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Angle, Dimension::ANGLE),
-        (Measure::Rate, Dimension::ANGULAR_VELOCITY),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::ANGLE, Dimension::ANGLE),
+        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {
@@ -96,7 +96,7 @@ impl ForceElement for Backlash {
         let torque = torque.only_where(bearing_at);
         let potential = (stiffness * (ahead.integral + behind.integral)).only_where(bearing_at);
         forces.potential(&[stiffness, play, corner, ratio, offset], potential);
-        forces.sensors([(Measure::Angle, place), (Measure::Rate, rate), (Measure::Torque, torque)]);
+        forces.sensors([(Measure::ANGLE, place), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
         Ok(())
     }
 }

@@ -76,10 +76,10 @@ impl Flexible {
 
 impl ForceElement for Beam {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Force, Dimension::FORCE),
-        (Measure::Torque, Dimension::TORQUE),
-        (Measure::StartTorque, Dimension::TORQUE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::FORCE, Dimension::FORCE),
+        (Measure::TORQUE, Dimension::TORQUE),
+        (Measure::START_TORQUE, Dimension::TORQUE),
     ];
 
     fn inertia(&self) -> Option<LineMass<'_>> {
@@ -131,10 +131,10 @@ impl ForceElement for Beam {
         forces.potential(&[axial, bending, free], stretched + bent);
         let at_start = -moments[0];
         forces.sensors([
-            (Measure::Length, length),
-            (Measure::Force, tension),
-            (Measure::Torque, moments[1]),
-            (Measure::StartTorque, at_start),
+            (Measure::LENGTH, length),
+            (Measure::FORCE, tension),
+            (Measure::TORQUE, moments[1]),
+            (Measure::START_TORQUE, at_start),
         ]);
         Ok(())
     }

@@ -53,9 +53,9 @@ pub struct Cable {
 
 impl ForceElement for Cable {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Rate, Dimension::VELOCITY),
-        (Measure::Force, Dimension::FORCE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::RATE, Dimension::VELOCITY),
+        (Measure::FORCE, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -77,7 +77,7 @@ impl ForceElement for Cable {
         let tension = tension.only_where(tight);
         let potential = (stiffness * taut.integral).only_where(tight);
         forces.potential(&[stiffness, free, corner], potential);
-        forces.sensors([(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)]);
+        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
         Ok(())
     }
 }

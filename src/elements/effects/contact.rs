@@ -64,10 +64,10 @@ pub struct Contact {
 
 /// What two surfaces measure.
 pub(super) const SENSORS: &[Sensor] = &[
-    (Measure::Gap, Dimension::LENGTH),
-    (Measure::Rate, Dimension::VELOCITY),
-    (Measure::Force, Dimension::FORCE),
-    (Measure::Friction, Dimension::FORCE),
+    (Measure::GAP, Dimension::LENGTH),
+    (Measure::RATE, Dimension::VELOCITY),
+    (Measure::FORCE, Dimension::FORCE),
+    (Measure::FRICTION, Dimension::FORCE),
 ];
 
 impl ForceElement for Contact {
@@ -169,13 +169,13 @@ impl<'g> Touch<'g> {
                 // Along n turned clockwise: x on a floor.
                 normal.perpendicular().dot(drag)
             };
-            forces.sensor(Measure::Friction, felt.only_where(overlap));
+            forces.sensor(Measure::FRICTION, felt.only_where(overlap));
         }
         forces.between(&first, &second, force);
         let push = push.only_where(overlap);
         let potential = self.impact.potential(depth).only_where(depth);
         forces.potential(&[self.impact.stiffness], potential);
-        forces.sensors([(Measure::Gap, gap), (Measure::Rate, parting), (Measure::Force, push)]);
+        forces.sensors([(Measure::GAP, gap), (Measure::RATE, parting), (Measure::FORCE, push)]);
     }
 
     fn gap(&self, g: &Builder, pair: &Pair) -> Gap {

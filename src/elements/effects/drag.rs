@@ -65,7 +65,7 @@ impl Drag {
 }
 
 impl ForceElement for Drag {
-    const SENSORS: &'static [Sensor] = &[(Measure::Force, Dimension::FORCE)];
+    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE)];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let point = forces.point(self.on);
@@ -79,7 +79,7 @@ impl ForceElement for Drag {
         let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
         let resistance = linear + quadratic * speed;
         forces.at(&point, -resistance * u);
-        forces.sensor(Measure::Force, resistance * speed);
+        forces.sensor(Measure::FORCE, resistance * speed);
         Ok(())
     }
 }

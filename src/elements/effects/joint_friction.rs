@@ -73,15 +73,15 @@ pub struct FrictionJoint {
 
 impl ForceElement for JointFriction {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Load, Dimension::FORCE),
-        (Measure::Force, Dimension::FORCE),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::LOAD, Dimension::FORCE),
+        (Measure::FORCE, Dimension::FORCE),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn sensors(&self) -> Vec<Sensor> {
         let measured = |measure: Measure| match self.on.mode {
-            FrictionMode::Turning => measure != Measure::Force,
-            FrictionMode::Sliding => measure != Measure::Torque,
+            FrictionMode::Turning => measure != Measure::FORCE,
+            FrictionMode::Sliding => measure != Measure::TORQUE,
             FrictionMode::Both => true,
         };
         Self::SENSORS.iter().copied().filter(|(measure, _)| measured(*measure)).collect()
@@ -126,7 +126,7 @@ impl ForceElement for JointFriction {
                 vec![(JointCoordinate::Displacement, against[0]), (JointCoordinate::Angle, radius * against[1])]
             }
         };
-        forces.sensor(Measure::Load, load);
+        forces.sensor(Measure::LOAD, load);
         for (coordinate, effort) in efforts {
             forces.effort(OnJoint { joint, coordinate }, effort)?;
             forces.sensor(Measure::of_effort(coordinate), effort);

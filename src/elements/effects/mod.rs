@@ -17,7 +17,7 @@ pub use self::forces::{Forces, MovingPoint};
 pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Element, Measure, OnJoint, PointRef};
+use crate::grammar::{Element, ElementDocs, Measure, OnJoint, PointRef};
 use crate::multibody::BuildError;
 
 effects! {
@@ -37,6 +37,7 @@ effects! {
     backlash::Backlash,
     preload::Preload,
     beam::Beam,
+    belt::Belt,
 }
 
 /// Something that an effect measures, and what it is.
@@ -107,4 +108,10 @@ pub struct LineMass<'a> {
 fn effort(on: OnJoint) -> Sensor {
     let [_, _, dimension] = crate::grammar::motions::dimensions_of(on.coordinate);
     (Measure::of_effort(on.coordinate), dimension)
+}
+
+/// What people are told of an effect.
+fn with_sensors<E: ForceElement>() -> ElementDocs {
+    let sensors = E::SENSORS.iter().map(|(measure, dimension)| (measure.name(), dimension.unit())).collect();
+    ElementDocs { sensors, ..ElementDocs::of::<E>() }
 }

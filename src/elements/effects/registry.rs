@@ -56,7 +56,7 @@ macro_rules! effects {
 
             /// Of every effect, in the order of the registry.
             pub fn docs() -> Vec<$crate::grammar::ElementDocs> {
-                vec![$($crate::grammar::ElementDocs::of::<$name>()),*]
+                vec![$(with_sensors::<$name>()),*]
             }
 
             /// The word for it in a model file.

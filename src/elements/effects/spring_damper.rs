@@ -53,9 +53,9 @@ pub struct SpringDamper {
 
 impl ForceElement for SpringDamper {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Rate, Dimension::VELOCITY),
-        (Measure::Force, Dimension::FORCE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::RATE, Dimension::VELOCITY),
+        (Measure::FORCE, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -72,7 +72,7 @@ impl ForceElement for SpringDamper {
             None => along_line(line, growth, spring),
         };
         if let Some(further) = &self.force {
-            let further = forces.value_with(further, &[(Measure::Length, length), (Measure::Rate, rate)])?;
+            let further = forces.value_with(further, &[(Measure::LENGTH, length), (Measure::RATE, rate)])?;
             pull += further * direction;
             tension += further;
         }
@@ -83,7 +83,7 @@ impl ForceElement for SpringDamper {
         if self.force.is_none() {
             forces.potential(&[spring.stiffness, spring.free_length], potential);
         }
-        forces.sensors([(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)]);
+        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
         Ok(())
     }
 }

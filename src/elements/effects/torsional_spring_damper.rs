@@ -47,9 +47,9 @@ pub struct TorsionalSpringDamper {
 
 impl ForceElement for TorsionalSpringDamper {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Angle, Dimension::ANGLE),
-        (Measure::Rate, Dimension::ANGULAR_VELOCITY),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::ANGLE, Dimension::ANGLE),
+        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {
@@ -70,9 +70,9 @@ impl ForceElement for TorsionalSpringDamper {
         let twist = angle - free_angle;
         let mut torque = stiffness * twist + damping * rate;
         if let Some(further) = &self.torque {
-            torque += forces.value_with(further, &[(Measure::Angle, angle), (Measure::Rate, rate)])?;
+            torque += forces.value_with(further, &[(Measure::ANGLE, angle), (Measure::RATE, rate)])?;
         }
-        forces.sensors([(Measure::Angle, angle), (Measure::Rate, rate), (Measure::Torque, torque)]);
+        forces.sensors([(Measure::ANGLE, angle), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
         match (bodies, self.on) {
             (Some([first, second]), None) => {
                 let zero = forces.graph().number(0.0);
