@@ -3,6 +3,7 @@
 //! The data flow, one module a stage: [`syntax`] → `grammar` → [`elements`] → [`model`] → [`reduce`] → [`assemble`] → [`compile`] → [`simulate`] → [`numerics`] → [`results`] → [`export`]; [`study`] orchestrates.
 
 pub mod assemble;
+#[doc(hidden)]
 pub mod cli;
 pub mod compile;
 pub mod elements;

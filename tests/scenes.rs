@@ -247,7 +247,7 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
     let (output, errors) = place.run("run door.yaml", 0);
     assert_eq!(errors, "");
     assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv"]);
-    for text in ["door: 3 scenes", "angle.chebyshev", "lost.chebyshev", "angle.scan", "seconds", "widest"] {
+    for text in ["door: 3 scenes", "angle.chebyshev", "lost.chebyshev", "angle.scan", "seconds", "largest width"] {
         assert!(output.contains(text), "{text} in\n{output}");
     }
     assert!(output.ends_with("  results/door: angle.svg, scenes.csv; ideal/, friction/, long/\n"), "{output}");

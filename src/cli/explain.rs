@@ -1,8 +1,7 @@
-//! `mbint explain`: what a model is compiled to, or which effects there are.
+//! `mbint explain`: what a model is compiled to, or what the language offers.
 
 use super::args::{ExplainArgs, Format};
-use super::check::to_json;
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
 use super::table::{Align, Table};
 use super::{Failure, Status, effects, load};
@@ -11,11 +10,14 @@ use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
-        console.print(&match args.format {
-            Format::Text => effects::text()?,
-            Format::Json => to_json(&effects::all()?)?,
-        })?;
-        return Ok(Status::Done);
+        let list = match (args.list.listing(), args.format) {
+            (Some(listing), _) if args.page => listing.page(),
+            (Some(listing), Format::Text) => listing.text(),
+            (Some(listing), Format::Json) => listing.json()?,
+            (None, Format::Text) => effects::text()?,
+            (None, Format::Json) => to_json(&effects::all()?)?,
+        };
+        return console.print(&list).map(|()| Status::Done);
     };
     let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
@@ -28,7 +30,7 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
     Ok(Status::Done)
 }
 
-/// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
+/// The explanation for people, one paragraph per subject that the model has.
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
     let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n{}\n", e.model, e.space, e.formulation);

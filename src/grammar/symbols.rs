@@ -247,6 +247,19 @@ pub enum Measure {
 }
 
 impl Measure {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Length,
+        Self::Angle,
+        Self::Gap,
+        Self::Rate,
+        Self::Load,
+        Self::Force,
+        Self::Torque,
+        Self::StartTorque,
+        Self::Friction,
+    ];
+
     /// What pushes a joint's coordinate.
     pub fn of_effort(coordinate: JointCoordinate) -> Self {
         match coordinate {
