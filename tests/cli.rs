@@ -25,22 +25,6 @@ fn help_tells_of_every_command_and_of_the_exit_status() {
     assert_eq!(version, format!("mbint {}\n", env!("CARGO_PKG_VERSION")));
 }
 
-/// `MBINT_UPDATE_DOCS=1` writes the pages.
-#[test]
-fn pages_of_the_reference_are_current() {
-    let place = Place::new();
-    for page in ["units", "functions", "outputs", "exit-codes"] {
-        let (text, errors) = place.run(&format!("explain --{page} --page"), 0);
-        assert_eq!(errors, "");
-        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/reference/{page}.md"));
-        if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
-            fs::write(&file, &text).unwrap();
-        }
-        let committed = fs::read_to_string(&file).unwrap_or_default();
-        assert!(committed == text, "{page}.md is not current; MBINT_UPDATE_DOCS=1 writes it:\n{text}");
-    }
-}
-
 #[test]
 fn lists_of_the_language_are_text_and_json() {
     let place = Place::new();

@@ -44,7 +44,7 @@ fn the_examples_are_right() {
 
 #[test]
 fn every_effect_has_an_example_and_a_picture() {
-    for keyword in model::effect_keywords() {
+    for keyword in model::EffectKind::KEYWORDS {
         assert!(PAGE.contains(&format!("{{ {keyword}:")) || PAGE.contains(&format!("    {keyword}:")), "{keyword}");
         let picture = format!("images/effects/{keyword}.svg");
         assert!(PAGE.contains(&picture), "{keyword}");

@@ -171,7 +171,7 @@ fn subsystems_are_models_run_apart() {
     assert_eq!(certain.parameters, Vec::<String>::new());
     let solves: Vec<(&str, usize)> =
         certain.methods.iter().map(|method| (method.method.as_str(), method.solves)).collect();
-    assert_eq!(solves, [("nominal", 1), ("probes", 1), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
+    assert_eq!(solves, [("nominal", 1), ("validation", 1), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
     for output in together.outputs.iter().filter(|output| output.name.ends_with("_c")) {
         for band in &output.bands {
             assert_eq!(band.lower, output.nominal);
@@ -427,7 +427,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     kept = kept.replace("load: hinge.force,", "load: hinge.force, weld: weld.force,");
     let explanation = study::explain(&read(&kept)).unwrap();
     let stays = explanation.decisions.iter().find(|decision| decision.what == "bodies of joint weld stay two").unwrap();
-    assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is asked for", None));
+    assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is needed", None));
     let count = |text: &str| -> i64 { instructions(&read(text))[2..6].iter().sum::<usize>() as i64 };
     let merged_count = count(&WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3"));
     assert_eq!(merged.saves.unwrap().instructions, count(&kept) - merged_count);

@@ -22,7 +22,7 @@
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{Beam, Coordinate, EffectKind, StartValue, TimeOrder};
+use crate::model::{Coordinate, LineMass, StartValue, TimeOrder};
 
 use super::body::MaterialPoint;
 use super::effects::Loads;
@@ -46,46 +46,35 @@ struct Element {
     mass: Expr,
 }
 
-/// The elements that have mass, by their effects' indices.
-fn beams<'d>(m: &Mechanism<'d>) -> impl Iterator<Item = (usize, &'d Beam)> {
-    m.description.effects.iter().enumerate().filter_map(|(index, effect)| match &effect.kind {
-        EffectKind::Beam(beam) if beam.mass_per_length.is_some() => Some((index, beam)),
-        _ => None,
-    })
-}
-
-/// The beam that an element belongs to: `rod` of `rod.element2`.
-fn owner(name: &str) -> String {
-    name.split('.').next().unwrap_or(name).to_owned()
+/// The elements that have mass.
+fn beams<'d>(m: &Mechanism<'d>) -> impl Iterator<Item = LineMass<'d>> {
+    m.description.effects.iter().filter_map(|effect| effect.kind.inertia())
 }
 
 impl Mechanism<'_> {
     /// The name of a beam with mass, if there is one.
     pub fn flexible(&self) -> Option<String> {
-        beams(self).next().map(|(index, _)| owner(&self.description.effects[index].name))
+        beams(self).next().map(|beam| beam.body.to_owned())
     }
 
     /// Lengths of all elements with mass together.
     pub fn length_of_beams(&self, g: &Builder) -> Result<Expr, BuildError> {
         let lengths: Result<Vec<Expr>, BuildError> =
-            beams(self).map(|(_, beam)| self.formula(g, &beam.length, Context::Parameters)).collect();
+            beams(self).map(|beam| self.formula(g, beam.length, Context::Parameters)).collect();
         Ok(g.sum(lengths?))
     }
 
     fn elements(&self, g: &Builder) -> Result<Vec<Element>, BuildError> {
-        beams(self).map(|(_, beam)| self.element(g, beam)).collect()
+        beams(self).map(|beam| self.element(g, &beam)).collect()
     }
 
-    fn element(&self, g: &Builder, beam: &Beam) -> Result<Element, BuildError> {
+    fn element(&self, g: &Builder, beam: &LineMass) -> Result<Element, BuildError> {
         let ends = beam.between.map(|point| self.point(g, point));
-        let axis = self.vector(g, &beam.axis, Context::Parameters)?;
+        let axis = self.vector(g, beam.axis, Context::Parameters)?;
         let axis = space::unit(g, axis);
         let axes = beam.between.map(|point| self.bodies[point.body].rotate(g, axis));
-        let length = self.formula(g, &beam.length, Context::Parameters)?;
-        let mass = match &beam.mass_per_length {
-            Some(mass) => self.formula(g, mass, Context::Parameters)?,
-            None => g.constant(0.0),
-        };
+        let length = self.formula(g, beam.length, Context::Parameters)?;
+        let mass = self.formula(g, beam.mass_per_length, Context::Parameters)?;
         Ok(Element { ends, axes, length, mass })
     }
 
@@ -154,11 +143,11 @@ impl Mechanism<'_> {
     /// A beam starts straight and moves as a rigid body, but between nodes whose coordinates (velocities) are all given.
     pub fn start_of_beams(&self, g: &Builder) -> Result<Vec<StartCondition>, BuildError> {
         let mut conditions = Vec::new();
-        for (index, beam) in beams(self) {
+        for beam in beams(self) {
             let [first, second] = beam.between.map(|point| point.body);
             let free = |order| !(self.is_given_at_start(first, order) && self.is_given_at_start(second, order));
             let (position, velocity) = (free(TimeOrder::Position), free(TimeOrder::Velocity));
-            let element = self.element(g, beam)?;
+            let element = self.element(g, &beam)?;
             let line = space::sub(g, element.ends[1].position, element.ends[0].position);
             let across = space::perpendicular(g, element.axes[0]);
             let along = space::dot(g, line, element.axes[0]);
@@ -168,7 +157,7 @@ impl Mechanism<'_> {
                 ("y", ResidualUnit::Length, space::dot(g, line, across)),
                 ("angle", ResidualUnit::Angle, g.sub(angles[1], angles[0])),
             ];
-            let joint = owner(&self.description.effects[index].name);
+            let joint = beam.body.to_owned();
             let node = &self.description.bodies[second].name;
             conditions.extend(rows.map(|(name, unit, value)| StartCondition {
                 info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone(), unit },

@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Formula};
 
-use crate::model::{EffectKind, JointFriction, JointKind, Reference, Referent, StartValue};
+use crate::model::{JointKind, Reference, Referent, StartValue};
 
 use super::coordinates::formulas_of_motion;
 use super::mechanism::{Context, Mechanism};
@@ -22,13 +22,10 @@ impl Mechanism<'_> {
     /// Friction by the load of a joint that carries.
     fn loaded_friction(&self, g: &Builder) -> Option<String> {
         let d = self.description;
-        let loaded = |friction: &JointFriction| {
-            let coefficient = self.formula(g, &friction.dry.coefficient, Context::Motion);
-            self.tree.uses(friction.joint) && !coefficient.is_ok_and(|coefficient| g.is_zero(coefficient))
-        };
-        let joint = d.effects.iter().find_map(|effect| match &effect.kind {
-            EffectKind::JointFriction(friction) if loaded(friction) => Some(friction.joint),
-            _ => None,
+        let joint = d.effects.iter().find_map(|effect| {
+            let (joint, factor) = effect.kind.loading_joint().filter(|(joint, _)| self.tree.uses(*joint))?;
+            let factor = self.formula(g, factor, Context::Motion);
+            (!factor.is_ok_and(|factor| g.is_zero(factor))).then_some(joint)
         })?;
         Some(format!("friction grows with the reaction of joint `{}`, which carries a body", d.joints[joint].name))
     }

@@ -38,7 +38,6 @@ pub(crate) mod tests;
 mod tree;
 
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use effects::{SHEETS, Sheet};
 pub use error::BuildError;
 pub use mechanism::Context;
 pub use system::{

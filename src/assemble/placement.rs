@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 use symdiff::{Builder, Expr};
 
 use crate::elements::joints::{Orientation, Separation};
-use crate::model::{Beam, Coordinate, EffectKind, JointCoordinate, PointRef};
+use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef};
 
 use super::body;
 use super::error::BuildError;
@@ -238,7 +238,7 @@ fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
         links[between[1].body].push(link.reversed(between[0].body));
     }
     for effect in &m.description.effects {
-        let EffectKind::Beam(Beam { between, length, mass_per_length: Some(_), .. }) = &effect.kind else { continue };
+        let Some(LineMass { between, length, .. }) = effect.kind.inertia() else { continue };
         let length = m.formula(g, length, Context::Parameters)?;
         let here = [m.nominal(g, &[length])[0], 0.0];
         let link = Link { here, there: [0.0, 0.0], other: between[1].body, kind: LinkKind::Weld(0.0) };

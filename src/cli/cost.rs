@@ -9,7 +9,8 @@ use super::run::{results_of, set_once};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{prepare_folder, write_cost};
-use crate::model::{BoundsRequest, Description, Stepping};
+use crate::methods::BoundsRequest;
+use crate::model::{Description, Stepping};
 use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
@@ -211,6 +212,7 @@ fn choice(study: &CostStudy) -> String {
 mod tests {
     use super::*;
     use crate::compile::Scheme;
+    use crate::results::cost_tests::{COMPOSED, SCAN};
     use crate::results::{CostMethod, CostReference};
 
     fn study() -> CostStudy {
@@ -231,14 +233,14 @@ mod tests {
             ..CostPoint::without_result(hht, Stepping::Fixed(0.01 / 30.0))
         };
         let reference = CostReference {
-            method: CostMethod::Composed,
+            method: COMPOSED,
             order: 16,
             steps: [1e-4, 2e-4, 4e-4].map(Stepping::Fixed),
             bounds_error: 1e-5,
             trajectory_error: 1e-6,
             parts: vec![("steps".into(), 1e-6), ("order 16 for 14".into(), 9e-6)],
         };
-        let composed = point(CostMethod::Composed, Some(5), None, 0.025, 4e-4, 1e-6);
+        let composed = point(COMPOSED, Some(5), None, 0.025, 4e-4, 1e-6);
         CostStudy {
             model: "crank".into(),
             tolerance: 1e-3,
@@ -246,7 +248,7 @@ mod tests {
             bounds: vec![
                 CostPoint { front: true, ..composed.clone() },
                 CostPoint { order: Some(8), seconds: 0.1, ..composed },
-                point(CostMethod::Scan, None, Some(5), 0.01, 0.0, 2e-3),
+                point(SCAN, None, Some(5), 0.01, 0.0, 2e-3),
             ],
             trajectories: vec![trajectory],
             left_out: vec!["Scan: 3 of its settings".into()],

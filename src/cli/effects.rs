@@ -1,23 +1,20 @@
-//! `mbint explain --effects`: every effect of the language, from the grammar and from the effects' own files.
+//! `mbint explain --effects`: every effect of the language, from its own file.
 
 use serde::Serialize;
 
 use super::Failure;
 use super::console::BOLD;
 use super::table::{Align, Table};
-use crate::assemble::SHEETS;
-use crate::model::{Key, effect_grammar};
+use crate::elements::effects::EffectKind;
+use crate::grammar::{ElementDocs, KeyDocs};
 use crate::results::EffectCost;
 use crate::study::language_costs;
 
-/// What there is to tell of an effect.
+/// An effect with what it costs.
 #[derive(Debug, Serialize)]
-pub(super) struct EffectSheet {
-    keyword: &'static str,
-    description: String,
-    formulas: &'static [&'static str],
-    source: &'static str,
-    keys: Vec<Key>,
+pub(super) struct EffectDocs {
+    #[serde(flatten)]
+    docs: ElementDocs,
     /// In a small mechanism of the plane.
     adds: Option<EffectCost>,
 }
@@ -26,15 +23,13 @@ pub(super) struct EffectSheet {
 ///
 /// # Errors
 /// Never, but for a defect of the examples that are counted.
-pub(super) fn all() -> Result<Vec<EffectSheet>, Failure> {
+pub(super) fn all() -> Result<Vec<EffectDocs>, Failure> {
     let costs = language_costs().map_err(|error| Failure::Wrong(error.to_string()))?;
-    let sheets = SHEETS.iter().filter_map(|sheet| {
-        let (description, keys) = effect_grammar(sheet.keyword)?;
-        let (keyword, formulas, source) = (sheet.keyword, sheet.formulas, sheet.source);
-        let adds = costs.iter().find(|(known, _)| *known == keyword).map(|(_, cost)| *cost);
-        Some(EffectSheet { keyword, description, formulas, source, keys, adds })
-    });
-    Ok(sheets.collect())
+    let with_cost = |docs: ElementDocs| {
+        let adds = costs.iter().find(|(known, _)| *known == docs.keyword).map(|(_, cost)| *cost);
+        EffectDocs { docs, adds }
+    };
+    Ok(EffectKind::docs().into_iter().map(with_cost).collect())
 }
 
 /// What an effect adds to the instructions of a step.
@@ -61,26 +56,17 @@ pub(super) fn text() -> Result<String, Failure> {
         ("a step", Align::Right),
         ("while apart", Align::Right),
     ]);
-    for sheet in all()? {
+    for EffectDocs { docs, adds } in all()? {
         if !text.is_empty() {
             text.push('\n');
         }
-        text += &format!("{BOLD}{}{BOLD:#}  {}\n", sheet.keyword, sheet.description);
-        for formula in sheet.formulas {
-            text += &format!("  {formula}\n");
-        }
-        text += &format!("  Source: {}.\n", sheet.source.trim_end_matches('.'));
-        let mut keys = Table::new([("", Align::Left), ("", Align::Left)]);
-        for key in &sheet.keys {
-            add(&mut keys, "", key);
-        }
-        text += &keys.render(4);
-        if let Some(EffectCost { acting, apart }) = sheet.adds {
+        text += &element(&docs);
+        if let Some(EffectCost { acting, apart }) = adds {
             let number = |number: i64| number.to_string();
             let apart =
                 apart.map_or(String::new(), |apart| format!("{}, {}, {}", apart.iteration, apart.factor, apart.step));
             let [iteration, factor, step] = [acting.iteration, acting.factor, acting.step].map(number);
-            costs.row([sheet.keyword.to_owned(), iteration, factor, step, apart]);
+            costs.row([docs.keyword.to_owned(), iteration, factor, step, apart]);
         }
     }
     text += "\nWhat one of each adds to a small mechanism of the plane in absolute coordinates. Apart: where no sample of a tile touches.\n";
@@ -88,8 +74,21 @@ pub(super) fn text() -> Result<String, Failure> {
     Ok(text)
 }
 
+/// An element, for people.
+pub(super) fn element(docs: &ElementDocs) -> String {
+    let mut text = format!("{BOLD}{}{BOLD:#}  {}\n", docs.keyword, docs.description);
+    for formula in docs.formulas {
+        text += &format!("  {formula}\n");
+    }
+    text += &format!("  Source: {}.\n", docs.source.trim_end_matches('.'));
+    text += &format!("  Example: {}\n", docs.example);
+    let mut keys = Table::new([("", Align::Left), ("", Align::Left)]);
+    docs.keys.iter().for_each(|key| add(&mut keys, "", key));
+    text + &keys.render(4)
+}
+
 /// A key, and those within it.
-fn add(table: &mut Table<2>, indent: &str, key: &Key) {
+fn add(table: &mut Table<2>, indent: &str, key: &KeyDocs) {
     let needed = if key.required { " *" } else { "" };
     table.row([format!("{indent}{}{needed}", key.name), key.description.clone()]);
     key.keys.iter().for_each(|inner| add(table, &format!("{indent}  "), inner));
@@ -100,13 +99,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_effect_of_the_grammar_is_told_with_all_that_there_is() {
-        let told: Vec<&str> = all().unwrap().iter().map(|sheet| sheet.keyword).collect();
-        assert_eq!(told, crate::model::effect_keywords());
-        for sheet in all().unwrap() {
-            assert!(!sheet.description.is_empty() && !sheet.formulas.is_empty() && !sheet.source.is_empty());
-            assert!(!sheet.keys.is_empty(), "{}", sheet.keyword);
-            assert!(sheet.keys.iter().all(|key| !key.description.is_empty()), "{}", sheet.keyword);
+    fn every_effect_says_all_that_there_is() {
+        for EffectDocs { docs, adds } in all().unwrap() {
+            assert!(!docs.description.is_empty() && !docs.keys.is_empty() && adds.is_some(), "{}", docs.keyword);
+            assert!(docs.keys.iter().all(|key| !key.description.is_empty()), "{}", docs.keyword);
         }
     }
 
@@ -115,20 +111,21 @@ mod tests {
         let plain = anstream::adapter::strip_str(&text().unwrap()).to_string();
         let stop = plain.split("\n\n").find(|part| part.starts_with("stop ")).unwrap();
         insta::assert_snapshot!(stop, @r"
-        stop  Stops at the ends of a joint's way.
+        stop  Stops at the ends of a joint's range.
           f = K ⟨δ⟩ⁿ ⟨1 + χ δ̇⟩, δ = lower − s or s − upper
           Source: Hunt & Crossley, J. Appl. Mech. 42 (1975) 440; Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369.
-            coordinate         Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
-            impact *           How it pushes back.
-              dissipation      s/m or s/rad; by default 0: nothing is lost.
-              exponent         n, from 1 to 3; by default 1.5.
-              impact_velocity  Speed of the impact for which the restitution holds, m/s or rad/s.
-              law              Whose formula makes dissipation of restitution; by default Hunt and Crossley's.
-              restitution      Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
-              stiffness *      K, N/m^n or N*m/rad^n
-            lower              m or rad
+          Example: { on: hinge, lower: -1.5, upper: 0.8, impact: { stiffness: 1e4, restitution: 0.5, impact_velocity: 2 } }
             on *               A revolute, prismatic, cylindrical or screw joint.
-            upper              m or rad
+            coordinate         Which of the joint's; by default the displacement of a prismatic joint, the angle of others.
+            lower              Smallest value of the coordinate, m or rad.
+            upper              Largest value of the coordinate, m or rad.
+            impact *           How it pushes back.
+              exponent         n, from 1 to 3: 1 is a linear spring, 1.5 Hertz's contact of curved surfaces; by default 1.5.
+              stiffness *      K, N/m^n or N*m/rad^n.
+              dissipation      χ, what is lost, s/m or s/rad; by default 0: nothing is lost.
+              restitution      Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
+              impact_velocity  Speed of the impact for which the restitution holds, m/s or rad/s.
+              law              Whose formula makes dissipation of restitution; by default hunt_crossley.
         ");
     }
 }

@@ -117,13 +117,18 @@ impl Row<4> for OutputDocs {
     }
 }
 
-impl Row<2> for StatusDocs {
+impl Row<3> for StatusDocs {
     const TITLE: &'static str = "Exit codes";
-    const INTRODUCTION: &'static str = "The exit code of `mbint`; `mbint --help` prints the same list.";
-    const HEADINGS: [(&'static str, Align); 2] = [("code", Align::Right), ("meaning", Align::Left)];
+    const INTRODUCTION: &'static str = "`mbint --help` prints the same codes. With several models or scenes the code is \
+        that of the worst. A pipe that its reader closes is no error.\n\n\
+        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file \
+        show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors \
+        are printed.";
+    const HEADINGS: [(&'static str, Align); 3] =
+        [("code", Align::Right), ("meaning", Align::Left), ("results' folder", Align::Left)];
 
-    fn cells(&self) -> [String; 2] {
-        [self.code.to_string(), self.meaning.to_owned()]
+    fn cells(&self) -> [String; 3] {
+        [self.code.to_string(), self.meaning.to_owned(), self.results.to_owned()]
     }
 }
 

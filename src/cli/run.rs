@@ -11,6 +11,7 @@ use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
 use crate::assemble;
 use crate::export::{file_stem, prepare_folder, write_results};
+use crate::methods::Certified;
 use crate::model::{Description, Override, shown};
 use crate::results::{Bounds, Method, OutputBounds, Summary};
 use crate::study;
@@ -225,7 +226,9 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             None => results_of(&name),
         };
         let mut jobs = scenes.into_iter().map(|(scene, mut model)| {
-            model.bounds.certified |= request.certify;
+            if request.certify {
+                model.bounds.certified = Some(Certified);
+            }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
             (scene, Job { model, folder })
         });

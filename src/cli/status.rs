@@ -14,11 +14,12 @@ pub(super) enum Status {
     Wrong,
 }
 
-/// An exit code and its meaning.
+/// An exit code, its meaning and what the results' folder then contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct StatusDocs {
     pub code: u8,
     pub meaning: &'static str,
+    pub results: &'static str,
 }
 
 impl Status {
@@ -26,17 +27,27 @@ impl Status {
     pub const ALL: [Self; 5] = [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::Interrupted];
 
     pub const fn docs(self) -> StatusDocs {
-        let (code, meaning) = match self {
-            Self::Done => (0, "success"),
-            Self::Failed => (1, "a run failed; finished results are kept"),
-            Self::Wrong => (2, "the command or a model has errors; nothing was run"),
-            Self::Unresolved => (3, "success, but at some time no method gives reliable bounds of an output"),
+        let (code, meaning, results) = match self {
+            Self::Done => (0, "success", "all results"),
+            Self::Failed => (
+                1,
+                "a run failed, or a bound ended early; the message says where",
+                "finished results; the rest is `NaN`",
+            ),
+            Self::Wrong => (2, "the command or a model has errors; nothing was run", "nothing is written"),
+            Self::Unresolved => (
+                3,
+                "success, but at some time no method gives reliable bounds of an output",
+                "all results; unreliable rows are marked",
+            ),
             // 128 and SIGINT's number, as a shell reports it.
-            Self::Interrupted => {
-                (130, "interrupted by Ctrl-C; finished results are kept, and a second Ctrl-C ends the program at once")
-            }
+            Self::Interrupted => (
+                130,
+                "interrupted by Ctrl-C; a second Ctrl-C ends the program at once",
+                "finished results; the rest is `NaN`",
+            ),
         };
-        StatusDocs { code, meaning }
+        StatusDocs { code, meaning, results }
     }
 
     pub const fn code(self) -> u8 {

@@ -262,7 +262,8 @@ mod tests {
     use super::*;
     use crate::assemble::tests::model::{Model, formula};
     use crate::compile::scheme::Scheme;
-    use crate::model::{DryFriction, EffectKind, JointFriction, Rubbing};
+    use crate::model::joint_friction::FrictionJoint;
+    use crate::model::{DryFriction, FrictionMode, JointFriction};
 
     /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
     #[test]
@@ -275,22 +276,13 @@ mod tests {
         m.gravity();
         for joint in 0..2 {
             let dry = DryFriction {
-                coefficient: formula("0.4"),
                 breakaway: formula("1.5"),
-                stribeck: Some(formula("0.7")),
-                transition: formula("0.2"),
+                stribeck_velocity: Some(formula("0.7")),
+                transition_velocity: formula("0.2"),
             };
-            let (coulomb, viscous, radius) = (formula("0.1"), formula("0.2"), formula("0.05"));
-            let rubbing = Rubbing::Turning;
-            m.effect(EffectKind::JointFriction(JointFriction {
-                joint,
-                rubbing,
-                dry,
-                coulomb,
-                viscous,
-                radius,
-                length: None,
-            }));
+            let (coulomb, viscous, radius) = (formula("0.1"), formula("0.2"), Some(formula("0.05")));
+            let (on, coefficient) = (FrictionJoint { joint, mode: FrictionMode::Turning }, formula("0.4"));
+            m.effect(JointFriction { on, coefficient, dry, coulomb, viscous, radius, length: None });
         }
         let system = m.build();
         let (n, count) = (system.q.len(), system.lambda.len());

@@ -1,5 +1,6 @@
-//! The elements of a model, one file each: what it is made of and what follows from that alone.
+//! The elements of the language: one file each, and one line in a registry.
 
+pub mod effects;
 pub mod joints;
 
 pub use joints::JointKind;

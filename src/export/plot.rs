@@ -1,22 +1,16 @@
-//! `x3.svg`: an output's bounds over time, and how far they are from the nominal course.
+//! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
 use plotters::prelude::*;
 
 use super::canvas::fine;
 use super::figure::{Course, figure_svg};
 use super::panel::Style;
-use crate::results::{Method, OutputBounds};
+use crate::methods::{About, Method};
+use crate::results::OutputBounds;
 
-/// The colours are apart for every colour vision and in grey. Where bands coincide the earlier method shows through the gaps
-/// of the later one's dashes.
 fn style(method: Method) -> Style {
-    let (label, color, fill, dashes) = match method {
-        Method::Chebyshev => ("Chebyshev", RGBColor(0, 114, 178), 0.16, None),
-        Method::Taylor => ("Taylor", RGBColor(240, 160, 20), 0.18, Some([10.0, 7.0])),
-        Method::Scan => ("Scan", RGBColor(130, 25, 80), 0.10, Some([2.0, 6.5])),
-        Method::Certified => ("Certified", RGBColor(0, 120, 60), 0.08, Some([14.0, 3.0])),
-    };
-    Style { label: label.to_owned(), color, edge: 2.0, fill, dashes }
+    let About { label, color: [red, green, blue], fill, dashes, .. } = *method.about();
+    Style { label: label.to_owned(), color: RGBColor(red, green, blue), edge: 2.0, fill, dashes }
 }
 
 /// The plot of one output as an SVG document. The same data give the same bytes.

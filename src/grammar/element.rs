@@ -122,7 +122,7 @@ pub trait FromNumber {
 }
 
 /// What the number of a key must be.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Quantity {
     /// As one writes it; several units are divided by ` or `.
     pub unit: &'static str,
@@ -132,11 +132,16 @@ pub struct Quantity {
     pub context: Context,
     /// What must hold at every corner of the parameters.
     pub requirement: Option<Requirement>,
+    /// Instead of the unit's, where that depends on other keys.
+    pub dimension: Option<Dimension>,
 }
 
 impl Quantity {
     /// What its unit measures.
     pub fn dimension(&self) -> Dimension {
+        if let Some(dimension) = self.dimension {
+            return dimension;
+        }
         let units: Vec<&str> = self.unit.split(" or ").collect();
         let unit = units.get(self.choice).or(units.first()).copied().unwrap_or_default();
         // A test parses every unit of every element.
@@ -160,6 +165,25 @@ impl Requirement {
     pub const NONNEGATIVE: Self = Self { holds: |value| value >= 0.0, message: "must not be negative" };
     /// Not 0.
     pub const NONZERO: Self = Self { holds: |value| value != 0.0, message: "must not be zero" };
+}
+
+/// Reports where two keys are there and the second is not larger than the first.
+pub fn ordered<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    fields: &Fields<'_>,
+    (low, first): (&str, Option<&impl Value>),
+    (high, second): (&str, Option<&impl Value>),
+) {
+    let (mut lower, mut upper) = (Vec::new(), Vec::new());
+    if let (Some(first), Some(second), true, true) =
+        (first, second, fields.get(low).is_some(), fields.get(high).is_some())
+    {
+        first.formulas(&mut lower);
+        second.formulas(&mut upper);
+    }
+    if let ([lower], [upper]) = (lower.as_slice(), upper.as_slice()) {
+        reader.ordered(fields, (low, lower), (high, upper));
+    }
 }
 
 /// A key, for people and for the schema.
@@ -217,6 +241,23 @@ pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
         schema.insert("required".to_owned(), required.into());
     }
     schema
+}
+
+/// One of several kinds, each by its word, its description and its schema.
+pub fn kinds_schema(description: &str, kinds: Vec<(&'static str, &'static str, Schema)>) -> Schema {
+    let mut properties = serde_json::Map::new();
+    for (word, description, mut schema) in kinds {
+        schema.insert("description".to_owned(), description.into());
+        properties.insert(word.to_owned(), schema.to_value());
+    }
+    schemars::json_schema!({
+        "description": description,
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": false,
+        "minProperties": 1,
+        "maxProperties": 1
+    })
 }
 
 /// An example as JSON.

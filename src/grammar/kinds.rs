@@ -211,6 +211,7 @@ pub struct TurningJoint(pub usize);
 
 /// A joint with a displacement, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(dead_code)] // joints that couple others refer to it
 pub struct SlidingJoint(pub usize);
 
 reference! {

@@ -2,8 +2,6 @@
 //!
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
-#![allow(dead_code, unused_imports)] // effects and joints are derived next
-
 pub(crate) mod dimension;
 mod element;
 mod kinds;
@@ -22,8 +20,10 @@ mod vectors;
 pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
-    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, object_schema,
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, kinds_schema,
+    object_schema, ordered,
 };
+#[allow(unused_imports)] // joints that couple others refer to a SlidingJoint
 pub use kinds::{Axis, BodyRef, Components, Direction, PerAxis, SlidingJoint, TurningJoint};
 pub use names::Context;
 pub use reader::{Fields, Reader};

@@ -21,9 +21,10 @@ pub(crate) const ENERGIES: [(&str, EnergyKind); 3] = [
 ];
 
 /// Where a formula stands, and so what it may be made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Context {
     /// Parameters only.
+    #[default]
     Constant,
     /// Parameters and time.
     Time,

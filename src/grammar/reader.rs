@@ -28,8 +28,9 @@ pub struct Reader<'d, S> {
     pub diagnostics: &'d mut Diagnostics,
     /// Names first, then what they stand for.
     pub model: S,
-    /// The effect that is being read, with what it measures: its own formulas may refer to that.
-    pub own: Option<(String, Vec<(Measure, Dimension)>)>,
+    /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
+    /// the others had errors.
+    pub unread: Vec<(String, Vec<(Measure, Dimension)>)>,
     /// Dimension of each parameter.
     pub kinds: Vec<Kind>,
     /// Parameter values at which requirements are checked.
@@ -340,33 +341,34 @@ impl<S: SymbolTable> Reader<'_, S> {
         all_known
     }
 
-    /// What a name stands for; the effect that is being read has the number that it will have.
+    /// What a name stands for; effects that are not in the model are numbered after those that are.
     pub fn referent(&self, name: &str) -> Option<Referent> {
-        names::referent(&self.model, name).or_else(|| self.own_measure(name)?.ok())
+        names::referent(&self.model, name).or_else(|| self.unread_measure(name)?.ok())
     }
 
     /// What a name stands for where it may stand for that.
     fn resolve(&self, name: &str, context: Context) -> Result<Referent, NameError> {
         match names::referent(&self.model, name) {
             Some(referent) => names::allowed(name, referent, context),
-            None => match self.own_measure(name) {
+            None => match self.unread_measure(name) {
                 Some(own) => own.and_then(|referent| names::allowed(name, referent, context)),
                 None => Err(names::unknown(&self.model, name, context)),
             },
         }
     }
 
-    /// What the effect that is being read measures; nothing where the name is of something else.
-    fn own_measure(&self, name: &str) -> Option<Result<Referent, NameError>> {
-        let (own, measures) = self.own.as_ref()?;
-        let member = name.strip_prefix(own.as_str())?.strip_prefix('.')?;
-        if self.model.body(own).is_some() || self.model.joint(own).is_some() {
+    /// What an effect measures that is not in the model; nothing where the name is of something else.
+    fn unread_measure(&self, name: &str) -> Option<Result<Referent, NameError>> {
+        let (owner, member) = name.split_once('.')?;
+        if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
             return None;
         }
+        let unread = self.unread.iter().position(|(known, _)| known == owner)?;
+        let measures = &self.unread[unread].1;
         let found = measures.iter().find(|(measure, _)| measure.name() == member);
         Some(match found {
-            Some(&(measure, _)) => Ok(Referent::Measure { effect: self.model.effects(), measure }),
-            None => Err(names::no_measure(own, member, measures)),
+            Some(&(measure, _)) => Ok(Referent::Measure { effect: self.model.effects() + unread, measure }),
+            None => Err(names::no_measure(owner, member, measures)),
         })
     }
 
@@ -400,10 +402,8 @@ impl<S: SymbolTable> Reader<'_, S> {
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
         }
         if let Referent::Measure { effect, measure } = referent {
-            let measures = match &self.own {
-                Some((_, own)) if effect == self.model.effects() => own.clone(),
-                _ => self.model.measures(effect),
-            };
+            let unread = effect.checked_sub(self.model.effects()).and_then(|unread| self.unread.get(unread));
+            let measures = unread.map_or_else(|| self.model.measures(effect), |(_, measures)| measures.clone());
             let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
             return dimension.map_or(Kind::Any, Kind::motion);
         }

@@ -33,6 +33,8 @@ pub trait SymbolTable {
     fn has_orientation(&self, body: usize) -> bool;
     /// Whether a joint has a coordinate.
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
+    /// Which of a joint's motions friction resists; nothing where friction does not act in it.
+    fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
     /// What a joint that is an equation sets equal to something else.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
@@ -49,6 +51,11 @@ pub trait SymbolTable {
     /// The joint of a name.
     fn joint(&self, name: &str) -> Option<usize> {
         self.joints().position(|known| known == name)
+    }
+
+    /// The name of a joint.
+    fn joint_name(&self, joint: usize) -> &str {
+        self.joints().nth(joint).unwrap_or_default()
     }
 
     /// The name of a body.
@@ -298,4 +305,15 @@ pub enum Reference<'a> {
     Point(&'a mut PointRef),
     /// Of a joint.
     Joint(&'a mut usize),
+}
+
+/// Which motions of a joint friction resists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrictionMode {
+    /// Its turning: revolute joints.
+    Turning,
+    /// Its sliding: prismatic joints.
+    Sliding,
+    /// Both at once: cylindrical joints.
+    Both,
 }

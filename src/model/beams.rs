@@ -5,8 +5,10 @@ use crate::grammar::{Coordinate, PointRef};
 use symdiff::{Binary, Formula};
 
 use super::description::{Description, Effect};
-use super::effect_kinds::{Beam, EffectKind};
 use super::file;
+use crate::elements::effects::Beam;
+use crate::elements::effects::beam::Flexible;
+use crate::grammar::Direction;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
 use crate::model::names::Reader;
@@ -85,16 +87,16 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
     let share = Formula::number(1.0 / elements as f64).combined(Binary::Mul, &length);
     for element in 0..elements {
         let node = |node: usize| PointRef { body: first + node, point: None };
-        let kind = EffectKind::Beam(Beam {
+        let kind = Beam {
             between: [node(element), node(element + 1)],
-            axis: [1.0, 0.0, 0.0].map(Formula::number),
+            axis: Direction::along(0),
             length: share.clone(),
             axial_stiffness: axial_stiffness.clone(),
             bending_stiffness: bending_stiffness.clone(),
             damping: damping.clone(),
-            mass_per_length: Some(mass.clone()),
-        });
-        reader.model.effects.push(Effect { name: format!("{}.element{}", entry.key, element + 1), kind });
+            flexible: Some(Flexible { body: entry.key.clone(), mass_per_length: mass.clone() }),
+        };
+        reader.model.effects.push(Effect { name: format!("{}.element{}", entry.key, element + 1), kind: kind.into() });
     }
 }
 

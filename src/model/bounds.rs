@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::bounds_request::{
-    BoundsRequest, Budget, ChebyshevRequest, Degree, Expand, MOST_SOLVES, RangeKind, ScanRequest, TaylorRequest,
-};
 use super::file;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
+use crate::methods::{BoundsRequest, Budget, Chebyshev, Degree, Expand, MOST_SIMULATIONS, Scan, Taylor};
 use crate::model::names::Reader;
+use crate::numerics::RangeKind;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -37,7 +36,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
         .filter(|name| !reader.idle.contains(name))
         .collect();
     let Some((node, at)) = section else {
-        let chebyshev = ChebyshevRequest::unspecified(uncertain.len(), None);
+        let chebyshev = Chebyshev::unspecified(uncertain.len(), None);
         return Some(BoundsRequest { chebyshev: Some(chebyshev), ..BoundsRequest::default() });
     };
     let fields = reader.fields::<file::Bounds>(node, at.clone())?;
@@ -54,7 +53,7 @@ pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) -> Option<Bound
     }
     let methods = ["chebyshev", "taylor", "scan"];
     if fields.get("tolerance").is_some() && methods.iter().all(|method| fields.get(method).is_none()) {
-        request.chebyshev = Some(ChebyshevRequest::ADAPTIVE);
+        request.chebyshev = Some(Chebyshev::ADAPTIVE);
     }
     if let Some(node) = fields.get("chebyshev")
         && let Some(fields) = reader.fields::<file::Chebyshev>(node, fields.key_span("chebyshev"))
@@ -88,7 +87,7 @@ fn tolerance(reader: &mut Reader, fields: &Fields) -> Option<f64> {
 
 fn budget(reader: &mut Reader, fields: &Fields) -> Budget {
     let mut budget = Budget::default();
-    if let Some(solves) = fields.get("solves").and_then(|node| reader.count(node, 1, MOST_SOLVES as usize)) {
+    if let Some(solves) = fields.get("solves").and_then(|node| reader.count(node, 1, MOST_SIMULATIONS as usize)) {
         budget.solves = solves;
     }
     if let Some(node) = fields.get("seconds")
@@ -102,15 +101,10 @@ fn budget(reader: &mut Reader, fields: &Fields) -> Budget {
     budget
 }
 
-fn chebyshev(
-    reader: &mut Reader,
-    fields: &Fields,
-    uncertain: &[String],
-    tolerance: Option<f64>,
-) -> Option<ChebyshevRequest> {
-    let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, ChebyshevRequest::ORDER);
+fn chebyshev(reader: &mut Reader, fields: &Fields, uncertain: &[String], tolerance: Option<f64>) -> Option<Chebyshev> {
+    let order = per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, Chebyshev::ORDER);
     let nodes = match fields.get("nodes") {
-        Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, ChebyshevRequest::ORDER + 1),
+        Some(_) => per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, Chebyshev::ORDER + 1),
         None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
     };
     let expand = match fields.get("expand") {
@@ -119,7 +113,7 @@ fn chebyshev(
         None if fields.get("range").is_some() => Some(Expand::Output),
         None => Some(Expand::Coordinates),
     };
-    let unspecified = ChebyshevRequest::unspecified(uncertain.len(), tolerance);
+    let unspecified = Chebyshev::unspecified(uncertain.len(), tolerance);
     if fields.get("order").is_none() && fields.get("nodes").is_none() && unspecified.degree == Degree::Adaptive {
         let of_output =
             if expand == Some(Expand::Output) { fields.get("range").or(fields.get("expand")) } else { None };
@@ -142,25 +136,25 @@ fn chebyshev(
     }
     let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
     check_solves(reader, fields, key, &nodes);
-    Some(ChebyshevRequest { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
+    Some(Chebyshev { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
 }
 
-fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<TaylorRequest> {
+fn taylor(reader: &mut Reader, fields: &Fields, uncertain: usize) -> Option<Taylor> {
     let range = range(reader, fields);
-    let order = fields.get("order").map_or(Some(TaylorRequest::ORDER), |node| reader.count(node, 1, 50))?;
+    let order = fields.get("order").map_or(Some(Taylor::ORDER), |node| reader.count(node, 1, 50))?;
     // Monomials of degree up to n in k variables: (n + k)! / (n! k!).
     let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
     if coefficients > MOST_COEFFICIENTS {
         let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
         reader.error(fields.key_span("order"), message, format!("at most {MOST_COEFFICIENTS:e} can be computed"));
     }
-    Some(TaylorRequest { order, range: range? })
+    Some(Taylor { order, range: range? })
 }
 
-fn scan(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<ScanRequest> {
-    let points = per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, ScanRequest::POINTS)?;
+fn scan(reader: &mut Reader, fields: &Fields, uncertain: &[String]) -> Option<Scan> {
+    let points = per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, Scan::POINTS)?;
     check_solves(reader, fields, "points", &points);
-    Some(ScanRequest { points })
+    Some(Scan { points })
 }
 
 fn range(reader: &mut Reader, fields: &Fields) -> Option<RangeKind> {
@@ -209,9 +203,9 @@ fn per_parameter(
 
 fn check_solves(reader: &mut Reader, fields: &Fields, key: &str, counts: &[usize]) {
     let solves: f64 = counts.iter().map(|count| *count as f64).product();
-    if solves > MOST_SOLVES {
+    if solves > MOST_SIMULATIONS {
         let message = format!("{} parameters make {solves:.2e} simulations", counts.len());
         let help = "lower the number, or make fewer parameters uncertain";
-        reader.error(fields.key_span(key), message, format!("at most {MOST_SOLVES:e} can be run: {help}"));
+        reader.error(fields.key_span(key), message, format!("at most {MOST_SIMULATIONS:e} can be run: {help}"));
     }
 }

@@ -2,10 +2,10 @@
 
 use symdiff::Formula;
 
-use super::bounds_request::BoundsRequest;
-use super::effect_kinds::EffectKind;
 use crate::elements::JointKind;
+use crate::elements::effects::EffectKind;
 use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
+use crate::methods::BoundsRequest;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///

@@ -204,7 +204,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
     Reader {
         diagnostics,
         model,
-        own: None,
+        unread: Vec::new(),
         kinds: Vec::new(),
         corners: Vec::new(),
         varies: Vec::new(),

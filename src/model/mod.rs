@@ -3,10 +3,7 @@
 //! [`load`] goes text → tree (`yaml`) → sections (one file each) → [`Description`]. Reading goes on after an error:
 //! [`Diagnostics`] collects them all, each with its place.
 
-mod bounds_request;
-mod catalog;
 mod description;
-mod effect_kinds;
 mod names;
 mod references;
 
@@ -30,14 +27,12 @@ mod tests;
 mod urdf;
 
 pub use crate::elements::JointKind;
+pub use crate::elements::effects::*;
 pub use crate::grammar::{
-    Coordinate, EnergyKind, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference, Referent,
-    Rotation, TimeOrder, Turning,
+    Coordinate, EnergyKind, FrictionMode, JointCoordinate, Measure, OnJoint, PointRef, ReactionComponent, Reference,
+    Referent, Rotation, TimeOrder, Turning,
 };
-pub use bounds_request::*;
-pub use catalog::{Key, effect_grammar, effect_keywords};
 pub use description::*;
-pub use effect_kinds::*;
 pub use file::schema;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};
 pub use overrides::Override;

@@ -3,8 +3,9 @@
 use symdiff::Formula;
 
 use super::description::Description;
+use crate::elements::joints::Mobilizer;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{self, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
+use crate::grammar::{self, FrictionMode, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
 
 /// Reads a description.
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
@@ -67,6 +68,15 @@ impl SymbolTable for Description {
 
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool {
         self.joints[joint].kind.axis_of(coordinate).is_some()
+    }
+
+    fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {
+        match self.joints[joint].kind.mobilizer()? {
+            Mobilizer::Rotation { .. } => Some(FrictionMode::Turning),
+            Mobilizer::Translation { .. } => Some(FrictionMode::Sliding),
+            Mobilizer::RotationAndTranslation { .. } => Some(FrictionMode::Both),
+            _ => None,
+        }
     }
 
     fn equated(&self, joint: usize) -> Option<&Formula> {

@@ -3,10 +3,6 @@
 use symdiff::Formula;
 
 use super::description::{Body, StartValue};
-use super::effect_kinds::{
-    Backlash, Beam, Cable, ClearanceJoint, Contact, Drag, EffectKind, JointFriction, Preload, Preloaded, Servo, Stop,
-    Twisted,
-};
 use crate::elements::joints::*;
 use crate::grammar::{PointRef, Reference, Rotation, Turning};
 
@@ -67,35 +63,6 @@ impl JointKind {
             }
             Self::Motor(Motor { motion, .. }) => motion.formulas(),
             Self::Equation(Equation { left, right }) => vec![left, right],
-        }
-    }
-}
-
-impl EffectKind {
-    /// Every index in it; what its formulas name is not among them. Gravity acts on all bodies and has none.
-    pub fn references(&mut self) -> Vec<Reference<'_>> {
-        match self {
-            Self::Gravity { .. } => Vec::new(),
-            Self::Force { on, .. } | Self::Drag(Drag { on, .. }) => vec![Reference::Point(on)],
-            Self::Torque { on, from, .. } => vec![Reference::Body(on), Reference::Body(from)],
-            Self::JointTorque { joint, .. } | Self::JointFriction(JointFriction { joint, .. }) => {
-                vec![Reference::Joint(joint)]
-            }
-            Self::TorsionalSpringDamper { on: Twisted::Joint(joint), .. } => vec![Reference::Joint(joint)],
-            Self::TorsionalSpringDamper { on: Twisted::Bodies(bodies), .. } => {
-                bodies.iter_mut().map(Reference::Body).collect()
-            }
-            Self::Stop(Stop { on, .. })
-            | Self::Servo(Servo { on, .. })
-            | Self::Preload(Preload { on: Preloaded::Joint(on), .. }) => vec![Reference::Joint(&mut on.joint)],
-            Self::Backlash(Backlash { between, .. }) => angles(between),
-            Self::SpringDamper { between, .. }
-            | Self::Bushing { between, .. }
-            | Self::Contact(Contact { between, .. })
-            | Self::ClearanceJoint(ClearanceJoint { between, .. })
-            | Self::Cable(Cable { between, .. })
-            | Self::Beam(Beam { between, .. })
-            | Self::Preload(Preload { on: Preloaded::Points(between), .. }) => points(between),
         }
     }
 }

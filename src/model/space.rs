@@ -3,7 +3,8 @@
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
 use super::description::Space;
-use crate::grammar::plane::{leaves_plane, leaves_plane_about, points_out, turns_out};
+use crate::elements::effects::EffectKind;
+use crate::grammar::plane::{leaves_plane, points_out, turns_out};
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -88,15 +89,5 @@ fn joint_leaves(joint: &Node) -> Option<String> {
 
 fn effect_leaves(effect: &Node) -> Option<String> {
     let [kind] = mapping(effect) else { return None };
-    if kind.key == "torque" && get(&kind.value, "value").is_some_and(leaves_plane_about) {
-        return Some("`value`".to_owned());
-    }
-    if get(&kind.value, "axis").is_some_and(turns_out) {
-        return Some("`axis`".to_owned());
-    }
-    let components = ["acceleration", "value", "along", "plane", "wind"].into_iter().find(|key| {
-        let value = get(&kind.value, key);
-        kind.key != "torque" && value.is_some_and(points_out)
-    });
-    components.map(|key| format!("`{key}`"))
+    EffectKind::leaves_plane(&kind.key, &kind.value).map(|key| format!("`{key}`"))
 }

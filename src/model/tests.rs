@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::elements::joints::*;
+use crate::grammar::Direction;
+use crate::methods::Degree;
 use symdiff::Formula;
 
 const SLIDER_CRANK: &str = include_str!("../../models/slider_crank.yaml");
@@ -52,7 +54,9 @@ fn the_slider_crank_is_what_its_file_says() {
     assert_eq!(model.bodies[3].coordinates, [Coordinate::X]);
     let JointKind::Revolute(Revolute { between, .. }) = &model.joints[2].kind else { panic!("revolute") };
     assert_eq!(*between, [PointRef { body: 2, point: Some(1) }, PointRef { body: 3, point: None }]);
-    let EffectKind::SpringDamper { along: Some([x, y, _]), free_length, .. } = &model.effects[1].kind else {
+    let EffectKind::SpringDamper(SpringDamper { along: Some(Direction([x, y, _])), free_length, .. }) =
+        &model.effects[1].kind
+    else {
         panic!("a spring along x")
     };
     assert_eq!((x.as_number(), y.as_number()), (Some(1.0), Some(0.0)));
@@ -180,7 +184,8 @@ guess: { bar.y: 2 }"#,
     assert!((angle.as_number().unwrap() - std::f64::consts::PI / 6.0).abs() < 1e-15);
     assert_eq!(model.bodies[0].points[0].name, "O");
     assert!(model.bodies[1].mass.is_none());
-    let EffectKind::Torque { from, value, .. } = &model.effects[2].kind else { panic!("a torque") };
+    let EffectKind::Torque(torque) = &model.effects[2].kind else { panic!("a torque") };
+    let (from, value) = (&torque.reaction_on(), &torque.value.0);
     assert_eq!((*from, value[2].as_number()), (1, Some(1000.0)));
 }
 

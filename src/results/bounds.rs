@@ -1,5 +1,6 @@
 //! What a run yields: bounds of every output over time.
 
+use crate::methods::Method;
 use crate::numerics::BandError;
 
 /// Bounds of every output of a model at the output times.
@@ -54,29 +55,4 @@ pub struct Band {
     pub lower: Vec<f64>,
     pub upper: Vec<f64>,
     pub error: BandError,
-}
-
-/// A bounding method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[allow(missing_docs)]
-pub enum Method {
-    Chebyshev,
-    Taylor,
-    Scan,
-    Certified,
-}
-
-impl Method {
-    /// All of them, in the order in which they are reported.
-    pub const ALL: [Self; 4] = [Self::Chebyshev, Self::Taylor, Self::Scan, Self::Certified];
-
-    /// Name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Chebyshev => "chebyshev",
-            Self::Taylor => "taylor",
-            Self::Scan => "scan",
-            Self::Certified => "certified",
-        }
-    }
 }

@@ -8,7 +8,8 @@ mod explanation;
 mod merge;
 mod summary;
 
-pub use bounds::{Band, Bounds, Contribution, Method, OutputBounds, foremost};
+pub use crate::methods::Method;
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, foremost};
 #[cfg(test)]
 pub(crate) use cost::tests as cost_tests;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::{Band, Bounds, Contribution, OutputBounds};
+
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -112,8 +114,8 @@ pub struct ErrorSummary {
     pub unresolved_from: Option<f64>,
 }
 
-/// A parameter's shares of an output's variance, alone and with others: means over the run, in which times count as the
-/// output's range is wide.
+/// A parameter's Sobol indices of an output, first-order and total: means over the run, weighted by the width of the output's
+/// range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct ContributionSummary {
@@ -123,7 +125,7 @@ pub struct ContributionSummary {
     pub total: f64,
 }
 
-/// What a method took. `method` is `nominal`, `probes`, `chebyshev`, `taylor`, `scan` or `certified`.
+/// What a method took. `method` is `nominal`, `validation` or a bounding method's name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct MethodSummary {
@@ -141,4 +143,46 @@ pub struct MethodSummary {
     pub boxes: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
+}
+
+impl ContributionSummary {
+    /// Of all outputs' bounds, the largest of each output first.
+    pub fn of(bounds: &Bounds) -> Vec<Self> {
+        let of_output = |(output, contributions): (&OutputBounds, &Vec<Contribution>)| {
+            let band = output.bands.iter().find(|band| band.method.about().has_sensitivities);
+            let width = |row: usize| band.map_or(0.0, |band| band.upper[row] - band.lower[row]);
+            let mean = |indices: &[f64]| {
+                let known = || (0..indices.len()).filter(|&row| indices[row].is_finite() && width(row).is_finite());
+                let total = known().map(width).sum::<f64>();
+                // Nothing varies.
+                if total == 0.0 { 0.0 } else { known().map(|row| width(row) * indices[row]).sum::<f64>() / total }
+            };
+            let summary = |contribution: &Contribution| ContributionSummary {
+                output: output.name.clone(),
+                parameter: contribution.parameter.clone(),
+                main: mean(&contribution.main),
+                total: mean(&contribution.total),
+            };
+            let mut summaries: Vec<ContributionSummary> = contributions.iter().map(summary).collect();
+            summaries.sort_by(|a, b| b.total.total_cmp(&a.total));
+            summaries
+        };
+        bounds.outputs.iter().zip(&bounds.contributions).flat_map(of_output).collect()
+    }
+}
+
+impl ErrorSummary {
+    /// Of every band.
+    pub fn of(bounds: &Bounds) -> Vec<Self> {
+        let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
+            output: output.name.clone(),
+            method: band.method.name().to_owned(),
+            width: band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower).fold(0.0, f64::max),
+            error: band.error.largest(),
+            surrogate: band.error.surrogate,
+            time: band.error.time,
+            unresolved_from: band.error.unresolved_from().map(|row| bounds.times[row]),
+        };
+        bounds.outputs.iter().flat_map(|output| output.bands.iter().map(move |band| of_band(output, band))).collect()
+    }
 }

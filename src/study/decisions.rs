@@ -4,7 +4,7 @@ use symdiff::{Formula, Input, lower};
 
 use super::formulation::{as_chosen, compiled, instructions};
 use super::subsystems::{Prepared, prepare};
-use crate::model::{ChebyshevRequest, Degree, Description, Output, ParameterValue, ScanRequest};
+use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};
 
@@ -75,17 +75,12 @@ fn saving(without: usize, with: usize, each: Each) -> Saving {
     Saving { instructions: without as i64 - with as i64, each }
 }
 
-/// Samples that the methods with grids ask for; the nominal one where there is no such method.
+/// Samples that the methods ask for beside the nominal one; none where that depends on the response.
 fn samples(description: &Description) -> Option<usize> {
-    let chebyshev = match &description.bounds.chebyshev {
-        Some(ChebyshevRequest { degree: Degree::Fixed { nodes, .. }, .. }) => nodes.iter().product(),
-        Some(_) => return None,
-        None => 0,
-    };
-    let scan = |ScanRequest { points }: &ScanRequest| points.iter().product::<usize>();
-    let certain = uncertain(description).is_empty();
-    let grids = if certain { 0 } else { chebyshev + description.bounds.scan.as_ref().map_or(0, scan) };
-    Some(1 + grids)
+    let methods = description.bounds.methods();
+    let counts = methods.iter().map(|(_, method)| method.samples()).collect::<Option<Vec<f64>>>()?;
+    let deterministic = uncertain(description).is_empty();
+    Some(1 + if deterministic { 0 } else { counts.into_iter().sum::<f64>() as usize })
 }
 
 /// Parts that move on their own, with what reaches them.
@@ -93,18 +88,18 @@ fn subsystems(description: &Description, prepared: &[Prepared]) -> Vec<Decision>
     let uncertain = uncertain(description);
     let whole = samples(description);
     let mut found = Vec::new();
-    for Prepared { island, simulator } in prepared {
-        let fewer = island.parameters.len() < uncertain.len();
+    for Prepared { subsystem, simulator } in prepared {
+        let fewer = subsystem.parameters.len() < uncertain.len();
         if prepared.len() == 1 && !fewer {
             continue;
         }
-        let own = samples(&island.description);
+        let own = samples(&subsystem.description);
         let saved = |(whole, own): (usize, usize)| {
             let each = instructions(simulator);
             saving(whole * each, own * each, Each::StepOfAllSamples)
         };
-        let names: Vec<String> = island.parameters.iter().map(|&number| uncertain[number].clone()).collect();
-        let bodies: Vec<String> = island.description.bodies.iter().skip(1).map(|body| body.name.clone()).collect();
+        let names: Vec<String> = subsystem.parameters.iter().map(|&number| uncertain[number].clone()).collect();
+        let bodies: Vec<String> = subsystem.description.bodies.iter().skip(1).map(|body| body.name.clone()).collect();
         let reached = match (names.as_slice(), own) {
             ([], _) => "no uncertain parameter reaches it".to_owned(),
             (_, Some(own)) => format!("of the uncertain parameters only {} reach it: {own} samples", named(&names)),
@@ -187,7 +182,7 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
 fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     let (mut other, mut count) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.island.description, &one.simulator);
+        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
         for parameter in &mut description.parameters {
             let ParameterValue::Formula(formula) = &parameter.value else { continue };
             if let Some(value) = formula.as_number() {
@@ -211,7 +206,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
 fn unasked(prepared: &[Prepared]) -> Option<Decision> {
     let (mut other, mut own) = (0, 0);
     for one in prepared {
-        let mut description = as_chosen(&one.island.description, &one.simulator);
+        let mut description = as_chosen(&one.subsystem.description, &one.simulator);
         let reactions = description
             .joints
             .iter()

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::formulation::{as_chosen, compiled};
 use super::{RunError, prepare_whole};
 use crate::compile::Program;
-use crate::model::{Description, load_str};
+use crate::model::{Description, EffectKind, load_str};
 use crate::results::{EffectCost, StepInstructions};
 use crate::simulate::Simulator;
 
@@ -28,48 +28,16 @@ outputs: { x: cart.x }
 simulation: { duration: 0.1, step: 1e-3, formulation: absolute }
 ";
 
-/// One of every kind.
-const EXAMPLES: [(&str, &str); 16] = [
-    ("gravity", "{ acceleration: [0, -9.81] }"),
-    ("force", "{ on: ball, value: [20*sin(3*t), 0] }"),
-    ("torque", "{ on: hinge, value: 2 - 0.1*arm.angular_velocity }"),
-    ("spring_damper", "{ between: [arm.tip, ball], stiffness: 500, damping: 4, free_length: 1 }"),
-    ("torsional_spring_damper", "{ on: hinge, stiffness: 5, damping: 0.1, free_angle: 0.3 }"),
-    ("bushing", "{ between: [arm.tip, ball], stiffness: [1e4, 2e4, 0], damping: 20, torsional_stiffness: 30 }"),
-    ("joint_friction", "{ on: hinge, coefficient: 0.15, radius: 10 mm }"),
-    (
-        "stop",
-        "{ on: hinge, lower: -1.5, upper: 0.8, impact: { stiffness: 1e4, restitution: 0.5, impact_velocity: 2 } }",
-    ),
-    (
-        "contact",
-        "{ between: [ground, ball], plane: y, radius: 0.1, impact: { stiffness: 1e6, restitution: 0.8, impact_velocity: 3 }, \
-         friction: { coefficient: 0.3 } }",
-    ),
-    (
-        "clearance_joint",
-        "{ between: [arm.socket, ball], clearance: 0.1 mm, radius: 10 mm, impact: { stiffness: 1e9, dissipation: 0.5 } }",
-    ),
-    ("servo", "{ on: hinge, target: 0.5*sin(2*t), proportional: 200, derivative: 8, limit: 30 N*m }"),
-    ("drag", "{ on: ball, density: 1.2 kg/m^3, drag_coefficient: 0.47, area: 0.03 m^2, wind: [5, 0] }"),
-    ("cable", "{ between: [arm.tip, cart.hook], free_length: 0.8, stiffness: 1e4, damping: 10 }"),
-    ("backlash", "{ between: [pinion, wheel], ratio: -0.5, backlash: 0.2 deg, stiffness: 2e3, damping: 0.5 }"),
-    ("preload", "{ between: [arm.tip, cart.hook], value: 15 N }"),
-    (
-        "beam",
-        "{ between: [arm.tip, ball], length: 0.3, axial_stiffness: 1e6, bending_stiffness: 20 N*m^2, damping: 1e-4 }",
-    ),
-];
-
 /// What every effect of the language adds to a small mechanism of the plane, in the order of `mbint explain --effects`.
 ///
 /// # Errors
 /// Never, but for a defect of the examples.
 pub fn language_costs() -> Result<Vec<(&'static str, EffectCost)>, RunError> {
     let bare = prepare_whole(&example(None))?;
-    let costs = EXAMPLES.par_iter().map(|&(keyword, keys)| {
-        let with = prepare_whole(&example(Some((keyword, keys))))?;
-        Ok((keyword, difference(&with, &bare)))
+    let docs = EffectKind::docs();
+    let costs = docs.par_iter().map(|docs| {
+        let with = prepare_whole(&example(Some((docs.keyword, docs.example))))?;
+        Ok((docs.keyword, difference(&with, &bare)))
     });
     costs.collect()
 }
@@ -121,12 +89,11 @@ fn difference(with: &Simulator, without: &Simulator) -> EffectCost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::effect_keywords;
 
     #[test]
     fn every_effect_has_its_cost() {
         let costs = language_costs().unwrap();
-        assert_eq!(costs.iter().map(|&(keyword, _)| keyword).collect::<Vec<_>>(), effect_keywords());
+        assert_eq!(costs.iter().map(|&(keyword, _)| keyword).collect::<Vec<_>>(), EffectKind::KEYWORDS);
         for (keyword, EffectCost { acting, apart }) in costs {
             println!("{keyword}: {acting:?}, {apart:?}");
             // The torque of a formula of t is one addition; a constant force is part of another constant or one more.
@@ -152,7 +119,8 @@ mod tests {
                 [p.sample(), p.step_size(), p.step(), p.factor(), p.correct(), p.advance(), p.observe(), p.matrix()];
             (tapes.map(symdiff::Tape::len), p.slots(), p.nonzeros)
         };
-        for (keyword, keys) in EXAMPLES {
+        for docs in EffectKind::docs() {
+            let (keyword, keys) = (docs.keyword, docs.example);
             let with = example(Some((keyword, keys)));
             let mut without = with.clone();
             without.effects.clear();

@@ -16,9 +16,9 @@ use crate::simulate::Simulator;
 /// Where it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let (reduction, prepared) = prepare(description, Choices::default())?;
-    let of_subsystem = |Prepared { island, simulator }: &Prepared| {
+    let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {
         let mut explanation = of_simulator(&description.name, simulator);
-        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&island.description, simulator)) {
+        for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&subsystem.description, simulator)) {
             effect.adds = adds;
         }
         explanation
@@ -42,7 +42,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
 
 /// Uncertain parameters on which no subsystem depends.
 fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
-    let reached = |number: &usize| prepared.iter().any(|one| one.island.parameters.contains(number));
+    let reached = |number: &usize| prepared.iter().any(|one| one.subsystem.parameters.contains(number));
     (0..uncertain.len()).filter(|number| !reached(number)).collect()
 }
 

@@ -8,9 +8,9 @@
 use std::fmt;
 
 use super::RunError;
-use super::run::{Ran, Study, Tried, summarised_errors};
+use super::single::{Ran, Study, Tried};
 use crate::numerics::{ParameterBox, Range, spread, validation};
-use crate::results::{self, Bounds, PieceSummary, Summary};
+use crate::results::{self, Bounds, ErrorSummary, PieceSummary, Summary};
 use crate::simulate::SimulationError;
 
 /// Samples of the box that tell how much of it fails.
@@ -219,7 +219,7 @@ fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
         until: ran.bounds.times[ran.whole - 1],
     };
     summary.pieces = ran.iter().map(piece).collect();
-    summary.errors = summarised_errors(bounds);
+    summary.errors = ErrorSummary::of(bounds);
     if ran.len() > 1 {
         summary.contributions.clear();
     }

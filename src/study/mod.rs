@@ -1,34 +1,30 @@
-//! Runs what a model asks for: every method's samples, on all cores, in bounded memory.
+//! Runs what a model asks for, on all cores and in bounded memory.
 //!
-//! `subsystems` separates a model into parts that do not interact. A `study` of each makes the step schedule and puts the methods' results together; `methods` runs each method's samples in
-//! blocks of output rows (a scan's in shards too), so that memory never grows with samples × steps, and reduces a block to
-//! bounds before the next is run; `certify` encloses pieces of the box; `compose` evaluates outputs from expanded coordinates, and
-//! `adapt` expands them as far as a tolerance asks for; `feasible` bounds the part of a box in which there is a motion. `cost` runs one model with many settings, to tell what accuracy costs.
+//! `subsystems` separates a model into parts that do not interact. A `single` study of each makes the step schedule and runs the requested
+//! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
+//! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
+//! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to.
 
-mod adapt;
-mod apportion;
-mod certify;
-mod compose;
+mod conclude;
 mod cost;
 mod decisions;
 mod deterministic;
 mod effect_costs;
+mod ensemble;
 mod explain;
 mod feasible;
-mod finding;
 mod formulation;
-mod methods;
-mod probe;
-mod run;
+mod single;
 mod step_search;
 mod subsystems;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;
+use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
-use crate::results::Summary;
-use crate::results::{Bounds, Method};
+use crate::results::{Bounds, Summary};
 use crate::simulate::{SimulationError, Simulator};
 
 use subsystems::Prepared;
@@ -76,16 +72,8 @@ pub enum RunError {
     Build(#[from] BuildError),
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    #[error(
-        "`{method}` of {parameters} uncertain parameters needs {solves:.2e} simulations: say in the model how many it shall take"
-    )]
-    TooMany { method: &'static str, solves: f64, parameters: usize },
-    #[error("certified bounds are for at most two uncertain parameters, not {parameters}")]
-    TooManyToCertify { parameters: usize },
-    #[error(
-        "certified bounds need a fixed `step` instead of a `tolerance`: which steps a tolerance chooses is nothing that could be enclosed"
-    )]
-    CertifiedSteps,
+    #[error(transparent)]
+    Refused(#[from] Refusal),
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
     #[error("the threads could not be started: {0}")]

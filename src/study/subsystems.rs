@@ -6,19 +6,21 @@
 
 use symdiff::Formula;
 
-use super::run::{Ran, Study, contributions, summarised_errors};
+use super::single::{Ran, Study};
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
-use crate::reduce::{Choices, Island, Reduction, narrow};
-use crate::results::{Bounds, Contribution, Method, OutputBounds, ParameterSummary, SubsystemSummary, Summary};
+use crate::reduce::{Choices, Reduction, Subsystem, narrow};
+use crate::results::{
+    Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
+};
 use crate::simulate::Simulator;
 
 /// A subsystem, compiled.
 pub struct Prepared {
     /// What it is.
-    pub island: Island,
+    pub subsystem: Subsystem,
     /// Its programs.
     pub simulator: Simulator,
 }
@@ -28,24 +30,24 @@ impl Prepared {
     ///
     /// # Errors
     /// Where it cannot be built or assembled.
-    pub fn new(mut island: Island) -> Result<Self, RunError> {
-        let simulator = formulation::compiled(&island.description)?;
+    pub fn new(mut subsystem: Subsystem) -> Result<Self, RunError> {
+        let simulator = formulation::compiled(&subsystem.description)?;
         let unused = simulator.system.unused_parameters();
         if unused.is_empty() {
-            return Ok(Self { island, simulator });
+            return Ok(Self { subsystem, simulator });
         }
         let mut uncertain = 0..;
-        for parameter in &mut island.description.parameters {
+        for parameter in &mut subsystem.description.parameters {
             let ParameterValue::Interval { nominal, .. } = parameter.value else { continue };
             if uncertain.next().is_some_and(|number| unused.contains(&number)) {
                 parameter.value = ParameterValue::Formula(Formula::number(nominal));
             }
         }
-        let left: Vec<usize> = (0..island.parameters.len()).filter(|number| !unused.contains(number)).collect();
-        narrow(&mut island.description, &left);
-        island.parameters = left.into_iter().map(|number| island.parameters[number]).collect();
-        let simulator = formulation::compiled(&island.description)?;
-        Ok(Self { island, simulator })
+        let left: Vec<usize> = (0..subsystem.parameters.len()).filter(|number| !unused.contains(number)).collect();
+        narrow(&mut subsystem.description, &left);
+        subsystem.parameters = left.into_iter().map(|number| subsystem.parameters[number]).collect();
+        let simulator = formulation::compiled(&subsystem.description)?;
+        Ok(Self { subsystem, simulator })
     }
 }
 
@@ -55,16 +57,16 @@ impl Prepared {
 /// Where a subsystem cannot be built or assembled.
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
-    let prepared = std::mem::take(&mut reduction.islands).into_iter().map(|island| {
+    let prepared = std::mem::take(&mut reduction.subsystems).into_iter().map(|subsystem| {
         // Joint coordinates that the model asks for may not exist in every subsystem.
         let carried = description.simulation.formulation == Formulation::Joint;
-        let absolute = carried.then(|| island.clone());
-        match (Prepared::new(island), absolute) {
-            (Err(RunError::Build(BuildError::NotCarried { .. })), Some(mut island))
+        let absolute = carried.then(|| subsystem.clone());
+        match (Prepared::new(subsystem), absolute) {
+            (Err(RunError::Build(BuildError::NotCarried { .. })), Some(mut subsystem))
                 if assemble::build(description).is_ok() =>
             {
-                island.description.simulation.formulation = Formulation::Absolute;
-                Prepared::new(island)
+                subsystem.description.simulation.formulation = Formulation::Absolute;
+                Prepared::new(subsystem)
             }
             (prepared, _) => prepared,
         }
@@ -84,37 +86,37 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     let count = prepared.len();
     let report = |place: usize| move |fraction: f64| (options.progress)((place as f64 + fraction) / count as f64);
     let reports: Vec<_> = (0..count).map(report).collect();
-    let mut islands = Vec::with_capacity(count);
+    let mut subsystems = Vec::with_capacity(count);
     let mut studies = Vec::with_capacity(count);
-    for (Prepared { island, simulator }, progress) in prepared.into_iter().zip(&reports) {
-        islands.push(island);
+    for (Prepared { subsystem, simulator }, progress) in prepared.into_iter().zip(&reports) {
+        subsystems.push(subsystem);
         studies.push((simulator, progress));
     }
     // All that can be refused is, before the first is run.
-    let studies = islands.iter().zip(studies).map(|(island, (simulator, progress))| {
-        let mut study = Study::new(&island.description, simulator, options)?;
+    let studies = subsystems.iter().zip(studies).map(|(subsystem, (simulator, progress))| {
+        let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
     let mut ran = Vec::with_capacity(count);
-    for (island, study) in islands.iter().zip(&studies) {
+    for (subsystem, study) in subsystems.iter().zip(&studies) {
         let (bounds, summary) = if options.skip_infeasible {
             feasible::run(study)?
         } else {
             let Ran { bounds, summary, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
             (bounds, summary)
         };
-        ran.push(Done { island, bounds, summary });
+        ran.push(Done { subsystem, bounds, summary });
     }
     Ok(Whole::of(description, reduction.left_out).merge(ran))
 }
 
 /// The budget is divided evenly among the subsystems with uncertain parameters.
 fn share_budget(prepared: &mut [Prepared]) {
-    let uncertain = prepared.iter().filter(|prepared| !prepared.island.parameters.is_empty()).count().max(1);
+    let uncertain = prepared.iter().filter(|prepared| !prepared.subsystem.parameters.is_empty()).count().max(1);
     for prepared in prepared {
-        let budget = &mut prepared.island.description.bounds.budget;
+        let budget = &mut prepared.subsystem.description.bounds.budget;
         budget.solves /= uncertain;
         budget.seconds = budget.seconds.map(|seconds| seconds / uncertain as f64);
     }
@@ -122,7 +124,7 @@ fn share_budget(prepared: &mut [Prepared]) {
 
 /// A subsystem's results.
 struct Done<'a> {
-    island: &'a Island,
+    subsystem: &'a Subsystem,
     bounds: Bounds,
     summary: Summary,
 }
@@ -161,7 +163,7 @@ impl<'a> Whole<'a> {
         let mut outputs: Vec<Option<OutputBounds>> = vec![None; count];
         let mut contributions = vec![Vec::new(); count];
         for done in &ran {
-            for (place, (&output, bounds)) in done.island.outputs.iter().zip(&done.bounds.outputs).enumerate() {
+            for (place, (&output, bounds)) in done.subsystem.outputs.iter().zip(&done.bounds.outputs).enumerate() {
                 let bounds = bounds.padded(times.len());
                 if known {
                     contributions[output] = self.contributions(done, place, &bounds);
@@ -188,10 +190,10 @@ impl<'a> Whole<'a> {
         let rows = bounds.nominal.len();
         let unknown = || vec![f64::NAN; rows];
         let of_subsystem = done.bounds.contributions.get(place);
-        let band = bounds.bands.iter().find(|band| band.method == Method::Chebyshev);
+        let band = bounds.bands.iter().find(|band| band.method.about().has_sensitivities);
         let contribution = |(number, parameter): (usize, &ParameterSummary)| {
             let name = parameter.name.clone();
-            match done.island.parameters.iter().position(|&own| own == number) {
+            match done.subsystem.parameters.iter().position(|&own| own == number) {
                 Some(own) => match of_subsystem.and_then(|contributions| contributions.get(own)) {
                     Some(found) => found.padded(rows),
                     None => {
@@ -211,8 +213,8 @@ impl<'a> Whole<'a> {
     }
 
     /// Values of a subsystem's parameters among those of all, where it has them.
-    fn spread<T: Clone>(&self, island: &Island, values: &[T], others: &[T]) -> Vec<T> {
-        let own = |number: usize| island.parameters.iter().position(|&own| own == number);
+    fn spread<T: Clone>(&self, subsystem: &Subsystem, values: &[T], others: &[T]) -> Vec<T> {
+        let own = |number: usize| subsystem.parameters.iter().position(|&own| own == number);
         (0..self.parameters.len())
             .map(|number| own(number).map_or(&others[number], |own| &values[own]).clone())
             .collect()
@@ -222,19 +224,19 @@ impl<'a> Whole<'a> {
         let zeros = vec![0; self.parameters.len()];
         for done in &mut ran {
             for method in &mut done.summary.methods {
-                method.order = method.order.as_ref().map(|order| self.spread(done.island, order, &zeros));
+                method.order = method.order.as_ref().map(|order| self.spread(done.subsystem, order, &zeros));
             }
             for piece in &mut done.summary.pieces {
-                piece.lower = self.spread(done.island, &piece.lower, &self.domain.lower);
-                piece.upper = self.spread(done.island, &piece.upper, &self.domain.upper);
+                piece.lower = self.spread(done.subsystem, &piece.lower, &self.domain.lower);
+                piece.upper = self.spread(done.subsystem, &piece.upper, &self.domain.upper);
             }
         }
         let subsystems: Vec<SubsystemSummary> =
             if ran.len() > 1 { ran.iter().map(|done| self.subsystem(done)).collect() } else { Vec::new() };
         let mut summary = Summary::of_subsystems(ran.into_iter().map(|done| done.summary).collect());
         if !subsystems.is_empty() {
-            summary.errors = summarised_errors(bounds);
-            summary.contributions = contributions(bounds);
+            summary.errors = ErrorSummary::of(bounds);
+            summary.contributions = ContributionSummary::of(bounds);
         }
         summary.parameters = self.parameters;
         summary.not_simulated = self.left_out;
@@ -243,7 +245,7 @@ impl<'a> Whole<'a> {
     }
 
     fn subsystem(&self, done: &Done) -> SubsystemSummary {
-        let Island { description, outputs, parameters } = done.island;
+        let Subsystem { description, outputs, parameters } = done.subsystem;
         SubsystemSummary {
             bodies: description.bodies.iter().skip(1).map(|body| body.name.clone()).collect(),
             outputs: outputs.iter().map(|&output| self.description.outputs[output].name.clone()).collect(),

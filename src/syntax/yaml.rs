@@ -74,7 +74,6 @@ impl Scalar {
 
 impl Node {
     /// The value of a key of a mapping.
-    #[allow(dead_code)] // what is derived uses it
     pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Mapping(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.value),

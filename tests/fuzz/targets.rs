@@ -1,8 +1,7 @@
 //! What is fuzzed. Each takes any text and may say of it what it likes, but not panic, hang or take much memory.
 
-use mbint::model::{
-    self, BoundsRequest, ChebyshevRequest, Description, Override, ScanRequest, Stepping, TaylorRequest,
-};
+use mbint::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
+use mbint::model::{self, Description, Override, Stepping};
 use mbint::study::{self, Options};
 
 /// Reads a model, and renders what is wrong with it.
@@ -68,9 +67,9 @@ fn shortened(mut description: Description) -> Option<Description> {
     }
     simulation.duration = 3.0 * simulation.output_step;
     let BoundsRequest { chebyshev, taylor, scan, certified, .. } = std::mem::take(&mut description.bounds);
-    description.bounds.chebyshev = chebyshev.map(|_| ChebyshevRequest::of_order(1, uncertain));
-    description.bounds.taylor = taylor.map(|request| TaylorRequest { order: 1, ..request });
-    description.bounds.scan = scan.map(|_| ScanRequest::of_points(2, uncertain));
-    description.bounds.certified = certified && uncertain < 2;
+    description.bounds.chebyshev = chebyshev.map(|_| Chebyshev::of_order(1, uncertain));
+    description.bounds.taylor = taylor.map(|request| Taylor { order: 1, ..request });
+    description.bounds.scan = scan.map(|_| Scan::of_points(2, uncertain));
+    description.bounds.certified = certified.filter(|_| uncertain < 2);
     Some(description)
 }

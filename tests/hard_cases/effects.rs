@@ -1,7 +1,8 @@
 //! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same laws
 //! in minimal coordinates solved by another method whose steps fall at events.
 
-use mbint::model::{BoundsRequest, ChebyshevRequest, Description, ScanRequest};
+use mbint::methods::{BoundsRequest, Chebyshev, Scan};
+use mbint::model::Description;
 use mbint::results::Method;
 
 use super::common::{Vary, band, curve, largest, nominal, order, output, read, run, run_methods, uncertain_count};
@@ -53,8 +54,8 @@ fn settles_at_order_two(errors: &[f64]) {
 fn bounds_hold(mut description: Description, name: &str, truths: &[Vec<f64>], allowed: f64) {
     let k = uncertain_count(&description);
     description.bounds = BoundsRequest {
-        chebyshev: Some(ChebyshevRequest::of_order(12, k)),
-        scan: Some(ScanRequest::of_points(41, k)),
+        chebyshev: Some(Chebyshev::of_order(12, k)),
+        scan: Some(Scan::of_points(41, k)),
         ..Default::default()
     };
     let bounds = run(&description);

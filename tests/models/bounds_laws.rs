@@ -1,6 +1,8 @@
 //! Laws that bounds obey whatever the mechanism.
 
-use mbint::model::{Description, ParameterValue, RangeKind, TaylorRequest};
+use mbint::methods::Taylor;
+use mbint::model::{Description, ParameterValue};
+use mbint::numerics::RangeKind;
 use mbint::results::{Bounds, Method};
 
 use super::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
@@ -52,7 +54,7 @@ fn taylor_and_chebyshev_agree_on_narrow_intervals() {
     let mut findings = Findings::default();
     for name in ["slider_crank", "double_pendulum", "four_bar", "quick_return", "scotch_yoke", "car_axis"] {
         let mut description = narrowed(model(name)).chebyshev(4, RangeKind::Tight);
-        description.bounds.taylor = Some(TaylorRequest { order: 4, range: RangeKind::Tight });
+        description.bounds.taylor = Some(Taylor { order: 4, range: RangeKind::Tight });
         for output in &run(&description).outputs {
             let (chebyshev, taylor) = (band(output, Method::Chebyshev), band(output, Method::Taylor));
             let difference = distance(&chebyshev.lower, &taylor.lower).max(distance(&chebyshev.upper, &taylor.upper));

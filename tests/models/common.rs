@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use mbint::model::{
-    self, ChebyshevRequest, Description, Expand, Output, ParameterValue, RangeKind, ScanRequest, Stepping,
-};
+use mbint::methods::{Chebyshev, Expand, Scan};
+use mbint::model::{self, Description, Output, ParameterValue, Stepping};
+use mbint::numerics::RangeKind;
 use mbint::results::Summary;
 use mbint::results::{Band, Bounds, Method, OutputBounds};
 use mbint::study::{self, Options};
@@ -136,15 +136,15 @@ impl Vary for Description {
     }
 
     fn chebyshev(mut self, order: usize, range: RangeKind) -> Self {
-        let order = ChebyshevRequest::of_order(order, uncertain_count(&self));
-        let request = ChebyshevRequest { expand: Expand::Output, range, ..order };
-        self.bounds = model::BoundsRequest { chebyshev: Some(request), ..Default::default() };
+        let order = Chebyshev::of_order(order, uncertain_count(&self));
+        let request = Chebyshev { expand: Expand::Output, range, ..order };
+        self.bounds = mbint::methods::BoundsRequest { chebyshev: Some(request), ..Default::default() };
         self
     }
 
     fn scan(mut self, points: usize) -> Self {
-        let request = ScanRequest::of_points(points, uncertain_count(&self));
-        self.bounds = model::BoundsRequest { scan: Some(request), ..Default::default() };
+        let request = Scan::of_points(points, uncertain_count(&self));
+        self.bounds = mbint::methods::BoundsRequest { scan: Some(request), ..Default::default() };
         self
     }
 }

@@ -1,15 +1,16 @@
 //! Bounds whose outputs are evaluated from the expanded independent coordinates (`expand: coordinates`).
 
-use mbint::model::{ChebyshevRequest, Degree, Description, Expand, ParameterValue, ScanRequest};
+use mbint::methods::{Chebyshev, Degree, Expand, Scan};
+use mbint::model::{Description, ParameterValue};
 use mbint::results::{Method, OutputBounds};
 
 use super::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
 
 fn composed(mut description: Description, order: usize, points: usize) -> Description {
     let k = uncertain_count(&description);
-    let chebyshev = ChebyshevRequest { expand: Expand::Coordinates, ..ChebyshevRequest::of_order(order, k) };
+    let chebyshev = Chebyshev { expand: Expand::Coordinates, ..Chebyshev::of_order(order, k) };
     description.bounds.chebyshev = Some(chebyshev);
-    description.bounds.scan = Some(ScanRequest::of_points(points, k));
+    description.bounds.scan = Some(Scan::of_points(points, k));
     description.bounds.taylor = None;
     description
 }

@@ -2,7 +2,9 @@
 //! more than ten times as large. The truths are closed forms, references, and other equations (minimal coordinates) solved by
 //! another method (Runge and Kutta's), over dense grids of the parameters.
 
-use mbint::model::{BoundsRequest, ChebyshevRequest, Description, RangeKind, ScanRequest, TaylorRequest};
+use mbint::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
+use mbint::model::Description;
+use mbint::numerics::RangeKind;
 use mbint::results::{Method, OutputBounds};
 
 use super::common::{Findings, Vary, band, model, output, read, reference, run, uncertain_count};
@@ -15,9 +17,9 @@ type Truth = Vec<(f64, f64)>;
 fn all_methods(mut description: Description, order: usize) -> Description {
     let k = uncertain_count(&description);
     description.bounds = BoundsRequest {
-        chebyshev: Some(ChebyshevRequest::of_order(order, k)),
-        taylor: Some(TaylorRequest { order: 2, range: RangeKind::Tight }),
-        scan: Some(ScanRequest::of_points(if k == 1 { 30 } else { 9 }, k)),
+        chebyshev: Some(Chebyshev::of_order(order, k)),
+        taylor: Some(Taylor { order: 2, range: RangeKind::Tight }),
+        scan: Some(Scan::of_points(if k == 1 { 30 } else { 9 }, k)),
         ..Default::default()
     };
     description

@@ -2,7 +2,9 @@
 //!
 //! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are made of.
 
-use mbint::model::{Description, RangeKind, TaylorRequest};
+use mbint::methods::Taylor;
+use mbint::model::Description;
+use mbint::numerics::RangeKind;
 use mbint::results::Method;
 
 use super::common::{
@@ -144,7 +146,7 @@ fn errors_of_low_orders_are_those_of_the_polynomials() {
     for (order, least, greatest) in [(2, 6.1e-2, 6.7e-2), (6, 0.8, 1.2)] {
         let mut description = slider_crank().step(1e-4);
         description.bounds = Default::default();
-        description.bounds.taylor = Some(TaylorRequest { order, range: RangeKind::Tight });
+        description.bounds.taylor = Some(Taylor { order, range: RangeKind::Tight });
         let [lower, upper] = bound_errors(&description, Method::Taylor);
         println!("taylor {order}: {lower:.3e}, {upper:.3e}");
         let worst = lower.max(upper);

@@ -1,6 +1,7 @@
 //! Bounds to a tolerance, of few and of many parameters, against truths of other methods.
 
-use mbint::model::{BoundsRequest, Budget, ChebyshevRequest, Description, ParameterValue};
+use mbint::methods::{BoundsRequest, Budget, Chebyshev};
+use mbint::model::{Description, ParameterValue};
 use mbint::results::{Bounds, Method};
 
 use super::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
@@ -10,7 +11,7 @@ fn within(mut description: Description, tolerance: f64, solves: usize) -> Descri
     description.bounds = BoundsRequest {
         tolerance: Some(tolerance),
         budget: Budget { solves, ..Budget::default() },
-        chebyshev: Some(ChebyshevRequest::ADAPTIVE),
+        chebyshev: Some(Chebyshev::ADAPTIVE),
         ..Default::default()
     };
     description

@@ -60,8 +60,16 @@ pub enum Absent {
 pub struct Key {
     pub doc: String,
     pub is_group: bool,
+    /// No key: the reader leaves its default there.
+    pub is_derived: bool,
+    /// A dimension from the fields before it, instead of the unit's.
+    pub dimension: Option<Expr>,
     pub unit: Option<LitStr>,
     pub absent: Absent,
+    /// What holds of an `Option` that is not there, in words.
+    pub otherwise: Option<LitStr>,
+    /// A key before it that must be smaller.
+    pub above: Option<syn::Ident>,
     /// The name of a `grammar::Context`.
     pub context: &'static str,
     pub requirement: Option<TokenStream>,
@@ -71,10 +79,23 @@ impl Key {
     pub fn read(field: &Field) -> Result<Self> {
         let absent = if is_option(field) { Absent::Nothing } else { Absent::Required };
         let doc = doc(&field.attrs);
-        let mut found = Self { doc, is_group: false, unit: None, absent, context: "Effect", requirement: None };
+        let mut found = Self {
+            doc,
+            is_group: false,
+            is_derived: false,
+            dimension: None,
+            unit: None,
+            absent,
+            otherwise: None,
+            above: None,
+            context: "Effect",
+            requirement: None,
+        };
         for attribute in &field.attrs {
             if attribute.path().is_ident("group") {
                 found.is_group = true;
+            } else if attribute.path().is_ident("derived") {
+                found.is_derived = true;
             } else if attribute.path().is_ident("quantity") || attribute.path().is_ident("key") {
                 attribute.parse_nested_meta(|meta| found.set(&meta))?;
             }
@@ -93,6 +114,9 @@ impl Key {
         let name = meta.path.get_ident().map(ToString::to_string).unwrap_or_default();
         match name.as_str() {
             "unit" => self.unit = Some(meta.value()?.parse()?),
+            "dimension" => self.dimension = Some(meta.value()?.parse()?),
+            "otherwise" => self.otherwise = Some(meta.value()?.parse()?),
+            "above" => self.above = Some(meta.value()?.parse()?),
             "constant" => self.context = "Constant",
             "time" => self.context = "Time",
             "positive" => self.requirement = requirement("POSITIVE"),
@@ -120,7 +144,7 @@ impl Key {
             }
             _ => {
                 return Err(meta.error(
-                    "a key has unit, default, default_with, constant, time, positive, nonnegative, nonzero, requires",
+                    "a key has unit, dimension, above, otherwise, default, default_with, constant, time, positive, nonnegative, nonzero, requires",
                 ));
             }
         }

@@ -30,8 +30,10 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
     let parts: Vec<Part> =
         fields.named.iter().map(|field| Ok(Part { field, key: Key::read(field)? })).collect::<Result<_>>()?;
     let ident = &input.ident;
-    let (names, keys) = (key_names(&parts), keys(&parts));
     let read = read(&about, &parts);
+    let (derived, parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| part.key.is_derived);
+    let derived = derived.iter().map(|part| &part.field.ident);
+    let (names, keys) = (key_names(&parts), keys(&parts));
     let (formulas, references) = (visit(&parts, "formulas"), visit(&parts, "references"));
     let leaves = leaves_plane(&parts);
     let role = match (&about.keyword, &about.what) {
@@ -66,6 +68,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
 
             fn formulas<'a>(&'a self, found: &mut Vec<&'a symdiff::Formula>) {
                 #formulas
+                #(self.#derived.iter().for_each(|derived| found.extend(derived.formulas()));)*
             }
 
             fn references<'a>(&'a mut self, found: &mut Vec<crate::grammar::Reference<'a>>) {
@@ -104,7 +107,10 @@ fn keys(parts: &[Part]) -> TokenStream {
         let (default, words) = match &key.absent {
             Absent::Default(value) => (quote!(<#ty as crate::grammar::Value>::to_json(&#value)), quote!(None)),
             Absent::Computed(words, _) => (quote!(None), quote!(Some(#words))),
-            Absent::Required | Absent::Nothing => (quote!(None), quote!(None)),
+            Absent::Required | Absent::Nothing => match &key.otherwise {
+                Some(words) => (quote!(None), quote!(Some(#words))),
+                None => (quote!(None), quote!(None)),
+            },
         };
         quote! {
             keys.push(crate::grammar::Key {
@@ -124,6 +130,11 @@ fn keys(parts: &[Part]) -> TokenStream {
 
 fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     let fields = parts.iter().map(read_field);
+    let ordered = parts.iter().filter_map(|part| {
+        let (ident, high, low) = (&part.field.ident, part.name(), part.key.above.as_ref()?);
+        let low_name = LitStr::new(&low.to_string(), low.span());
+        Some(quote!(crate::grammar::ordered(reader, fields, (#low_name, #low.as_ref()), (#high, #ident.as_ref()));))
+    });
     // Defaults that are computed may use the fields before them, which are there by then.
     let there = parts.iter().map(|part| {
         let ident = &part.field.ident;
@@ -144,6 +155,7 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     quote! {
         #before
         #(#fields)*
+        #(#ordered)*
         #(#there)*
         let found = Self { #(#idents),* };
         #after
@@ -153,6 +165,9 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
 
 fn read_field(part: &Part) -> TokenStream {
     let (ident, name, ty, key) = (&part.field.ident, part.name(), &part.field.ty, &part.key);
+    if key.is_derived {
+        return quote!(let #ident: Option<#ty> = Some(Default::default()););
+    }
     if key.is_group {
         return quote! {
             let #ident = <#ty as crate::grammar::Group>::read(reader, fields, units);
@@ -165,12 +180,17 @@ fn read_field(part: &Part) -> TokenStream {
         Some(requirement) => quote!(Some(#requirement)),
         None => quote!(None),
     };
+    let dimension = match &key.dimension {
+        Some(dimension) => quote!(Some(#dimension)),
+        None => quote!(None),
+    };
     let quantity = quote! {
         &crate::grammar::Quantity {
             unit: #unit,
             choice: units,
             context: crate::grammar::Context::#context,
             requirement: #requirement,
+            dimension: #dimension,
         }
     };
     let value = quote!(crate::grammar::Value::read(reader, node, fields.key_span(#name), #quantity));

@@ -15,8 +15,9 @@
 //!
 //! `equation` may be repeated; `short = "key"` lets a list stand for the mapping with that key alone. A struct without `keyword` is a
 //! mapping within an element where it says `what`, and else a group of keys. `checked` calls the struct's
-//! `grammar::Checked`. Of a key: `default = …`, `default_with("in words", expression of earlier keys)`, `constant` or `time` for
-//! what its formula may depend on, `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`.
+//! `grammar::Checked`. Of a key: `default = …`, `otherwise = "in words"` of an `Option`, `default_with("in words", expression of earlier keys)`, `constant` or `time` for
+//! what its formula may depend on, `dimension = …` where its unit depends on earlier keys, `above = key` of an earlier key that must be smaller, `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`. A `#[derived]` field is no key;
+//! it is its type's default, and an `Option` of something that has `formulas()`.
 
 mod attributes;
 mod choice;
@@ -26,7 +27,7 @@ use proc_macro::TokenStream;
 use syn::{DeriveInput, parse_macro_input};
 
 /// Derives `grammar::Group`, and `grammar::Element` or `grammar::Value`.
-#[proc_macro_derive(Element, attributes(element, quantity, key, group))]
+#[proc_macro_derive(Element, attributes(element, quantity, key, group, derived))]
 pub fn element(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     element::derive(&input).unwrap_or_else(|error| error.to_compile_error()).into()

@@ -296,6 +296,7 @@ delegated! {
     borrow:
     as_constant(a: Expr) -> Option<f64>;
     evaluate(roots: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64>;
+    is_empty() -> bool;
     is_zero(a: Expr) -> bool;
     len() -> usize;
     node(a: Expr) -> Node;

@@ -16,15 +16,8 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder, Turning};
 
+use super::Loads;
 use super::positive_part::PositivePart;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "backlash",
-    formulas: &["τ = k [p(x − b/2) − p(−x − b/2)] + c ẋ [p' + p'], x = θ₂ − ratio θ₁ − offset"],
-    source: "Nordin & Gutman, Automatica 38 (2002) 1633",
-};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
     let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);

@@ -22,18 +22,7 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
 use crate::model::{Beam, Measure, PointRef};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "beam",
-    formulas: &[
-        "N = EA e/L, e = ℓ − L + L (2 φ₁² − φ₁ φ₂ + 2 φ₂²)/30, φ against the chord",
-        "M₁ = (EI/L) (4 φ₁ + 2 φ₂) + N L (4 φ₁ − φ₂)/30, M₂ = (EI/L) (2 φ₁ + 4 φ₂) + N L (4 φ₂ − φ₁)/30",
-        "with damping τ: of each number plus τ times its rate",
-    ],
-    source: "Crisfield, Non-linear Finite Element Analysis of Solids and Structures 1 (1991), ch. 7",
-};
+use super::Loads;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Result<(), BuildError> {
     let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);

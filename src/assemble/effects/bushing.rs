@@ -25,14 +25,7 @@ use crate::assemble::rotation;
 use crate::assemble::space::{self, Vector};
 use crate::model::PointRef;
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "bushing",
-    formulas: &["F = −(K d + C ḋ), τ = −(K_t 2e + C_t ω), or six by six; d, 2e in the first frame's axes"],
-    source: "Shabana, Dynamics of Multibody Systems, 5th ed. (2020)",
-};
+use super::Loads;
 
 /// Stiffness or damping: by axis and, where there is one, the full matrix.
 pub struct Law {

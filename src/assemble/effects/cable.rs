@@ -15,15 +15,8 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
 use crate::model::{Cable, Measure};
 
+use super::Loads;
 use super::positive_part::{PositivePart, clipped};
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "cable",
-    formulas: &["T = ⟨k p(x) + c p'(x) ℓ̇⟩, x = ℓ − ℓ₀, p the positive part with a rounded corner"],
-    source: "Hooke",
-};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Result<(), BuildError> {
     let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);

@@ -15,17 +15,10 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
 use crate::model::ClearanceJoint;
 
+use super::Loads;
 use super::contact::{Shape, Touch};
 use super::dry_friction::DryFriction;
 use super::impact::Impact;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "clearance_joint",
-    formulas: &["gap = c − |d|, d across the axis; forces as of a contact"],
-    source: "Flores, Ambrósio, Claro & Lankarani, Kinematics and Dynamics of Multibody Systems with Imperfect Joints (2008)",
-};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoint) -> Result<(), BuildError> {
     let clearance = m.formula(g, &joint.clearance, Context::Time)?;
@@ -33,7 +26,11 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, joint: &ClearanceJoi
     let axis = m.vector(g, &joint.axis, Context::Time)?;
     let axis = m.is_spatial().then(|| space::unit(g, axis));
     let impact = Impact::of(g, m, &joint.impact)?;
-    let friction = joint.friction.as_ref().map(|friction| DryFriction::of(g, m, friction)).transpose()?;
+    let friction = joint
+        .friction
+        .as_ref()
+        .map(|friction| DryFriction::of(g, m, &friction.coefficient, &friction.speed))
+        .transpose()?;
     let shape = Shape::Hollow(clearance);
     Touch { between: joint.between, shape, radius, axis, impact, friction }.apply(g, m, loads);
     Ok(())

@@ -14,24 +14,17 @@
 //! centres meet, is no contact that this can tell. Apart the force and its slopes are exactly zero, and of a tile of samples that
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::joints::Pair;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
-use crate::model::{Contact, Measure, PointRef, Surface};
+use crate::model::{Contact, Measure, PointRef};
 
+use super::Loads;
 use super::dry_friction::DryFriction;
 use super::impact::Impact;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "contact",
-    formulas: &["f = K ⟨δ⟩ⁿ ⟨1 + χ δ̇⟩, δ = −gap; friction μ f s(u) u/√(u² + u₀²)"],
-    source: "Hunt & Crossley, J. Appl. Mech. 42 (1975) 440; Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369",
-};
 
 /// ε over R − r.
 const CENTRED: f64 = 1e-4;
@@ -62,21 +55,26 @@ pub struct Touch {
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, contact: &Contact) -> Result<(), BuildError> {
     let radius = m.formula(g, &contact.radius, Context::Time)?;
-    let direction = |g: &Builder, formulas| -> Result<Vector, BuildError> {
+    let direction = |g: &Builder, formulas: &[Formula; 3]| -> Result<Vector, BuildError> {
         let vector = m.vector(g, formulas, Context::Time)?;
         Ok(space::unit(g, vector))
     };
-    let axis = contact.axis.as_ref().map(|axis| direction(g, axis)).transpose()?;
-    let shape = match &contact.surface {
-        Surface::Plane(normal) => Shape::Plane(direction(g, normal)?),
-        Surface::Round(outer) => Shape::Round(m.formula(g, outer, Context::Time)?),
-        Surface::Hollow(bore) => {
+    let axis = contact.axis.as_ref().filter(|_| m.is_spatial()).map(|axis| direction(g, axis)).transpose()?;
+    let shape = match (&contact.plane, &contact.circle, &contact.hollow) {
+        (Some(normal), ..) => Shape::Plane(direction(g, normal)?),
+        (_, Some(outer), _) => Shape::Round(m.formula(g, outer, Context::Time)?),
+        (.., Some(bore)) => {
             let bore = m.formula(g, bore, Context::Time)?;
             Shape::Hollow(g.sub(bore, radius))
         }
+        (None, None, None) => return Ok(()),
     };
     let impact = Impact::of(g, m, &contact.impact)?;
-    let friction = contact.friction.as_ref().map(|friction| DryFriction::of(g, m, friction)).transpose()?;
+    let friction = contact
+        .friction
+        .as_ref()
+        .map(|friction| DryFriction::of(g, m, &friction.coefficient, &friction.speed))
+        .transpose()?;
     Touch { between: contact.between, shape, radius, axis, impact, friction }.apply(g, m, loads);
     Ok(())
 }

@@ -13,14 +13,7 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
 use crate::model::{Drag, Measure};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "drag",
-    formulas: &["F = −(b + ½ ρ c_d A |u|) u, u = ṙ − wind"],
-    source: "Rayleigh, Phil. Mag. 2 (1876) 430",
-};
+use super::Loads;
 
 /// ε, m/s
 const AT_REST: f64 = 1e-6;
@@ -30,7 +23,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Resu
     let wind = m.vector(g, &drag.wind, Context::Motion)?;
     let linear = m.formula(g, &drag.linear, Context::Motion)?;
     let mut quadratic = g.constant(1.0);
-    for factor in &drag.quadratic {
+    for factor in &drag.factors() {
         let factor = m.formula(g, factor, Context::Motion)?;
         quadratic = g.mul(quadratic, factor);
     }

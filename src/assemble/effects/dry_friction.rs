@@ -9,7 +9,7 @@
 //! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
 //! of the friction that it could bear at u₀ κ/√(1 − κ²).
 
-use symdiff::{Builder, Expr, Unary};
+use symdiff::{Builder, Expr, Formula, Unary};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
@@ -26,13 +26,13 @@ pub struct DryFriction {
 }
 
 impl DryFriction {
-    pub fn of(g: &Builder, m: &Mechanism, law: &model::DryFriction) -> Result<Self, BuildError> {
-        let stribeck = law.stribeck.as_ref().map(|speed| m.formula(g, speed, Context::Motion)).transpose()?;
+    pub fn of(g: &Builder, m: &Mechanism, coefficient: &Formula, law: &model::DryFriction) -> Result<Self, BuildError> {
+        let stribeck = law.stribeck_velocity.as_ref().map(|speed| m.formula(g, speed, Context::Motion)).transpose()?;
         Ok(Self {
-            coefficient: m.formula(g, &law.coefficient, Context::Motion)?,
+            coefficient: m.formula(g, coefficient, Context::Motion)?,
             breakaway: m.formula(g, &law.breakaway, Context::Motion)?,
             stribeck,
-            transition: m.formula(g, &law.transition, Context::Motion)?,
+            transition: m.formula(g, &law.transition_velocity, Context::Motion)?,
         })
     }
 

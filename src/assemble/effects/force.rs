@@ -12,10 +12,7 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::PointRef;
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet { keyword: "force", formulas: &["F = value"], source: "Newton" };
+use super::Loads;
 
 pub fn apply(
     g: &Builder,

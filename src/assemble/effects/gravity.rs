@@ -13,10 +13,7 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet { keyword: "gravity", formulas: &["F = m g at each centre of mass"], source: "Newton" };
+use super::Loads;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
     let acceleration = m.vector(g, acceleration, Context::Motion)?;

@@ -18,7 +18,7 @@ use symdiff::{Binary, Builder, Expr};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{self, Loss, RestitutionLaw};
+use crate::model::{self, RestitutionLaw};
 
 use super::positive_part::clipped;
 
@@ -34,13 +34,13 @@ pub struct Impact {
 impl Impact {
     pub fn of(g: &Builder, m: &Mechanism, impact: &model::Impact) -> Result<Self, BuildError> {
         let stiffness = m.formula(g, &impact.stiffness, Context::Motion)?;
-        let dissipation = match &impact.loss {
-            Loss::Dissipation(dissipation) => m.formula(g, dissipation, Context::Motion)?,
-            Loss::Restitution { law, restitution, velocity } => {
+        let dissipation = match (&impact.restitution, &impact.impact_velocity, &impact.dissipation) {
+            (None, _, Some(dissipation)) => m.formula(g, dissipation, Context::Motion)?,
+            (Some(restitution), Some(velocity), _) => {
                 let restitution = m.formula(g, restitution, Context::Motion)?;
                 let velocity = m.formula(g, velocity, Context::Motion)?;
                 let one = g.constant(1.0);
-                let (kept, factor) = match law {
+                let (kept, factor) = match impact.law {
                     RestitutionLaw::HuntCrossley => (restitution, 1.5),
                     RestitutionLaw::LankaraniNikravesh => (g.mul(restitution, restitution), 0.75),
                 };
@@ -48,8 +48,9 @@ impl Impact {
                 let ratio = g.div(lost, velocity);
                 g.scale(factor, ratio)
             }
+            _ => g.constant(0.0),
         };
-        Ok(Self { stiffness, exponent: impact.exponent, dissipation })
+        Ok(Self { stiffness, exponent: impact.exponent.0, dissipation })
     }
 
     /// f, by δ > 0 and δ̇.

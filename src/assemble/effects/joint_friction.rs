@@ -18,43 +18,36 @@ use crate::assemble::error::BuildError;
 use crate::assemble::joints;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
-use crate::model::{JointCoordinate, JointFriction, Measure, Rubbing};
+use crate::model::{FrictionMode, JointCoordinate, JointFriction, Measure};
 
+use super::Loads;
 use super::dry_friction::DryFriction;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "joint_friction",
-    formulas: &[
-        "f = −[(C + μ N) s(u)/√(u² + u₀²) + c] u, N the joint's own reaction",
-        "s(u) = 1 + (b − 1) exp(−(u/u_s)²)",
-    ],
-    source: "Oden & Martins, Comput. Methods Appl. Mech. Eng. 52 (1985) 527; Armstrong-Hélouvry, Control of Machines with Friction (1991)",
-};
 
 /// ε, N
 const NO_LOAD: f64 = 1e-6;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFriction) -> Result<(), BuildError> {
-    let joint = friction.joint;
-    let dry = DryFriction::of(g, m, &friction.dry)?;
+    let joint = friction.on.joint;
+    let dry = DryFriction::of(g, m, &friction.coefficient, &friction.dry)?;
     let constant = m.formula(g, &friction.coulomb, Context::Motion)?;
     let viscous = m.formula(g, &friction.viscous, Context::Motion)?;
-    let radius = m.formula(g, &friction.radius, Context::Motion)?;
+    let radius = match &friction.radius {
+        Some(radius) => m.formula(g, radius, Context::Motion)?,
+        None => g.constant(0.0),
+    };
     let load = load(g, m, friction)?;
     let mut bound = g.mul(dry.coefficient, load);
-    if friction.rubbing == Rubbing::Turning {
+    if friction.on.mode == FrictionMode::Turning {
         bound = g.mul(radius, bound);
     }
     let bound = g.add(constant, bound);
 
     let rate = |g: &Builder, coordinate| m.joint_rate(g, joint, coordinate);
     let mut efforts = Vec::new();
-    let velocity = match friction.rubbing {
-        Rubbing::Turning => vec![rate(g, JointCoordinate::Angle)?],
-        Rubbing::Sliding => vec![rate(g, JointCoordinate::Displacement)?],
-        Rubbing::Both => {
+    let velocity = match friction.on.mode {
+        FrictionMode::Turning => vec![rate(g, JointCoordinate::Angle)?],
+        FrictionMode::Sliding => vec![rate(g, JointCoordinate::Displacement)?],
+        FrictionMode::Both => {
             let turning = rate(g, JointCoordinate::Angle)?;
             vec![rate(g, JointCoordinate::Displacement)?, g.mul(radius, turning)]
         }
@@ -67,10 +60,10 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFric
         g.neg(drag)
     });
     let against: Vec<Expr> = against.collect();
-    match friction.rubbing {
-        Rubbing::Turning => efforts.push((JointCoordinate::Angle, against[0])),
-        Rubbing::Sliding => efforts.push((JointCoordinate::Displacement, against[0])),
-        Rubbing::Both => {
+    match friction.on.mode {
+        FrictionMode::Turning => efforts.push((JointCoordinate::Angle, against[0])),
+        FrictionMode::Sliding => efforts.push((JointCoordinate::Displacement, against[0])),
+        FrictionMode::Both => {
             efforts.push((JointCoordinate::Displacement, against[0]));
             efforts.push((JointCoordinate::Angle, g.mul(radius, against[1])));
         }
@@ -88,15 +81,15 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFric
 
 /// N.
 fn load(g: &Builder, m: &Mechanism, friction: &JointFriction) -> Result<Expr, BuildError> {
-    let reaction = &m.reactions[friction.joint];
+    let reaction = &m.reactions[friction.on.joint];
     let (force, torque) = (reaction.force, reaction.torque);
     let Some(length) = &friction.length else { return Ok(magnitude(g, force)) };
     let length = m.formula(g, length, Context::Motion)?;
-    let coordinate = match friction.rubbing {
-        Rubbing::Turning => JointCoordinate::Angle,
-        Rubbing::Sliding | Rubbing::Both => JointCoordinate::Displacement,
+    let coordinate = match friction.on.mode {
+        FrictionMode::Turning => JointCoordinate::Angle,
+        FrictionMode::Sliding | FrictionMode::Both => JointCoordinate::Displacement,
     };
-    let axis = joints::axis_in_ground(g, m, friction.joint, coordinate)?;
+    let axis = joints::axis_in_ground(g, m, friction.on.joint, coordinate)?;
     let couple = space::cross(g, torque, axis);
     let couple = couple.map(|component| g.div(component, length));
     let half = force.map(|component| g.scale(0.5, component));

@@ -4,7 +4,7 @@
 //! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion, which [`Loads`] sees to. Values may depend on
 //! parameters, t, positions, velocities and reactions.
 //!
-//! To add an effect: its file here, its variant in [`EffectKind`], its lines in [`apply`] and [`SHEETS`].
+//! To add an effect: its file in `elements::effects`, and its line here.
 
 mod backlash;
 mod beam;
@@ -30,7 +30,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint};
+use crate::model::force::Frame;
+use crate::model::torque::TorqueOn;
+use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, SpringDamper};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
@@ -38,63 +40,37 @@ use super::joints;
 use super::mechanism::Mechanism;
 use super::space::{self, Vector};
 
-/// What people are told of an effect, next to its keys.
-#[derive(Clone, Copy, Debug)]
-pub struct Sheet {
-    /// The word for it in a model file.
-    pub keyword: &'static str,
-    /// What it does, in the symbols of its file's head.
-    pub formulas: &'static [&'static str],
-    /// Where that is from.
-    pub source: &'static str,
-}
-
-/// Of every effect.
-pub const SHEETS: [Sheet; 16] = [
-    gravity::SHEET,
-    force::SHEET,
-    torque::SHEET,
-    spring_damper::SHEET,
-    torsional_spring_damper::SHEET,
-    bushing::SHEET,
-    joint_friction::SHEET,
-    stop::SHEET,
-    contact::SHEET,
-    clearance_joint::SHEET,
-    servo::SHEET,
-    drag::SHEET,
-    cable::SHEET,
-    backlash::SHEET,
-    preload::SHEET,
-    beam::SHEET,
-];
-
 /// Applies an effect.
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
     match kind {
-        EffectKind::Gravity { acceleration } => gravity::apply(g, m, loads, acceleration),
-        EffectKind::Force { on, value, in_body } => force::apply(g, m, loads, *on, value, *in_body),
-        EffectKind::Torque { on, from, value, in_body } => torque::apply(g, m, loads, *on, *from, value, *in_body),
-        EffectKind::JointTorque { joint, value } => torque::apply_at_joint(g, m, loads, *joint, value),
-        EffectKind::SpringDamper { between, along, stiffness, damping, free_length, force } => {
+        EffectKind::Gravity(gravity) => gravity::apply(g, m, loads, &gravity.acceleration),
+        EffectKind::Force(force) => force::apply(g, m, loads, force.on, &force.value, force.frame == Frame::Body),
+        EffectKind::Torque(torque) => match torque.on {
+            TorqueOn::Body(on) => {
+                torque::apply(g, m, loads, on, torque.reaction_on(), &torque.value.0, torque.frame == Frame::Body)
+            }
+            TorqueOn::Joint(joint) => torque::apply_at_joint(g, m, loads, joint, &torque.value.0[2]),
+        },
+        EffectKind::SpringDamper(spring) => {
+            let SpringDamper { between, along, stiffness, damping, free_length, force } = spring;
             let spring = spring_damper::Spring { stiffness, damping, free_length };
-            spring_damper::apply(g, m, loads, *between, along.as_ref(), spring, force.as_ref())
+            spring_damper::apply(g, m, loads, *between, along.as_deref(), spring, force.as_ref())
         }
-        EffectKind::TorsionalSpringDamper { on, stiffness, damping, free_angle, torque } => {
-            torsional_spring_damper::apply(g, m, loads, *on, [stiffness, damping, free_angle], torque.as_ref())
-        }
-        EffectKind::Bushing {
-            between,
-            stiffness,
-            damping,
-            torsional_stiffness,
-            torsional_damping,
-            stiffness_matrix,
-            damping_matrix,
-        } => {
-            let stiffness = bushing::Law::new(g, m, [stiffness, torsional_stiffness], stiffness_matrix.as_deref())?;
-            let damping = bushing::Law::new(g, m, [damping, torsional_damping], damping_matrix.as_deref())?;
-            bushing::apply(g, m, loads, *between, &stiffness, &damping)
+        EffectKind::TorsionalSpringDamper(spring) => torsional_spring_damper::apply(
+            g,
+            m,
+            loads,
+            spring,
+            [&spring.stiffness, &spring.damping, &spring.free_angle],
+            spring.torque.as_ref(),
+        ),
+        EffectKind::Bushing(bushing) => {
+            let full = [&bushing.stiffness_matrix, &bushing.damping_matrix];
+            let [full_stiffness, full_damping] = full.map(|matrix| matrix.as_ref().map(|matrix| &*matrix.0));
+            let stiffness =
+                bushing::Law::new(g, m, [&bushing.stiffness, &bushing.torsional_stiffness], full_stiffness)?;
+            let damping = bushing::Law::new(g, m, [&bushing.damping, &bushing.torsional_damping], full_damping)?;
+            bushing::apply(g, m, loads, bushing.between, &stiffness, &damping)
         }
         EffectKind::JointFriction(friction) => joint_friction::apply(g, m, loads, friction),
         EffectKind::Stop(stop) => stop::apply(g, m, loads, stop),

@@ -12,21 +12,14 @@ use symdiff::Builder;
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
-use crate::model::{Preload, Preloaded, TimeOrder};
+use crate::model::{Preload, TimeOrder};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "preload",
-    formulas: &["F constant, along the line between two points or on a joint's coordinate"],
-    source: "Newton",
-};
+use super::Loads;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
     let force = m.formula(g, &preload.value, Context::Motion)?;
-    let potential = match preload.on {
-        Preloaded::Points(between) => {
+    let potential = match (preload.between, preload.on) {
+        (Some(between), None) => {
             let [a, b] = between.map(|point| m.point(g, point));
             let line = space::sub(g, b.position, a.position);
             let length = space::norm(g, line);
@@ -35,12 +28,13 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, preload: &Preload) -
             loads.add_force_pair(g, &b, &a, pull);
             g.mul(force, length)
         }
-        Preloaded::Joint(on) => {
+        (_, Some(on)) => {
             loads.add_joint_effort(g, m, on, force)?;
             let place = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Position);
             let potential = g.mul(force, place);
             g.neg(potential)
         }
+        (None, None) => return Ok(()),
     };
     loads.add_potential(g, m, &[force], potential);
     Ok(())

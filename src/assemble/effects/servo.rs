@@ -13,14 +13,7 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Measure, Servo, TimeOrder};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "servo",
-    formulas: &["f = sat(k_p (target − s) + k_d (d target/dt − ṡ))"],
-    source: "Åström & Murray, Feedback Systems, 2nd ed. (2021)",
-};
+use super::Loads;
 
 /// ε over L.
 const CORNER: f64 = 0.01;

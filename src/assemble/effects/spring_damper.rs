@@ -21,14 +21,7 @@ use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
 use crate::model::{Measure, PointRef};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "spring_damper",
-    formulas: &["f = k (ℓ − ℓ₀) + c ℓ̇ + force(ℓ, ℓ̇), pulls the points together"],
-    source: "Hooke; Kelvin and Voigt",
-};
+use super::Loads;
 
 /// Its numbers.
 #[derive(Clone, Copy)]

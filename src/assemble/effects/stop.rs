@@ -12,15 +12,8 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::model::{Measure, Stop, TimeOrder};
 
+use super::Loads;
 use super::impact::Impact;
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "stop",
-    formulas: &["f = K ⟨δ⟩ⁿ ⟨1 + χ δ̇⟩, δ = lower − s or s − upper"],
-    source: "Hunt & Crossley, J. Appl. Mech. 42 (1975) 440; Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369",
-};
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Result<(), BuildError> {
     let on = stop.on;

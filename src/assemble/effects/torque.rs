@@ -13,11 +13,7 @@ use symdiff::{Builder, Formula};
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet =
-    Sheet { keyword: "torque", formulas: &["τ(on) = value, τ(from) = −value"], source: "Newton" };
+use super::Loads;
 
 pub fn apply(
     g: &Builder,

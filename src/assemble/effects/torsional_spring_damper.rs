@@ -13,37 +13,33 @@ use symdiff::{Builder, Formula};
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{JointCoordinate, Measure, TimeOrder, Twisted};
+use crate::model::{JointCoordinate, Measure, TimeOrder, TorsionalSpringDamper};
 
-use super::{Loads, Sheet};
-
-/// For `mbint explain --effects`.
-pub const SHEET: Sheet = Sheet {
-    keyword: "torsional_spring_damper",
-    formulas: &["τ = k (φ − φ₀) + c φ̇ + torque(φ, φ̇), turns back"],
-    source: "Hooke; Kelvin and Voigt",
-};
+use super::Loads;
 
 pub fn apply(
     g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
-    on: Twisted,
+    spring: &TorsionalSpringDamper,
     [stiffness, damping, free_angle]: [&Formula; 3],
     further: Option<&Formula>,
 ) -> Result<(), BuildError> {
     let stiffness = m.formula(g, stiffness, Context::Motion)?;
     let damping = m.formula(g, damping, Context::Motion)?;
     let free_angle = m.formula(g, free_angle, Context::Motion)?;
-    let (turned, rate) = match on {
-        Twisted::Bodies([first, second]) => (
+    let bodies = spring.between.map(|bodies| bodies.map(|body| body.0));
+    let (turned, rate) = match (bodies, spring.on) {
+        (Some([first, second]), None) => (
             g.sub(m.bodies[second].position[ANGLE], m.bodies[first].position[ANGLE]),
             g.sub(m.bodies[second].velocity[ANGLE], m.bodies[first].velocity[ANGLE]),
         ),
-        Twisted::Joint(joint) => {
+        (_, Some(joint)) => {
+            let joint = joint.0;
             let coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
             (coordinate(TimeOrder::Position), coordinate(TimeOrder::Velocity))
         }
+        (None, None) => return Ok(()),
     };
     let twist = g.sub(turned, free_angle);
     let elastic = g.mul(stiffness, twist);
@@ -56,15 +52,16 @@ pub fn apply(
     for (measure, value) in [(Measure::Angle, turned), (Measure::Rate, rate), (Measure::Torque, torque)] {
         loads.measure(measure, value);
     }
-    match on {
-        Twisted::Bodies([first, second]) => {
+    match (bodies, spring.on) {
+        (Some([first, second]), None) => {
             let zero = g.constant(0.0);
             loads.add_torque_pair(g, second, first, [zero, zero, torque]);
         }
-        Twisted::Joint(joint) => {
+        (_, Some(joint)) => {
             let back = g.neg(torque);
-            loads.add_joint_torque(g, m, joint, back)?;
+            loads.add_joint_torque(g, m, joint.0, back)?;
         }
+        (None, None) => {}
     }
     let square = g.mul(twist, twist);
     let doubled = g.mul(stiffness, square);

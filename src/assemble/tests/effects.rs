@@ -1,7 +1,12 @@
 use crate::assemble::System;
+use crate::grammar::{BodyRef, Components, Direction, PerAxis};
+use crate::model::beam::Flexible;
+use crate::model::bushing::SixBySix;
+use crate::model::force::Frame;
+use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{
-    Backlash, Beam, Cable, Contact, DryFriction, EffectKind, Impact, Loss, Preload, Preloaded, Surface, Turning,
-    Twisted,
+    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Force, Friction, Impact, Preload,
+    RestitutionLaw, SpringDamper, Torque, TorsionalSpringDamper, Turning,
 };
 
 use super::model::{Model, formula, pair, vector};
@@ -55,7 +60,7 @@ fn potential_rate(system: &System, state: &State) -> f64 {
 #[test]
 fn a_force_has_the_power_of_its_point() {
     let mut m = two_bodies();
-    m.effect(EffectKind::Force { on: m.point("a.P"), value: pair("3 + t", "-2*b.x"), in_body: false });
+    m.effect(Force { on: m.point("a.P"), value: Components(pair("3 + t", "-2*b.x")), frame: Frame::Ground });
     let system = m.build();
     let state = State::random(&system, 1);
     let force = [3.7, -2.0 * state.0[&system.q[3]]];
@@ -66,7 +71,7 @@ fn a_force_has_the_power_of_its_point() {
 #[test]
 fn a_force_in_the_body_turns_with_it() {
     let mut m = two_bodies();
-    m.effect(EffectKind::Force { on: m.point("a.P"), value: pair("3", "-2"), in_body: true });
+    m.effect(Force { on: m.point("a.P"), value: Components(pair("3", "-2")), frame: Frame::Body });
     let system = m.build();
     let state = State::random(&system, 2);
     let (sin, cos) = state.0[&system.q[2]].sin_cos();
@@ -78,11 +83,11 @@ fn a_force_in_the_body_turns_with_it() {
 #[test]
 fn a_torque_drives_one_body_against_the_other() {
     let mut m = two_bodies();
-    m.effect(EffectKind::Torque {
-        on: m.body_index("b"),
-        from: m.body_index("a"),
-        value: vector(["0", "0", "4"]),
-        in_body: false,
+    m.effect(Torque {
+        on: TorqueOn::Body(m.body_index("b")),
+        from: Some(BodyRef(m.body_index("a"))),
+        value: AboutAxes(vector(["0", "0", "4"])),
+        frame: Frame::Ground,
     });
     let system = m.build();
     let state = State::random(&system, 3);
@@ -100,10 +105,10 @@ fn gravity_pulls_down_and_has_its_potential() {
     assert_close(power(&system, &state), -potential_rate(&system, &state), 1e-8);
 }
 
-fn spring(m: &Model, along: Option<[symdiff::Formula; 3]>, stiffness: &str, damping: &str) -> EffectKind {
-    EffectKind::SpringDamper {
+fn spring(m: &Model, along: Option<[symdiff::Formula; 3]>, stiffness: &str, damping: &str) -> SpringDamper {
+    SpringDamper {
         between: m.between("a.P", "b.P"),
-        along,
+        along: along.map(Direction),
         stiffness: formula(stiffness),
         damping: formula(damping),
         free_length: formula("0.4"),
@@ -154,9 +159,9 @@ fn tension_pulls_the_points_together() {
         let mut m = Model::new();
         m.body("a", "1", "1", "x", &[]);
         m.body("b", "1", "1", "x", &[]);
-        m.effect(EffectKind::SpringDamper {
+        m.effect(SpringDamper {
             between: m.between("a", "b"),
-            along,
+            along: along.map(Direction),
             stiffness: formula("10"),
             damping: formula("3"),
             free_length: formula("2"),
@@ -173,8 +178,9 @@ fn tension_pulls_the_points_together() {
 #[test]
 fn a_torsional_spring_turns_back() {
     let mut m = two_bodies();
-    m.effect(EffectKind::TorsionalSpringDamper {
-        on: Twisted::Bodies([m.body_index("a"), m.body_index("b")]),
+    m.effect(TorsionalSpringDamper {
+        between: Some([BodyRef(m.body_index("a")), BodyRef(m.body_index("b"))]),
+        on: None,
         stiffness: formula("k"),
         damping: formula("0.3"),
         free_angle: formula("0.2"),
@@ -191,7 +197,7 @@ fn a_torsional_spring_turns_back() {
 fn nothing_is_left_of_a_spring_without_stiffness() {
     let mut m = Model::new();
     m.body("a", "1", "1", "xya", &[]);
-    m.effect(EffectKind::SpringDamper {
+    m.effect(SpringDamper {
         between: m.between("ground", "a"),
         along: None,
         stiffness: formula("0"),
@@ -219,14 +225,21 @@ fn effects_may_speak_of_reactions() {
     m.body("a", "1", "1", "xya", &[("P", "1", "0")]);
     m.revolute("pin", "ground", "a.P");
     let friction = vector(["0", "0", "-0.01*pin.force*tanh(100*a.angular_velocity)"]);
-    m.effect(EffectKind::Torque { on: 1, from: 0, value: friction, in_body: false });
+    m.effect(Torque { on: TorqueOn::Body(1), from: None, value: AboutAxes(friction), frame: Frame::Ground });
     let system = m.build();
     let symbols = system.graph.symbols_of(&[system.force[2]]);
     assert!(system.lambda.iter().all(|lambda| symbols.contains(lambda)));
 }
 
 fn elastic(stiffness: &str) -> Impact {
-    Impact { stiffness: formula(stiffness), exponent: 1.5, loss: Loss::Dissipation(formula("0")) }
+    Impact {
+        stiffness: formula(stiffness),
+        exponent: Exponent(1.5),
+        dissipation: None,
+        restitution: None,
+        impact_velocity: None,
+        law: RestitutionLaw::HuntCrossley,
+    }
 }
 
 /// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths are
@@ -235,9 +248,9 @@ fn elastic(stiffness: &str) -> Impact {
 fn what_takes_nothing_has_its_potential() {
     let m = two_bodies();
     let between = m.between("a.P", "b.P");
-    let contact = |surface: Surface| {
+    let contact = || {
         let (radius, impact) = (formula("0.9"), elastic("k"));
-        EffectKind::Contact(Contact { between, surface, radius, axis: None, impact, friction: None })
+        Contact { between, plane: None, circle: None, hollow: None, radius, axis: None, impact, friction: None }
     };
     let cable = Cable {
         between,
@@ -267,32 +280,32 @@ fn what_takes_nothing_has_its_potential() {
     ];
     let beam = Beam {
         between,
-        axis: pair("1", "0.5"),
+        axis: Direction(pair("1", "0.5")),
         length: formula("0.7"),
         axial_stiffness: formula("k"),
         bending_stiffness: formula("3"),
         damping: formula("0"),
-        mass_per_length: None,
+        flexible: None,
     };
-    let nothing = || [0.0; 3].map(symdiff::Formula::number);
-    let bushing = EffectKind::Bushing {
+    let nothing = || PerAxis([0.0; 3].map(symdiff::Formula::number));
+    let bushing = Bushing {
         between,
         stiffness: nothing(),
         damping: nothing(),
         torsional_stiffness: nothing(),
         torsional_damping: nothing(),
-        stiffness_matrix: Some(Box::new(matrix)),
+        stiffness_matrix: Some(SixBySix(Box::new(matrix))),
         damping_matrix: None,
     };
     let kinds = [
-        contact(Surface::Plane(pair("1", "2"))),
-        contact(Surface::Round(formula("3"))),
-        contact(Surface::Hollow(formula("0.91"))),
+        Contact { plane: Some(Direction(pair("1", "2"))), ..contact() }.into(),
+        Contact { circle: Some(formula("3")), ..contact() }.into(),
+        Contact { hollow: Some(formula("0.91")), ..contact() }.into(),
         EffectKind::Cable(cable),
         EffectKind::Backlash(backlash),
-        EffectKind::Preload(Preload { on: Preloaded::Points(between), value: formula("k/3") }),
+        EffectKind::Preload(Preload { between: Some(between), on: None, value: formula("k/3") }),
         EffectKind::Beam(beam),
-        bushing,
+        EffectKind::Bushing(bushing),
     ];
     for (index, kind) in kinds.into_iter().enumerate() {
         let mut m = two_bodies();
@@ -310,16 +323,16 @@ fn what_takes_nothing_has_its_potential() {
 }
 
 /// An element between points off both bodies' origins, its axis askew.
-fn heavy_beam(m: &Model, stiffness: &str) -> EffectKind {
-    EffectKind::Beam(Beam {
+fn heavy_beam(m: &Model, stiffness: &str) -> Beam {
+    Beam {
         between: m.between("a.P", "b.P"),
-        axis: pair("1", "0.5"),
+        axis: Direction(pair("1", "0.5")),
         length: formula("0.7"),
         axial_stiffness: formula(stiffness),
         bending_stiffness: formula(stiffness),
         damping: formula("0"),
-        mass_per_length: Some(formula("k/30")),
-    })
+        flexible: Some(Flexible { body: "rod".to_owned(), mass_per_length: formula("k/30") }),
+    }
 }
 
 /// Gravity pulls at the mass along beams too.
@@ -366,20 +379,20 @@ fn inertia_of_beams_agrees_with_lagrange() {
 /// Friction of a contact takes power, and no more than the load times the speed.
 #[test]
 fn rubbing_takes_power() {
-    let contact = |friction: Option<DryFriction>| {
+    let contact = |friction: Option<Friction>| {
         let mut m = two_bodies();
         let between = m.between("a.P", "b.P");
-        let (surface, radius, impact) = (Surface::Round(formula("3")), formula("0.9"), elastic("k"));
-        m.effect(EffectKind::Contact(Contact { between, surface, radius, axis: None, impact, friction }));
+        let (circle, radius, impact) = (Some(formula("3")), formula("0.9"), elastic("k"));
+        m.effect(Contact { between, plane: None, circle, hollow: None, radius, axis: None, impact, friction });
         m.output("effect0.force");
         m.build()
     };
-    let law = DryFriction {
-        coefficient: formula("0.3"),
+    let speed = DryFriction {
         breakaway: formula("1.5"),
-        stribeck: Some(formula("0.1")),
-        transition: formula("0.01"),
+        stribeck_velocity: Some(formula("0.1")),
+        transition_velocity: formula("0.01"),
     };
+    let law = Friction { coefficient: formula("0.3"), speed };
     let (smooth, rough) = (contact(None), contact(Some(law)));
     for seed in 0..5 {
         let [without, with] = [&smooth, &rough].map(|system| power(system, &State::random(system, seed)));

@@ -4,6 +4,9 @@ use symdiff::Formula;
 
 use crate::assemble::{self, System};
 use crate::elements::joints::Revolute;
+use crate::grammar::{Components, Direction};
+use crate::model::force::Frame;
+use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::*;
 
 pub fn formula(text: &str) -> Formula {
@@ -128,12 +131,12 @@ impl Model {
         self.joint(name, JointKind::Revolute(Revolute { between, axis: vector(["0", "0", "1"]) }));
     }
 
-    pub fn effect(&mut self, kind: EffectKind) {
-        self.0.effects.push(Effect { name: format!("effect{}", self.0.effects.len()), kind });
+    pub fn effect(&mut self, kind: impl Into<EffectKind>) {
+        self.0.effects.push(Effect { name: format!("effect{}", self.0.effects.len()), kind: kind.into() });
     }
 
     pub fn gravity(&mut self) {
-        self.effect(EffectKind::Gravity { acceleration: pair("0", "-9.81") });
+        self.effect(Gravity { acceleration: Components(pair("0", "-9.81")) });
     }
 
     pub fn initial(&mut self, body: &str, letter: char, order: TimeOrder, value: &str) {
@@ -165,10 +168,11 @@ pub fn slider_crank() -> Model {
     m.revolute("pivot", "ground", "crank.A");
     m.revolute("pin", "crank.B", "rod.B");
     m.revolute("wrist", "rod.C", "slider");
-    m.effect(EffectKind::Torque { on: 1, from: 0, value: vector(["0", "0", "tau"]), in_body: false });
-    let spring = EffectKind::SpringDamper {
+    let value = AboutAxes(vector(["0", "0", "tau"]));
+    m.effect(Torque { on: TorqueOn::Body(1), from: None, value, frame: Frame::Ground });
+    let spring = SpringDamper {
         between: m.between("ground", "slider"),
-        along: Some(pair("1", "0")),
+        along: Some(Direction(pair("1", "0"))),
         stiffness: formula("k"),
         damping: formula("c"),
         free_length: formula("l1 + l2"),

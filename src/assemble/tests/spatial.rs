@@ -5,7 +5,10 @@ use symdiff::Expr;
 
 use crate::assemble::System;
 use crate::elements::joints::*;
-use crate::model::{EffectKind, JointKind, Rotation};
+use crate::grammar::{BodyRef, Components, Direction, PerAxis};
+use crate::model::force::Frame;
+use crate::model::torque::{AboutAxes, TorqueOn};
+use crate::model::{Bushing, EffectKind, Force, Gravity, JointKind, Rotation, SpringDamper, Torque};
 
 use super::model::{Model, formula, vector};
 use super::numbers::{
@@ -276,8 +279,10 @@ fn forces_and_torques_have_the_power_of_what_they_act_on() {
     let (push, twist) = (Vector3::new(3.0, -2.0, 1.5), Vector3::new(0.7, -1.1, 0.4));
     for in_body in [false, true] {
         let mut m = two_lumps();
-        m.effect(EffectKind::Force { on: m.point("a.P"), value: vector(["3", "-2", "1.5"]), in_body });
-        m.effect(EffectKind::Torque { on: 2, from: 1, value: vector(["0.7", "-1.1", "0.4"]), in_body });
+        let frame = if in_body { Frame::Body } else { Frame::Ground };
+        m.effect(Force { on: m.point("a.P"), value: Components(vector(["3", "-2", "1.5"])), frame });
+        let value = AboutAxes(vector(["0.7", "-1.1", "0.4"]));
+        m.effect(Torque { on: TorqueOn::Body(2), from: Some(BodyRef(1)), value, frame });
         let system = m.build();
         let state = on_sphere(&system, 5);
         let q = state.list(&system.q);
@@ -293,27 +298,28 @@ fn forces_and_torques_have_the_power_of_what_they_act_on() {
 
 #[test]
 fn springs_bushings_and_gravity_have_their_potential() {
-    let zero = || [0.0; 3].map(symdiff::Formula::number);
+    let zero = || PerAxis([0.0; 3].map(symdiff::Formula::number));
     let m = two_lumps();
-    let spring = |along: Option<[symdiff::Formula; 3]>| EffectKind::SpringDamper {
+    let spring = |along: Option<[symdiff::Formula; 3]>| SpringDamper {
         between: m.between("a.P", "b.P"),
-        along,
+        along: along.map(Direction),
         stiffness: formula("50"),
         damping: formula("0"),
         free_length: formula("0.4"),
         force: None,
     };
-    let bushing = EffectKind::Bushing {
+    let bushing = Bushing {
         between: m.between("a.P", "b.P"),
-        stiffness: vector(["30", "50", "80"]),
+        stiffness: PerAxis(vector(["30", "50", "80"])),
         damping: zero(),
-        torsional_stiffness: vector(["3", "5", "8"]),
+        torsional_stiffness: PerAxis(vector(["3", "5", "8"])),
         torsional_damping: zero(),
         stiffness_matrix: None,
         damping_matrix: None,
     };
-    let gravity = EffectKind::Gravity { acceleration: vector(["1", "-2", "-9.81"]) };
-    for kind in [spring(None), spring(Some(vector(["1", "2", "-2"]))), bushing, gravity] {
+    let gravity = Gravity { acceleration: Components(vector(["1", "-2", "-9.81"])) };
+    let springs = [spring(None), spring(Some(vector(["1", "2", "-2"])))].map(EffectKind::SpringDamper);
+    for kind in springs.into_iter().chain([bushing.into(), gravity.into()]) {
         let mut m = two_lumps();
         m.effect(kind);
         let system = m.build();
@@ -328,12 +334,12 @@ fn springs_bushings_and_gravity_have_their_potential() {
 #[test]
 fn a_bushing_damps_relative_motion_only() {
     let mut m = two_lumps();
-    m.effect(EffectKind::Bushing {
+    m.effect(Bushing {
         between: m.between("a.P", "b.P"),
-        stiffness: [0.0; 3].map(symdiff::Formula::number),
-        damping: vector(["3", "3", "3"]),
-        torsional_stiffness: [0.0; 3].map(symdiff::Formula::number),
-        torsional_damping: vector(["2", "2", "2"]),
+        stiffness: PerAxis([0.0; 3].map(symdiff::Formula::number)),
+        damping: PerAxis(vector(["3", "3", "3"])),
+        torsional_stiffness: PerAxis([0.0; 3].map(symdiff::Formula::number)),
+        torsional_damping: PerAxis(vector(["2", "2", "2"])),
         stiffness_matrix: None,
         damping_matrix: None,
     });

@@ -1,4 +1,4 @@
-//! `cost.csv`: a row a setting.
+//! `cost.csv`: one row for each setting.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use csv::WriterBuilder;
 use super::plot::cost_svg;
 use crate::export::csv::number;
 use crate::export::files::ExportError;
-use crate::export::folder::Together;
+use crate::export::folder::AtomicFiles;
 use crate::model::Stepping;
 use crate::results::{CostPoint, CostStudy, Deviation};
 
@@ -80,7 +80,7 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
 /// # Errors
 /// At the first file that cannot be written.
 pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = Together::in_folder(dir)?;
+    let mut files = AtomicFiles::in_folder(dir)?;
     let plot = cost_svg(study).map_err(|message| ExportError::Plot { output: "cost".to_owned(), message })?;
     files.add("cost.csv", &cost_csv(study)?)?;
     files.add("cost.svg", plot.as_bytes())?;
@@ -90,7 +90,7 @@ pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ExportE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::CostMethod;
+    use crate::results::cost_tests::SCAN;
     use crate::results::cost_tests::sample;
 
     #[test]
@@ -100,7 +100,7 @@ mod tests {
         study.bounds.push(CostPoint {
             points: Some(5),
             failure: Some("a, b".into()),
-            ..CostPoint::without_result(CostMethod::Scan, Stepping::Fixed(0.01))
+            ..CostPoint::without_result(SCAN, Stepping::Fixed(0.01))
         });
         study.bounds[0].front = true;
         let text = String::from_utf8(cost_csv(&study).unwrap()).unwrap();

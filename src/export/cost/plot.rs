@@ -1,7 +1,7 @@
 //! `cost.svg`: error against seconds, both logarithmic; bounds on the left, nominal trajectories on the right.
 //!
-//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings
-//! that none of its own betters; the thick grey line, those that none of all does (Pareto's front).
+//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings on
+//! its own Pareto front; the thick grey line is the front of all methods.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -33,11 +33,10 @@ const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// The colours of the plots of bounds, and others that are apart from them for every colour vision.
 fn color(method: CostMethod) -> RGBColor {
     match method {
-        CostMethod::Composed => RGBColor(0, 114, 178),
-        CostMethod::Tight => RGBColor(86, 180, 233),
-        CostMethod::Interval => RGBColor(0, 158, 115),
-        CostMethod::Taylor => RGBColor(240, 160, 20),
-        CostMethod::Scan => RGBColor(130, 25, 80),
+        CostMethod::Bounds(curve) => {
+            let [red, green, blue] = curve.about().color;
+            RGBColor(red, green, blue)
+        }
         CostMethod::Scheme(Scheme::Hht { .. }) => RGBColor(0, 114, 178),
         CostMethod::Scheme(Scheme::TrapezoidalIndex2) => RGBColor(130, 25, 80),
         CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.65 => {
@@ -136,8 +135,8 @@ impl Panel<'_, '_> {
         self.text(label, (x - 4.0, self.bottom - 6.0), HPos::Right, VPos::Bottom)
     }
 
-    /// The common front below every method's dots and line, and the legend above. What is below the reference's own error
-    /// is shown at it.
+    /// The common front below every method's dots and line, and the legend above. Errors below the reference's own error are
+    /// shown at that error.
     fn curves(&self, points: &[CostPoint], reference: f64) -> Drawn {
         let all = || points.iter().filter(|point| is_shown(point));
         self.front(&all().map(|point| point.place(reference)).collect::<Vec<Point>>(), FRONT, 7.0)?;
@@ -178,7 +177,7 @@ impl Panel<'_, '_> {
         (across, self.bottom - self.y.place(seconds) * (self.bottom - self.top))
     }
 
-    /// A line through those points that no other betters.
+    /// A line through the points on the Pareto front.
     fn front(&self, points: &[Point], color: RGBColor, width: f64) -> Drawn {
         let line: Vec<Point> = pareto(points).into_iter().map(|place| self.place(points[place])).collect();
         self.line(&line, color, width)
@@ -205,12 +204,13 @@ impl Panel<'_, '_> {
 mod tests {
     use super::*;
     use crate::model::Stepping;
+    use crate::results::cost_tests::COMPOSED;
     use crate::results::cost_tests::{sample, study};
 
     #[test]
     fn the_plot_shows_every_method_and_leaves_out_what_has_no_result() {
         let mut whole = sample();
-        whole.bounds.push(CostPoint::without_result(CostMethod::Composed, Stepping::Fixed(1e-2)));
+        whole.bounds.push(CostPoint::without_result(COMPOSED, Stepping::Fixed(1e-2)));
         for study in [whole, study(vec![])] {
             let svg = cost_svg(&study).unwrap();
             assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));

@@ -8,25 +8,27 @@ use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
 mod bodies;
-mod effects;
 mod joints;
 mod model;
 mod run;
 mod values;
 
 pub use bodies::*;
-pub use effects::*;
 pub use joints::*;
 pub use model::*;
 pub use run::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
-use crate::grammar::values::{Components, Direction, Number, PerAxis, Rotation, TorqueValue};
+use crate::grammar::values::{Components, Direction, Number, Rotation};
+
+/// What the schema is called by those that refer to it.
+const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
 
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(File);
+    schema.insert("$id".to_owned(), SCHEMA_ID.into());
     schema.insert("title".to_owned(), "mbint model".into());
     RecursiveTransform(without_null).transform(&mut schema);
     // A schema is a tree of JSON values: writing it out cannot fail.
@@ -88,12 +90,6 @@ mod tests {
         same_keys::<Prismatic>();
         same_keys::<Screw>();
         same_keys::<Rotation>();
-        same_keys::<Bushing>();
-        same_keys::<Effect>();
-        same_keys::<SpringDamper>();
-        same_keys::<JointFriction>();
-        same_keys::<Contact>();
-        same_keys::<Impact>();
         same_keys::<Simulation>();
         same_keys::<Bounds>();
         same_keys::<Budget>();

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
+use crate::elements::effects::{EffectKind, Impact};
 
 grammar! {
     /// A mechanism, its uncertain parameters, and what is asked of it.
@@ -27,7 +28,7 @@ grammar! {
         /// What holds the bodies together.
         joints: Option<IndexMap<String, Joint>>,
         /// What moves the bodies.
-        effects: Option<IndexMap<String, Effect>>,
+        effects: Option<IndexMap<String, EffectKind>>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
         initial: Option<IndexMap<String, StartFile>>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
@@ -61,7 +62,7 @@ grammar! {
         /// Instead of the model's of the same name, or on top.
         joints: Option<IndexMap<String, Joint>>,
         /// Instead of the model's of the same name, or on top.
-        effects: Option<IndexMap<String, Effect>>,
+        effects: Option<IndexMap<String, EffectKind>>,
         /// Instead of the model's of the same name, or on top.
         initial: Option<IndexMap<String, StartFile>>,
         /// Instead of the model's of the same name, or on top.

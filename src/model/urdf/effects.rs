@@ -4,15 +4,14 @@
 //! Damping is −d v, Coulomb friction −f tanh(v/v₀), each between the joint's two bodies, v the joint's velocity. They are
 //! called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
 
-use crate::grammar::{JointCoordinate, OnJoint};
+use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
 
 use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
-use crate::grammar::motions::dimensions_of;
+use crate::elements::effects::joint_friction::FrictionJoint;
+use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
 use crate::model::description::Effect;
-use crate::model::effect_kinds::{DryFriction, EffectKind, Impact, JointFriction, Rubbing, Stop};
-use crate::model::effects;
 use crate::model::file;
 use crate::model::names::Reader;
 use crate::model::scenes::{self, LeftOut};
@@ -74,16 +73,16 @@ fn rubbing<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found
         let value = formula(reader, &source.value(number));
         let none = || Formula::number(0.0);
         let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
-        let (rubbing, slow) =
-            if joint.kind.turns() { (Rubbing::Turning, SLOW_TURN) } else { (Rubbing::Sliding, SLOW_SLIDE) };
+        let (mode, slow) =
+            if joint.kind.turns() { (FrictionMode::Turning, SLOW_TURN) } else { (FrictionMode::Sliding, SLOW_SLIDE) };
         let dry = DryFriction {
-            coefficient: none(),
             breakaway: Formula::number(1.0),
-            stribeck: None,
-            transition: Formula::number(slow),
+            stribeck_velocity: None,
+            transition_velocity: Formula::number(slow),
         };
-        let kind = JointFriction { joint: found, rubbing, dry, coulomb, viscous, radius: none(), length: None };
-        let effect = Effect { name: format!("{}.{what}", joint.name), kind: EffectKind::JointFriction(kind) };
+        let on = FrictionJoint { joint: found, mode };
+        let kind = JointFriction { on, coefficient: none(), dry, coulomb, viscous, radius: None, length: None };
+        let effect = Effect { name: format!("{}.{what}", joint.name), kind: kind.into() };
         effects.push(RobotEffect { effect, numbers: vec![number] });
     }
     effects
@@ -96,7 +95,9 @@ fn impact(reader: &mut Reader, source: &Source, node: &Node, at: &Span, kind: Ki
         return None;
     }
     let fields = reader.fields::<file::Limits>(node, at.clone())?;
-    effects::impact(reader, &fields, dimensions_of(coordinate))
+    let node = reader.required(&fields, "impact")?;
+    let units = Quantity { choice: coordinate.unit_choice(), ..Quantity::default() };
+    Impact::read(reader, node, fields.key_span("impact"), &units)
 }
 
 fn stop<'r>(
@@ -108,8 +109,7 @@ fn stop<'r>(
     impact: Impact,
 ) -> RobotEffect<'r> {
     let [lower, upper] = [&limits.lower, &limits.upper].map(|number| Some(formula(reader, &source.value(number))));
-    let effect =
-        Effect { name: format!("{}.limit", joint.name), kind: EffectKind::Stop(Stop { on, lower, upper, impact }) };
+    let effect = Effect { name: format!("{}.limit", joint.name), kind: Stop { on, lower, upper, impact }.into() };
     RobotEffect { effect, numbers: vec![&limits.lower, &limits.upper] }
 }
 

@@ -1,6 +1,7 @@
 //! The study as data, and the choice from it.
 
 use crate::compile::Scheme;
+use crate::methods::Curve;
 use crate::model::Stepping;
 
 /// A work-precision study of one model. Errors are relative to each output's scale: the widest that the reference's band
@@ -181,16 +182,8 @@ impl Deviation {
 /// A curve of the study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CostMethod {
-    /// Chebyshev, outputs composed from expanded coordinates.
-    Composed,
-    /// Chebyshev of the outputs, the polynomials' own ranges.
-    Tight,
-    /// Chebyshev of the outputs, Σ|c|: the paper's.
-    Interval,
-    /// Taylor, tight.
-    Taylor,
-    /// Full-factorial scan.
-    Scan,
+    /// Bounds.
+    Bounds(Curve),
     /// One simulation, by this scheme.
     Scheme(Scheme),
 }
@@ -199,11 +192,7 @@ impl CostMethod {
     /// In files.
     pub fn name(self) -> String {
         match self {
-            Self::Composed => "chebyshev.coordinates".to_owned(),
-            Self::Tight => "chebyshev.tight".to_owned(),
-            Self::Interval => "chebyshev.interval".to_owned(),
-            Self::Taylor => "taylor".to_owned(),
-            Self::Scan => "scan".to_owned(),
+            Self::Bounds(curve) => curve.about().name.to_owned(),
             Self::Scheme(Scheme::Hht { alpha }) => format!("hht({alpha})"),
             Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
                 format!("generalised_alpha({spectral_radius})")
@@ -215,11 +204,7 @@ impl CostMethod {
     /// For people.
     pub fn label(self) -> String {
         match self {
-            Self::Composed => "Chebyshev, composed".to_owned(),
-            Self::Tight => "Chebyshev, tight".to_owned(),
-            Self::Interval => "Chebyshev, Σ|c|".to_owned(),
-            Self::Taylor => "Taylor".to_owned(),
-            Self::Scan => "Scan".to_owned(),
+            Self::Bounds(curve) => curve.about().label.to_owned(),
             Self::Scheme(Scheme::Hht { alpha }) => format!("HHT-I3, α = −{}", (1e3 * alpha.abs()).round() / 1e3),
             Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
                 format!("Generalised-α, ρ∞ = {spectral_radius}")
@@ -232,6 +217,13 @@ impl CostMethod {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::methods::Method;
+
+    pub const COMPOSED: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 0 });
+    pub const TIGHT: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 1 });
+    pub const INTERVAL: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 2 });
+    pub const TAYLOR: CostMethod = CostMethod::Bounds(Curve { method: Method::Taylor, place: 0 });
+    pub const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, place: 0 });
 
     pub fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
         let deviation = Deviation::Bounds { over_width, under_coverage };
@@ -251,7 +243,7 @@ pub(crate) mod tests {
             model: "crank".into(),
             tolerance: 1e-3,
             reference: CostReference {
-                method: CostMethod::Composed,
+                method: COMPOSED,
                 order: 12,
                 steps: [1e-4, 2e-4, 4e-4].map(Stepping::Fixed),
                 bounds_error: 1e-5,
@@ -267,12 +259,12 @@ pub(crate) mod tests {
     /// One of each kind.
     pub fn sample() -> CostStudy {
         study(vec![
-            point(CostMethod::Interval, 0.01, 0.4, 0.0),
+            point(INTERVAL, 0.01, 0.4, 0.0),
             // Too narrow is no better than too wide.
-            point(CostMethod::Scan, 0.02, 0.0, 2e-3),
-            point(CostMethod::Composed, 0.05, 3e-4, 8e-4),
-            point(CostMethod::Tight, 0.04, 9.95e-4, 0.0),
-            CostPoint { failure: Some("it locks".into()), ..point(CostMethod::Taylor, 0.001, 0.0, 0.0) },
+            point(SCAN, 0.02, 0.0, 2e-3),
+            point(COMPOSED, 0.05, 3e-4, 8e-4),
+            point(TIGHT, 0.04, 9.95e-4, 0.0),
+            CostPoint { failure: Some("it locks".into()), ..point(TAYLOR, 0.001, 0.0, 0.0) },
         ])
     }
 
@@ -280,12 +272,12 @@ pub(crate) mod tests {
     fn the_cheapest_is_within_the_tolerance_in_both_directions() {
         let mut study = sample();
         // The tight one is within it only if the reference is exact.
-        assert_eq!(study.cheapest().unwrap().method, CostMethod::Composed);
+        assert_eq!(study.cheapest().unwrap().method, COMPOSED);
         study.reference.bounds_error = 0.0;
-        assert_eq!(study.cheapest().unwrap().method, CostMethod::Tight);
+        assert_eq!(study.cheapest().unwrap().method, TIGHT);
         study.tolerance = 1e-4;
         assert_eq!(study.cheapest(), None);
-        assert_eq!(study.nearest().unwrap().method, CostMethod::Composed);
+        assert_eq!(study.nearest().unwrap().method, COMPOSED);
     }
 
     #[test]

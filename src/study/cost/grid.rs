@@ -1,22 +1,19 @@
 //! The settings that a study tries: methods, orders, points and steps.
 
-use crate::model::{
-    BoundsRequest, ChebyshevRequest, Description, Expand, RangeKind, ScanRequest, Simulation, Stepping, TaylorRequest,
-};
+use crate::methods::{BoundsRequest, Curve, Method};
+use crate::model::{Description, Simulation, Stepping};
 use crate::results::CostMethod;
-use crate::results::Method;
-
-/// Orders of Chebyshev surrogates.
-const CHEBYSHEV_ORDERS: [usize; 4] = [2, 3, 5, 8];
-
-/// Orders of Taylor polynomials.
-const TAYLOR_ORDERS: [usize; 3] = [1, 2, 3];
-
-/// Points of scans, a parameter.
-const SCAN_POINTS: [usize; 3] = [5, 10, 30];
 
 /// Steps, in parts of the model's own.
 const PARTS: [f64; 6] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// Of which all samples lie in the true range: what a reference is checked by.
+pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, place: 0 });
+
+/// What a reference is made by: the expansion of coordinates or, where the model does not admit that, of outputs.
+pub(super) fn smoothest(composable: bool) -> CostMethod {
+    CostMethod::Bounds(Curve { method: Method::Chebyshev, place: usize::from(!composable) })
+}
 
 /// What is run once, or a few times for the clock's sake.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,16 +50,10 @@ pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
 
 /// Every setting, method by method, composed ones only if outputs can be.
 pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting> {
-    let composed = composable.then_some((CostMethod::Composed, &CHEBYSHEV_ORDERS[..]));
-    let others: [(CostMethod, &[usize]); 4] = [
-        (CostMethod::Tight, &CHEBYSHEV_ORDERS),
-        (CostMethod::Interval, &CHEBYSHEV_ORDERS),
-        (CostMethod::Taylor, &TAYLOR_ORDERS),
-        (CostMethod::Scan, &SCAN_POINTS),
-    ];
     let mut settings = Vec::new();
-    for (method, counts) in composed.into_iter().chain(others) {
-        for &count in counts {
+    for curve in Curve::all().filter(|curve| composable || !curve.about().composes) {
+        let method = CostMethod::Bounds(curve);
+        for &count in curve.about().counts {
             settings.extend(steppings(simulation).into_iter().map(|stepping| Setting { method, count, stepping }));
         }
     }
@@ -70,48 +61,30 @@ pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting
 }
 
 impl Setting {
-    /// The method that a run reports it under.
-    pub(super) fn reported(&self) -> Method {
+    /// The method under which a run reports it.
+    pub(super) fn reported(&self) -> Option<Method> {
         match self.method {
-            CostMethod::Taylor => Method::Taylor,
-            CostMethod::Scan => Method::Scan,
-            _ => Method::Chebyshev,
+            CostMethod::Bounds(curve) => Some(curve.method),
+            CostMethod::Scheme(_) => None,
         }
     }
 
     /// The model that asks for this and nothing else.
     pub(super) fn applied(&self, model: &Description) -> Description {
-        let k = uncertain(model);
-        let chebyshev = |expand, range| BoundsRequest {
-            chebyshev: Some(ChebyshevRequest { expand, range, ..ChebyshevRequest::of_order(self.count, k) }),
-            ..BoundsRequest::default()
-        };
         let mut model = model.clone();
+        let k = uncertain(&model);
         model.simulation.stepping = self.stepping;
-        model.bounds = match self.method {
-            CostMethod::Composed => chebyshev(Expand::Coordinates, RangeKind::Tight),
-            CostMethod::Tight => chebyshev(Expand::Output, RangeKind::Tight),
-            CostMethod::Interval => chebyshev(Expand::Output, RangeKind::Interval),
-            CostMethod::Taylor => BoundsRequest {
-                taylor: Some(TaylorRequest { order: self.count, ..TaylorRequest::default() }),
-                ..BoundsRequest::default()
-            },
-            CostMethod::Scan => {
-                BoundsRequest { scan: Some(ScanRequest::of_points(self.count, k)), ..BoundsRequest::default() }
-            }
-            // One simulation, and no bounds.
-            CostMethod::Scheme(_) => BoundsRequest::default(),
-        };
+        model.bounds = BoundsRequest::default();
+        if let CostMethod::Bounds(curve) = self.method {
+            (curve.about().ask)(&mut model.bounds, self.count, k);
+        }
         model
     }
 
-    /// Simulations that it takes of k parameters; a jet counts as the products of its coefficients.
-    pub(super) fn solves(&self, k: usize) -> f64 {
+    /// Simulations that it takes of k parameters.
+    pub(super) fn simulations(&self, k: usize) -> f64 {
         match self.method {
-            CostMethod::Composed | CostMethod::Tight | CostMethod::Interval => ((self.count + 1) as f64).powi(k as i32),
-            CostMethod::Scan => (self.count as f64).powi(k as i32),
-            // Pairs of monomials of at most this degree together: (2k + order) over order.
-            CostMethod::Taylor => (1..=self.count).fold(1.0, |pairs, i| pairs * (2 * k + i) as f64 / i as f64),
+            CostMethod::Bounds(curve) => (curve.about().simulations)(self.count, k),
             CostMethod::Scheme(_) => 1.0,
         }
     }
@@ -122,13 +95,14 @@ impl Setting {
             Stepping::Fixed(step) => 1.0 / step,
             Stepping::Tolerance(tolerance) => 1.0 / tolerance.cbrt(),
         };
-        self.solves(k) * steps
+        self.simulations(k) * steps
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::cost_tests::{COMPOSED, TAYLOR, TIGHT};
 
     fn simulation(stepping: Stepping) -> Simulation {
         Simulation {
@@ -158,13 +132,13 @@ mod tests {
     }
 
     #[test]
-    fn work_is_solves_times_steps() {
+    fn work_is_simulations_times_steps() {
         let setting = |method, count, step| Setting { method, count, stepping: Stepping::Fixed(step) };
-        assert_eq!(setting(CostMethod::Scan, 30, 1e-3).solves(2), 900.0);
-        assert_eq!(setting(CostMethod::Composed, 5, 1e-3).solves(2), 36.0);
+        assert_eq!(setting(SCAN, 30, 1e-3).simulations(2), 900.0);
+        assert_eq!(setting(COMPOSED, 5, 1e-3).simulations(2), 36.0);
         // 1, ξ₁, ξ₂ and 1, 2 · (ξ₁, ξ₂): five products.
-        assert_eq!(setting(CostMethod::Taylor, 1, 1e-3).solves(2), 5.0);
-        let halved = setting(CostMethod::Tight, 5, 5e-4).work(2) / setting(CostMethod::Tight, 5, 1e-3).work(2);
+        assert_eq!(setting(TAYLOR, 1, 1e-3).simulations(2), 5.0);
+        let halved = setting(TIGHT, 5, 5e-4).work(2) / setting(TIGHT, 5, 1e-3).work(2);
         assert!((halved - 2.0).abs() < 1e-12);
     }
 }

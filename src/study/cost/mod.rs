@@ -14,8 +14,8 @@ mod timing;
 use std::time::Instant;
 
 use super::RunError;
-use super::compose;
-use crate::model::{Description, MOST_SOLVES};
+use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
+use crate::model::Description;
 use crate::results::{CostMethod, CostPoint, CostStudy, pareto};
 
 use grid::{Setting, settings, uncertain};
@@ -61,7 +61,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let begun = Instant::now();
     let system = super::prepare(model)?.system;
     let k = uncertain(model);
-    let composable = compose::fits(k, system.q.len());
+    let composable = can_compose(k, system.q.len());
     let plan = Plan::within_budget(model, composable, options)?;
     let reference = Reference::compute(model, &plan, options, &|done| (options.progress)(REFERENCE_DONE * done))?;
 
@@ -131,7 +131,7 @@ fn run_settings(
         };
         let rate = entry(&mut rates, setting.method, 0.0);
         let late = begun.elapsed().as_secs_f64() + *rate * work > options.budget;
-        if late || setting.solves(k) > MOST_SOLVES {
+        if late || setting.simulations(k) > MOST_SIMULATIONS {
             *entry(&mut skipped, setting.method, 0) += 1;
         } else {
             let point = point(model, setting, reference, options, &progress);
@@ -163,8 +163,12 @@ fn point(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CostPoint {
-    let order = (setting.method != CostMethod::Scan).then_some(setting.count);
-    let points = (setting.method == CostMethod::Scan).then_some(setting.count);
+    let varied = match setting.method {
+        CostMethod::Bounds(curve) => Some(curve.about().varied),
+        CostMethod::Scheme(_) => None,
+    };
+    let order = (varied == Some(Varied::Order)).then_some(setting.count);
+    let points = (varied == Some(Varied::Points)).then_some(setting.count);
     let point = CostPoint { order, points, ..CostPoint::without_result(setting.method, setting.stepping) };
     match timed(model, setting, options, progress) {
         Ok(((bounds, summary), seconds)) => {

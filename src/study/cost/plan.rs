@@ -1,6 +1,6 @@
 //! Which reference can be had within the budget.
 
-use super::grid::{Setting, finer, uncertain};
+use super::grid::{SCAN, Setting, finer, smoothest, uncertain};
 use super::timing::timed;
 use super::{CostError, CostOptions};
 use crate::model::Description;
@@ -57,9 +57,9 @@ impl Plan {
             // One simulation, which is cheap.
             return Ok(Self { method: CostMethod::Scheme(scheme(model)), order: 0, parts: FINEST[0], scan: None });
         }
-        let method = if composable { CostMethod::Composed } else { CostMethod::Tight };
+        let method = smoothest(composable);
         let setting = |count, parts| Setting { method, count, stepping: finer(simulation, parts) };
-        let solves = |order| setting(order, 1.0).solves(k);
+        let solves = |order| setting(order, 1.0).simulations(k);
         let highest = ORDERS.get(k - 1).copied();
         let highest =
             highest.unwrap_or_else(|| (2..=FEW).rev().find(|&order| solves(order) <= MOST_SOLVES).unwrap_or(2));
@@ -102,7 +102,7 @@ fn measured(model: &Description, setting: &Setting, options: &CostOptions) -> Re
 fn dense_scan(model: &Description, parts: f64, options: &CostOptions) -> Result<Option<usize>, CostError> {
     let k = uncertain(model);
     let (Some(&few), Some(dense)) = (SCAN_PROBE.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
-    let scan = |count, parts| Setting { method: CostMethod::Scan, count, stepping: finer(&model.simulation, parts) };
+    let scan = |count, parts| Setting { method: SCAN, count, stepping: finer(&model.simulation, parts) };
     let probe = scan(few, 1.0);
     let rate = measured(model, &probe, options)? / probe.work(k);
     let seconds = |points: usize| {

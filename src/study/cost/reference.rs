@@ -8,7 +8,7 @@
 //! - *Scan.* Its samples lie in the true range. What is left is taken to be as much as it adds to a scan of half its density.
 
 use super::deviation::Known;
-use super::grid::{Setting, finer};
+use super::grid::{SCAN, Setting, finer};
 use super::plan::Plan;
 use super::timing::bounds;
 use super::{CostError, CostOptions};
@@ -60,9 +60,9 @@ impl Reference {
         }
         if let Some(points) = plan.scan {
             let scan = |points| {
-                let fine = run(CostMethod::Scan, points, h)?;
+                let fine = run(SCAN, points, h)?;
                 match h {
-                    Stepping::Fixed(_) => Ok(extrapolated(&fine, &run(CostMethod::Scan, points, h2)?)),
+                    Stepping::Fixed(_) => Ok(extrapolated(&fine, &run(SCAN, points, h2)?)),
                     Stepping::Tolerance(_) => Ok::<_, CostError>(fine.outputs),
                 }
             };

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::CostOptions;
 use super::grid::Setting;
+use crate::methods::Method;
 use crate::model::Description;
 use crate::results::Bounds;
 use crate::results::{MethodSummary, Summary};
@@ -69,6 +70,6 @@ pub(super) fn timed(
 
 /// What the setting's method took; the nominal run stands before it.
 pub(super) fn method<'s>(summary: &'s Summary, setting: &Setting) -> &'s MethodSummary {
-    let name = setting.reported().name();
-    summary.methods.iter().find(|method| method.method == name).unwrap_or(&summary.methods[0])
+    let of = |method: Method| summary.methods.iter().find(|line| line.method == method.name());
+    setting.reported().and_then(of).unwrap_or(&summary.methods[0])
 }

@@ -1,24 +1,15 @@
-//! Which tolerance matters: each parameter's part in the spread of every output, row by row.
+//! Which tolerance matters: Sobol indices of every parameter for every output, row by row.
 
-use super::compose::Row;
+use super::composition::Row;
+use crate::methods::result::Sensitivity;
 use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate, SurrogateWork, extremes};
 
-/// Degree of the polynomials whose variance is apportioned, by the number of parameters: the outputs', which follow from
-/// the coordinates' at any number of points. For more parameters the shape is the surrogate's own.
+/// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which follow from
+/// the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
 const DEGREES: [usize; 3] = [24, 12, 8];
 
-/// How an output's spread in one row comes about.
-#[derive(Clone, Debug)]
-pub(super) struct Parts {
-    /// Each parameter's share of the variance, alone; with others too.
-    pub main: Vec<f64>,
-    pub total: Vec<f64>,
-    /// Width of the range if a parameter were at its nominal value.
-    pub width_without: Vec<f64>,
-}
-
-/// What apportioning needs that is the same in all rows.
-pub(super) struct Apportion {
+/// What is the same in all rows.
+pub(super) struct SensitivityAnalysis {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
     fine: Option<(Surrogate, SobolDecomposition)>,
@@ -27,36 +18,36 @@ pub(super) struct Apportion {
     varies: bool,
 }
 
-impl Apportion {
+impl SensitivityAnalysis {
     /// For outputs that are composed from a surrogate over a box.
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
         let fine = k.checked_sub(1).and_then(|place| DEGREES.get(place)).map(|&degree| {
             let fine = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
-            let shares = SobolDecomposition::new(fine.basis());
-            (fine, shares)
+            let decomposition = SobolDecomposition::new(fine.basis());
+            (fine, decomposition)
         });
         let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
         Self { nominal, fine, own: SobolDecomposition::new(surrogate.basis()), varies }
     }
 
-    /// The parts of every output's spread, whose ranges are known.
-    pub fn parts(&self, row: &Row, found: &[Extent]) -> Vec<Parts> {
-        let (surrogate, shares) = match &self.fine {
-            Some((fine, shares)) => (fine, shares),
+    /// Sensitivities of every output, whose ranges are known.
+    pub fn of_row(&self, row: &Row, found: &[Extent]) -> Vec<Sensitivity> {
+        let (surrogate, decomposition) = match &self.fine {
+            Some((fine, decomposition)) => (fine, decomposition),
             None => (row.surrogate(), &self.own),
         };
         let coefficients = surrogate.coefficients(&row.evaluate(surrogate.samples()), &mut SurrogateWork::default());
         let k = self.nominal.len();
         let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
-            let (main, total) = match shares.indices(coefficients).filter(|_| self.varies) {
-                Some(shares) => (shares.main, shares.total),
-                // Nothing varies: nobody has a part in it.
+            let (main, total) = match decomposition.indices(coefficients).filter(|_| self.varies) {
+                Some(indices) => (indices.main, indices.total),
+                // Nothing varies.
                 None => (vec![0.0; k], vec![0.0; k]),
             };
-            Parts { main, total, width_without: widths.iter().map(|widths| widths[output]).collect() }
+            Sensitivity { main, total, width_without: widths.iter().map(|widths| widths[output]).collect() }
         };
         coefficients.chunks_exact(surrogate.basis().len()).enumerate().map(of_output).collect()
     }

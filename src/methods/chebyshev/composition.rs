@@ -5,12 +5,12 @@ use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use super::probe::Table;
+use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::validation::ValidationTable;
 use crate::numerics::{
     Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, corners, extremes,
     extremes_near, largest, step_error, surrogate_error,
 };
-use crate::simulate::{Closure, Points, SimulationError, Simulator, choose_independent};
 
 /// For so many parameters ranges are found on a grid; for more, by a search.
 const MOST_PARAMETERS: usize = 3;
@@ -24,26 +24,26 @@ const RESOLUTION: f64 = 0.15;
 /// Fewest and most points of the grid along an axis, by the number of parameters.
 const POINTS: [(usize, usize); MOST_PARAMETERS] = [(9, 129), (9, 33), (7, 15)];
 
-/// Whether outputs can be composed: of some parameters, and not too many coordinates.
-pub(super) fn fits(parameters: usize, coordinates: usize) -> bool {
+/// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
+pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
     parameters > 0 && coordinates <= MOST_COORDINATES
 }
 
 /// One mechanism's closures, and what is evaluated through them.
 pub(super) struct Composer<'a> {
-    simulator: &'a Simulator,
+    ensemble: &'a dyn Ensemble,
     /// Those used so far.
-    closures: Vec<Closure<'a>>,
+    closures: Vec<Box<dyn Closure + 'a>>,
 }
 
 impl<'a> Composer<'a> {
-    /// Which has used none yet.
-    pub fn new(simulator: &'a Simulator) -> Self {
-        Self { simulator, closures: Vec::new() }
+    /// Without any closure yet.
+    pub fn new(ensemble: &'a dyn Ensemble) -> Self {
+        Self { ensemble, closures: Vec::new() }
     }
 
-    /// Looks at rows, in parallel block by block (a row is told what is known of the one before in its block), given the motions
-    /// of a surrogate's samples over a box (`stride` values a row, the first 2n lines of samples).
+    /// Applies `look` to rows, in parallel block by block (with the extremes of the row before in the same block), given the
+    /// motions of a surrogate's samples over a box (`stride` values a row, the first 2n lines of samples).
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -53,21 +53,21 @@ impl<'a> Composer<'a> {
         domain: &ParameterBox,
         times: &[f64],
         (motions, stride): (&[f64], usize),
-        look: impl Fn(usize, &Row, &mut Known) -> T + Sync,
-    ) -> Result<Vec<T>, SimulationError> {
-        let lines = 2 * self.simulator.system.q.len() * surrogate.samples().len();
+        look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
+    ) -> Result<Vec<T>, EnsembleError> {
+        let lines = 2 * self.ensemble.scales().len() * surrogate.samples().len();
         let mut chosen = Vec::with_capacity(times.len());
         for (&time, motion) in times.iter().zip(motions.chunks_exact(stride)) {
             chosen.push(self.choose(surrogate, domain, time, &motion[..lines])?);
         }
         let look_at_block = |(block, times): (usize, &[f64])| {
-            let (mut work, mut known) = (SurrogateWork::default(), Known::default());
+            let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
             let first = block * BLOCK;
             let at = |(place, &time): (usize, &f64)| {
                 let row = first + place;
-                let (closure, motion) = (&self.closures[chosen[row]], &motions[row * stride..][..lines]);
-                let at = Row::new(self.simulator, surrogate, domain, closure, time, motion, &mut work);
-                look(row, &at, &mut known)
+                let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..lines]);
+                let at = Row::new(self.ensemble, surrogate, domain, closure, time, motion, &mut work);
+                look(row, &at, &mut previous)
             };
             times.iter().enumerate().map(at).collect::<Vec<T>>()
         };
@@ -82,15 +82,15 @@ impl<'a> Composer<'a> {
         domain: &ParameterBox,
         time: f64,
         motion: &[f64],
-    ) -> Result<usize, SimulationError> {
+    ) -> Result<usize, EnsembleError> {
         let middle = surrogate.middle();
         let parameters = domain.point(&surrogate.samples()[middle]);
         let values: Vec<f64> = motion.chunks_exact(surrogate.samples().len()).map(|line| line[middle]).collect();
-        let independent = choose_independent(self.simulator, &parameters, &values, time);
+        let independent = self.ensemble.independent(&parameters, &values, time);
         if let Some(known) = self.closures.iter().position(|closure| closure.independent() == independent) {
             return Ok(known);
         }
-        self.closures.push(Closure::new(self.simulator, independent)?);
+        self.closures.push(self.ensemble.closure(independent)?);
         Ok(self.closures.len() - 1)
     }
 }
@@ -103,31 +103,30 @@ const CORNERS: usize = 256;
 /// on the number of threads.
 const BLOCK: usize = 16;
 
-/// Samples with the schedule's steps, and the first of them with halved ones.
-pub(super) type Halved<'a> = (&'a Table, &'a Table);
-
 /// The extremes in the row before; nothing at first.
-pub(super) type Known = Vec<Extremes>;
+pub(super) type Previous = Vec<Extremes>;
 
 /// How ranges over a box are found.
-pub(super) enum Seeker {
+pub(super) enum RangeSearch {
+    /// On a grid.
     Grid,
-    Search(ExtremeSearch),
+    /// By climbs.
+    Climbs(ExtremeSearch),
 }
 
-impl Seeker {
+impl RangeSearch {
     /// For k parameters.
     pub fn new(k: usize) -> Self {
-        if k <= MOST_PARAMETERS { Self::Grid } else { Self::Search(ExtremeSearch::new(k)) }
+        if k <= MOST_PARAMETERS { Self::Grid } else { Self::Climbs(ExtremeSearch::new(k)) }
     }
 }
 
 /// One row of output.
 pub(super) struct Row<'r> {
-    simulator: &'r Simulator,
+    ensemble: &'r dyn Ensemble,
     surrogate: &'r Surrogate,
     domain: &'r ParameterBox,
-    closure: &'r Closure<'r>,
+    closure: &'r dyn Closure,
     time: f64,
     /// Of each of the 2n lines.
     coefficients: Vec<f64>,
@@ -137,10 +136,10 @@ pub(super) struct Row<'r> {
 
 impl<'r> Row<'r> {
     fn new(
-        simulator: &'r Simulator,
+        ensemble: &'r dyn Ensemble,
         surrogate: &'r Surrogate,
         domain: &'r ParameterBox,
-        closure: &'r Closure<'r>,
+        closure: &'r dyn Closure,
         time: f64,
         motion: &[f64],
         work: &mut SurrogateWork,
@@ -151,7 +150,7 @@ impl<'r> Row<'r> {
         };
         let extent = motion.chunks_exact(surrogate.samples().len()).map(extent).collect();
         let coefficients = surrogate.coefficients(motion, work);
-        Self { simulator, surrogate, domain, closure, time, coefficients, extent }
+        Self { ensemble, surrogate, domain, closure, time, coefficients, extent }
     }
 
     /// What its polynomials are made by.
@@ -161,7 +160,7 @@ impl<'r> Row<'r> {
 
     /// Points along each axis.
     pub fn resolution(&self) -> usize {
-        let scale = &self.simulator.program.scale;
+        let scale = self.ensemble.scales();
         let moved = self.closure.independent().iter().map(|&i| (self.extent[i].1 - self.extent[i].0) / scale[i]);
         let (least, most) = POINTS[self.domain.dimension().clamp(1, MOST_PARAMETERS) - 1];
         let wanted = moved.fold(0.0, f64::max) / RESOLUTION;
@@ -169,18 +168,18 @@ impl<'r> Row<'r> {
     }
 
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
-    /// far held-out samples, `points` of which `direct` tells row `row`, lie outside.
+    /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
     pub fn errors(
         &self,
-        seeker: &Seeker,
-        (points, direct): (&[Vec<f64>], &Table),
+        range_search: &RangeSearch,
+        (points, direct): (&[Vec<f64>], &ValidationTable),
         row: usize,
         found: &[Extent],
     ) -> Vec<f64> {
         if row >= direct.rows() {
             return vec![f64::NAN; found.len()];
         }
-        let moved = self.moved(seeker, found, &self.coordinate_errors(points, direct.motion(row)));
+        let moved = self.moved(range_search, found, &self.coordinate_errors(points, direct.motion(row)));
         let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
             let outside = direct.at(row, output).into_iter().map(|value| found.range.distance(value));
             found.gap + largest(outside.chain([moved]))
@@ -188,20 +187,26 @@ impl<'r> Row<'r> {
         found.iter().zip(moved).enumerate().map(error).collect()
     }
 
-    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, as samples with the steps as they are
-    /// and halved tell them, move the ends.
-    pub fn step_errors(&self, seeker: &Seeker, (direct, halved): Halved, row: usize, found: &[Extent]) -> Vec<f64> {
+    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
+    /// and with halved ones, move the ends.
+    pub fn step_errors(
+        &self,
+        range_search: &RangeSearch,
+        (direct, halved): (&ValidationTable, &ValidationTable),
+        row: usize,
+        found: &[Extent],
+    ) -> Vec<f64> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; found.len()];
         }
         let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        self.moved(seeker, found, &errors)
+        self.moved(range_search, found, &errors)
     }
 
     /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
     ///
     /// All are moved together, one way and the other, and, where there are several, against each other.
-    fn moved(&self, seeker: &Seeker, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
+    fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
         let several = self.closure.independent().len() > 1;
         let signs: &[[f64; 2]] =
             if several { &[[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] } else { &[[1.0; 2], [-1.0; 2]] };
@@ -209,7 +214,7 @@ impl<'r> Row<'r> {
         for signs in signs {
             let shift: Vec<(usize, f64)> =
                 errors.iter().enumerate().map(|(place, &(line, error))| (line, signs[place / 2 % 2] * error)).collect();
-            let shifted = self.seek_near(seeker, found, &shift);
+            let shifted = self.range_near(range_search, found, &shift);
             for ((moved, found), shifted) in moved.iter_mut().zip(found).zip(&shifted) {
                 let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
                 *moved = largest(ends.into_iter().chain([*moved]));
@@ -219,23 +224,23 @@ impl<'r> Row<'r> {
     }
 
     /// Every output's range over the box.
-    pub fn seek(&self, seeker: &Seeker, known: &mut Known) -> Vec<Extent> {
-        match seeker {
-            Seeker::Grid => {
+    pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Vec<Extent> {
+        match range_search {
+            RangeSearch::Grid => {
                 extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate_shifted(points, &[]))
             }
-            Seeker::Search(search) => {
-                *known = self.search(search, &self.starts(known), &[]);
-                known.iter().cloned().map(extent).collect()
+            RangeSearch::Climbs(search) => {
+                *previous = self.search(search, &self.starts(previous), &[]);
+                previous.iter().cloned().map(extent).collect()
             }
         }
     }
 
     /// Ranges with some lines shifted, near those that are known.
-    fn seek_near(&self, seeker: &Seeker, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
-        match seeker {
-            Seeker::Grid => extremes_near(near, |points| self.evaluate_shifted(points, shift)),
-            Seeker::Search(search) => {
+    fn range_near(&self, range_search: &RangeSearch, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
+        match range_search {
+            RangeSearch::Grid => extremes_near(near, |points| self.evaluate_shifted(points, shift)),
+            RangeSearch::Climbs(search) => {
                 let near: Vec<Extremes> =
                     near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
                 self.search(search, &near, shift).into_iter().map(extent).collect()
@@ -263,11 +268,11 @@ impl<'r> Row<'r> {
             values.copy_from_slice(&self.evaluate_shifted(points, shift));
             Ok::<(), Infallible>(())
         };
-        let Ok(found) = search.extremes(self.simulator.program.outputs.len(), near, evaluate);
+        let Ok(found) = search.extremes(self.ensemble.outputs(), near, evaluate);
         found
     }
 
-    /// The largest errors of the independent coordinates' polynomials, and of their velocities', at held-out samples.
+    /// The largest errors of the independent coordinates' polynomials, and of their velocities', at validation samples.
     fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
         let expanded = self.expanded(points);
         let values = |line: usize| line * points.len()..(line + 1) * points.len();
@@ -328,9 +333,7 @@ impl<'r> Row<'r> {
         let parameters = (0..self.domain.dimension())
             .flat_map(|parameter| points.iter().map(move |xi| self.domain.value(parameter, xi[parameter])))
             .collect();
-        let mut values = Vec::new();
-        self.closure.outputs(self.time, &Points { count: points.len(), parameters, motion }, &mut values);
-        values
+        self.closure.outputs(self.time, points.len(), parameters, motion)
     }
 }
 

@@ -1,0 +1,109 @@
+//! Bushing: springs and dampers between two frames, along and about the axes of the first.
+//!
+//! With d = R_F₁ᵀ (r_B − r_A), q = (q₀, e) the rotation of the second frame against the first (`joints::pair`), and K, C, K_t,
+//! C_t diagonal, in the first frame's axes,
+//!
+//! ```text
+//! F_B = −(K d + C ḋ)                                       V = ½ dᵀ K d + 2 eᵀ K_t e          N, J
+//! τ₂  = −(2 q₀ K_t e + 2 e × K_t e + C_t (ω₂ − ω₁))                                           N m
+//! ```
+//!
+//! on the second body at B; the opposites act on the first body at the same place. ḋ is what an observer in the first frame
+//! sees. 2 e is the rotation vector to second order, so K_t is the stiffness for small rotations, the torque of a rotation
+//! by φ about an axis K_t sin φ: a bushing is no spring for full turns.
+//!
+//! Full matrices 𝐊, 𝐂 (6 × 6, displacements before rotations) add 𝐊 x + 𝐂 ẋ, x = (d, 2 e), ẋ = (ḋ, ω₂ − ω₁), with the torque
+//! q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a stiffness depends on
+//! the motion, there is no potential and none is counted.
+
+
+use mbint_derive::Element;
+use schemars::{Schema, SchemaGenerator};
+use symdiff::Formula;
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
+use crate::syntax::yaml;
+
+/// Springs and dampers between two frames.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "bushing",
+    what = "a bushing",
+    equation = "F = −(K d + C ḋ), τ = −(K_t 2e + C_t ω), or six by six; d, 2e in the first frame's axes",
+    source = "Shabana, Dynamics of Multibody Systems, 5th ed. (2020)",
+    example = "{ between: [arm.tip, ball], stiffness: [1e4, 2e4, 0], damping: 20, torsional_stiffness: 30 }"
+)]
+pub struct Bushing {
+    /// Two points, each `body.point` or `body`.
+    pub between: [PointRef; 2],
+    /// Along the axes of the first point's frame.
+    #[quantity(unit = "N/m", default = 0)]
+    pub stiffness: PerAxis,
+    /// Along those axes.
+    #[quantity(unit = "N*s/m", default = 0)]
+    pub damping: PerAxis,
+    /// About those axes, for small rotations.
+    #[quantity(unit = "N*m/rad", default = 0)]
+    pub torsional_stiffness: PerAxis,
+    /// About those axes.
+    #[quantity(unit = "N*m*s/rad", default = 0)]
+    pub torsional_damping: PerAxis,
+    /// Six rows: forces along and torques about those axes by displacements (N/m, N) and small rotations (N/rad, N*m/rad).
+    #[key(unit = "N/m")]
+    pub stiffness_matrix: Option<SixBySix>,
+    /// The same by velocities and angular velocities.
+    #[key(unit = "N*s/m")]
+    pub damping_matrix: Option<SixBySix>,
+}
+
+impl ForceElement for Bushing {
+    const SENSORS: &'static [Sensor] = &[];
+}
+
+/// Rows of forces, then torques, by displacements, then rotations, or by their rates.
+#[derive(Clone, Debug)]
+pub struct SixBySix(pub Box<[[Formula; 6]; 6]>);
+
+impl Value for SixBySix {
+    fn read<S: SymbolTable>(
+        reader: &mut Reader<'_, S>,
+        node: &Node,
+        _: Span,
+        quantity: &Quantity,
+    ) -> Option<Self> {
+        // Force by displacement, force by rotation and torque by displacement, torque by rotation.
+        let straight = quantity.dimension();
+        let mixed = straight.times(Dimension::LENGTH);
+        let dimensions = [straight, mixed, mixed.times(Dimension::LENGTH).per(Dimension::ANGLE)];
+        let mut matrix = Vec::with_capacity(6);
+        for (row, entries) in six(reader, node, "six rows of six numbers")?.iter().enumerate() {
+            let mut line = Vec::with_capacity(6);
+            for (column, entry) in six(reader, entries, "a row of six numbers")?.iter().enumerate() {
+                let dimension = dimensions[usize::from(row >= 3) + usize::from(column >= 3)];
+                line.push(reader.formula(entry, quantity.context, dimension)?);
+            }
+            matrix.push(<[Formula; 6]>::try_from(line).ok()?);
+        }
+        <[[Formula; 6]; 6]>::try_from(matrix).ok().map(|matrix| Self(Box::new(matrix)))
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<[[values::Number; 6]; 6]>()
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        found.extend(self.0.iter().flatten());
+    }
+}
+
+fn six<'n, S: SymbolTable>(reader: &mut Reader<'_, S>, node: &'n Node, wanted: &str) -> Option<&'n [Node]> {
+    let found = match &node.value {
+        yaml::Value::Sequence(items) if items.len() == 6 => return Some(items),
+        yaml::Value::Sequence(items) => format!("a list of {}", items.len()),
+        _ => node.kind().to_owned(),
+    };
+    reader.error(node.span.clone(), format!("{wanted} belong here, but here is {found}"), None);
+    None
+}

@@ -1,0 +1,58 @@
+//! A cable between two points A and B: it pulls, and does not push.
+//!
+//! ```text
+//! T = ⟨k p(x) + c p'(x) ℓ̇⟩,   x = ℓ − ℓ₀,   ℓ = |r_B − r_A|,   V = k ∫p dx          N, J
+//! F_A = T (r_B − r_A)/ℓ,   F_B = −F_A
+//! ```
+//!
+//! p is the positive part with its corner rounded (`positive_part`): the cable becomes taut over ±ε of stretch. Slack, it
+//! does nothing, and only its length is computed. Points that coincide have no line between them.
+
+use mbint_derive::Element;
+use symdiff::{Binary, Formula};
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Measure, PointRef};
+
+/// Stretch over which a cable becomes taut, over its length.
+const TAUT: f64 = 1e-4;
+
+/// A cable: it pulls, and does not push.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "cable",
+    what = "a cable",
+    equation = "T = ⟨k p(x) + c p'(x) ℓ̇⟩, x = ℓ − ℓ₀, p the positive part with a rounded corner",
+    source = "Hooke",
+    example = "{ between: [arm.tip, cart.hook], free_length: 0.8, stiffness: 1e4, damping: 10 }"
+)]
+pub struct Cable {
+    /// Two points, each `body.point` or `body`.
+    pub between: [PointRef; 2],
+    /// Length without tension.
+    #[quantity(unit = "m", constant, positive)]
+    pub free_length: Formula,
+    /// Tension by stretch.
+    #[quantity(unit = "N/m")]
+    pub stiffness: Formula,
+    /// While taut, tension by rate of stretch.
+    #[quantity(unit = "N*s/m", default = 0)]
+    pub damping: Formula,
+    /// Stretch over which it becomes taut, either way.
+    #[quantity(
+        unit = "m",
+        constant,
+        positive,
+        default_with("a ten-thousandth of `free_length`", Formula::number(TAUT).combined(Binary::Mul, &free_length))
+    )]
+    pub transition: Formula,
+}
+
+impl ForceElement for Cable {
+    const SENSORS: &'static [Sensor] = &[
+        (Measure::Length, Dimension::LENGTH),
+        (Measure::Rate, Dimension::VELOCITY),
+        (Measure::Force, Dimension::FORCE),
+    ];
+}

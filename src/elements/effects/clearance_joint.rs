@@ -1,0 +1,47 @@
+//! A journal that is loose in its bearing: what a revolute joint is with a tolerance.
+//!
+//! ```text
+//! gap = c − |d|,   d = r_J − r_B across the axis,   c = R − r          m, forces as in `contact`
+//! ```
+//!
+//! c is the radial clearance, which may be uncertain, r the journal's radius, at which friction acts. In space only
+//! displacements across the axis are felt; another joint holds what moves along it or tilts. K of two cylinders' ends as
+//! spheres (Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369): 4/(3 (h₁ + h₂)) √(R r/(R − r)), h = (1 − ν²)/E.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{ForceElement, Friction, Impact, Sensor, contact};
+use crate::grammar::{Axis, PointRef};
+
+/// A journal that is loose in its bearing.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "clearance_joint",
+    what = "a clearance joint",
+    equation = "gap = c − |d|, d across the axis; forces as of a contact",
+    source = "Flores, Ambrósio, Claro & Lankarani, Kinematics and Dynamics of Multibody Systems with Imperfect Joints (2008)",
+    example = "{ between: [arm.socket, ball], clearance: 0.1 mm, radius: 10 mm, impact: { stiffness: 1e9, dissipation: 0.5 } }"
+)]
+pub struct ClearanceJoint {
+    /// The bearing's centre, then the journal's; each `body.point` or `body`.
+    pub between: [PointRef; 2],
+    /// Radius of the bearing less that of the journal.
+    #[quantity(unit = "m", constant, positive)]
+    pub clearance: Formula,
+    /// Of the journal.
+    #[quantity(unit = "m", constant, positive, default = 0)]
+    pub radius: Formula,
+    /// Direction in the bearing's frame.
+    #[key(default = Axis::z())]
+    pub axis: Axis,
+    /// How the surfaces push each other apart.
+    pub impact: Impact,
+    /// How they resist sliding.
+    #[key(otherwise = "not at all")]
+    pub friction: Option<Friction>,
+}
+
+impl ForceElement for ClearanceJoint {
+    const SENSORS: &'static [Sensor] = contact::SENSORS;
+}

@@ -1,0 +1,83 @@
+//! Resistance of a fluid at a point of a body.
+//!
+//! ```text
+//! F = −(b + k |u|) u,   u = ṙ − wind,   k = ½ ρ c_d A          N
+//! ```
+//!
+//! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second slope at rest. It has no potential.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Components, Fields, Measure, PointRef, Reader, SymbolTable};
+
+/// Resistance of a fluid.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "drag",
+    what = "a drag",
+    equation = "F = −(b + ½ ρ c_d A |u|) u, u = ṙ − wind",
+    source = "Rayleigh, Phil. Mag. 2 (1876) 430",
+    example = "{ on: ball, density: 1.2 kg/m^3, drag_coefficient: 0.47, area: 0.03 m^2, wind: [5, 0] }",
+    checked
+)]
+pub struct Drag {
+    /// Where it acts: `body.point` or `body`.
+    pub on: PointRef,
+    /// Force by the square of the speed; or `density`, `drag_coefficient` and `area`.
+    #[quantity(unit = "N*s^2/m^2")]
+    pub quadratic: Option<Formula>,
+    /// Of the fluid.
+    #[quantity(unit = "kg/m^3")]
+    pub density: Option<Formula>,
+    /// c_d, a pure number.
+    #[quantity(unit = "1")]
+    pub drag_coefficient: Option<Formula>,
+    /// That c_d refers to.
+    #[quantity(unit = "m^2")]
+    pub area: Option<Formula>,
+    /// Force by the speed.
+    #[quantity(unit = "N*s/m", default = 0)]
+    pub linear: Formula,
+    /// Velocity of the fluid in the ground's frame.
+    #[quantity(unit = "m/s", default = 0)]
+    pub wind: Components,
+}
+
+/// Keys that together give the force by the square of the speed.
+const AERODYNAMIC: [&str; 3] = ["density", "drag_coefficient", "area"];
+
+impl Drag {
+    /// The factors of the force by the square of the speed.
+    pub fn factors(&self) -> Vec<Formula> {
+        let given: Vec<&Formula> = [&self.density, &self.drag_coefficient, &self.area].into_iter().flatten().collect();
+        if given.is_empty() {
+            return vec![self.quadratic.clone().unwrap_or_else(|| Formula::number(0.0))];
+        }
+        [Formula::number(0.5)].into_iter().chain(given.into_iter().cloned()).collect()
+    }
+}
+
+impl ForceElement for Drag {
+    const SENSORS: &'static [Sensor] = &[(Measure::Force, Dimension::FORCE)];
+}
+
+impl Checked for Drag {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        let given = |key: &str| fields.get(key).is_some();
+        if AERODYNAMIC.into_iter().any(given) {
+            if given("quadratic") {
+                let message = "`quadratic` excludes `density`, `drag_coefficient` and `area`";
+                reader.error(fields.key_span("quadratic"), message, None);
+            }
+            for key in AERODYNAMIC {
+                reader.required(fields, key);
+            }
+        } else if !given("quadratic") && !given("linear") {
+            let help = "or `density`, `drag_coefficient` and `area`".to_owned();
+            reader.error(fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
+        }
+    }
+}

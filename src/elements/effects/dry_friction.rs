@@ -1,0 +1,64 @@
+//! Dry friction at a speed of sliding: Coulomb's law with Stribeck's excess at rest, without its jump.
+//!
+//! ```text
+//! F = −R u,   R = μ N s(|u|) / √(|u|² + u₀²),   s = 1 + (b − 1) exp(−(|u|/u_s)²)          N
+//! ```
+//!
+//! u is the velocity of sliding, a number or a vector, N the load, b the breakaway ratio. The sign u/|u| of Coulomb's law is
+//! u/√(|u|² + u₀²) (Oden & Martins, Comput. Methods Appl. Mech. Eng. 52 (1985) 527), which is smooth and falls short of it by
+//! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
+//! of the friction that it could bear at u₀ κ/√(1 − κ²).
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use crate::grammar::{Checked, Fields, Reader, Requirement, SymbolTable};
+
+const AT_LEAST_SLIDING: Requirement = Requirement {
+    holds: |value| value >= 1.0,
+    message: "must be at least 1: friction at rest is not less than sliding",
+};
+
+/// Dry friction.
+#[derive(Clone, Debug, Element)]
+#[element(what = "`friction`")]
+pub struct Friction {
+    /// Over the force across the contact, while sliding.
+    #[quantity(unit = "1", constant, nonnegative)]
+    pub coefficient: Formula,
+    /// How it depends on the speed.
+    #[group]
+    pub speed: DryFriction,
+}
+
+/// How dry friction depends on the speed of sliding.
+#[derive(Clone, Debug, Element)]
+#[element(checked)]
+pub struct DryFriction {
+    /// Dry friction at rest over that while sliding.
+    #[quantity(unit = "1", constant, requires = AT_LEAST_SLIDING, default = 1)]
+    pub breakaway: Formula,
+    /// Speed at which the excess at rest has fallen to 1/e.
+    #[quantity(unit = "m/s or rad/s", constant, positive)]
+    pub stribeck_velocity: Option<Formula>,
+    /// Speed that counts as rest: friction is 71 % of itself there.
+    #[quantity(unit = "m/s or rad/s", constant, positive, default = 1e-3)]
+    pub transition_velocity: Formula,
+}
+
+impl Checked for DryFriction {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        let given = ["stribeck_velocity", "breakaway"].map(|key| fields.get(key).is_some());
+        let (key, message) = match given {
+            [true, false] => (
+                "stribeck_velocity",
+                "`stribeck_velocity` goes with `breakaway`, the friction at rest over that while sliding",
+            ),
+            [false, true] => {
+                ("breakaway", "`breakaway` needs `stribeck_velocity`, the speed at which its excess fades")
+            }
+            _ => return,
+        };
+        reader.error(fields.key_span(key), message, None);
+    }
+}

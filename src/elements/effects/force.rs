@@ -1,0 +1,45 @@
+//! Force at a point of a body.
+//!
+//! ```text
+//! F = value, or R value where given in the body's axes          N
+//! ```
+//!
+//! It acts from outside the mechanism: nothing feels the reaction, and it has no potential.
+
+use mbint_derive::{Choice, Element};
+
+use super::{ForceElement, Sensor};
+use crate::grammar::{Components, PointRef};
+
+/// A force at a point.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "force",
+    what = "a force",
+    equation = "F = value",
+    source = "Newton",
+    example = "{ on: ball, value: [20*sin(3*t), 0] }"
+)]
+pub struct Force {
+    /// Where it acts: `body.point` or `body`.
+    pub on: PointRef,
+    /// The force; may depend on t, positions and velocities.
+    #[quantity(unit = "N")]
+    pub value: Components,
+    /// Whose axes the components are along.
+    #[key(default = Frame::Ground)]
+    pub frame: Frame,
+}
+
+/// Whose axes components are along.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Choice)]
+pub enum Frame {
+    /// Components along the ground's axes.
+    Ground,
+    /// Components along the body's axes.
+    Body,
+}
+
+impl ForceElement for Force {
+    const SENSORS: &'static [Sensor] = &[];
+}

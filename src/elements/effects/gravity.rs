@@ -1,0 +1,36 @@
+//! Gravity: the same acceleration on every body.
+//!
+//! ```text
+//! F = m g at the centre of mass,   V = −m g · r_c          N, J
+//! ```
+//!
+//! and on the mass along beams (`flexible`).
+//! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
+
+use mbint_derive::Element;
+
+use super::{ForceElement, Scope, Sensor};
+use crate::grammar::Components;
+
+/// The same acceleration on every body.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "gravity",
+    what = "`gravity`",
+    equation = "F = m g at each centre of mass",
+    source = "Newton",
+    example = "{ acceleration: [0, -9.81] }"
+)]
+pub struct Gravity {
+    /// In the ground's axes: [0, -9.81] pulls down.
+    #[quantity(unit = "m/s^2")]
+    pub acceleration: Components,
+}
+
+impl ForceElement for Gravity {
+    const SENSORS: &'static [Sensor] = &[];
+
+    fn scope(&self) -> Scope {
+        Scope::EveryBody
+    }
+}

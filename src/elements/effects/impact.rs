@@ -1,0 +1,113 @@
+//! The force between two surfaces by the depth δ to which they overlap.
+//!
+//! ```text
+//! f = K ⟨δ⟩ⁿ ⟨1 + χ δ̇⟩ ≥ 0,   ⟨x⟩ = max(x, 0),   V = K ⟨δ⟩ⁿ⁺¹/(n + 1)          N, J
+//! χ = 3 (1 − e)/(2 v)          Hunt & Crossley, J. Appl. Mech. 42 (1975) 440
+//! χ = 3 (1 − e²)/(4 v)         Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369
+//! ```
+//!
+//! e is the coefficient of restitution of an impact at the speed v. Hertz's n = 3/2 has a continuous slope where the
+//! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick: where
+//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its slope: the law is written for
+//! δ > 0 alone, and whoever uses it sees to it that it is asked for nowhere else.
+//!
+//! Whatever K and n, an impact at v ends with the speed e v of χ v − ln(1 + χ v) = −χ e v − ln(1 − χ e v) (Marhefka & Orin,
+//! IEEE Trans. Syst. Man Cybern. 29 (1999) 566). Both formulas for χ hold for e near 1: at e = 0.5, they leave 0.66 and 0.73.
+
+use mbint_derive::{Choice, Element};
+use schemars::{Schema, SchemaGenerator};
+use symdiff::Formula;
+
+use crate::grammar::motions::dimensions_of;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{
+    Checked, Fields, JointCoordinate, Node, Quantity, Reader, Requirement, Span, SymbolTable, Value, values,
+};
+
+const RESTITUTION: Requirement =
+    Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };
+
+/// How surfaces push each other apart: K*depth^n*(1 + dissipation*rate).
+#[derive(Clone, Debug, Element)]
+#[element(what = "`impact`", checked)]
+pub struct Impact {
+    /// n, from 1 to 3: 1 is a linear spring, 1.5 Hertz's contact of curved surfaces.
+    #[key(default = Exponent(1.5))]
+    pub exponent: Exponent,
+    /// K.
+    #[quantity(
+        unit = "N/m^n or N*m/rad^n",
+        dimension = stiffness_dimension(exponent, units),
+        constant,
+        positive
+    )]
+    pub stiffness: Formula,
+    /// χ, what is lost.
+    #[quantity(unit = "s/m or s/rad", constant, nonnegative, otherwise = "0: nothing is lost")]
+    pub dissipation: Option<Formula>,
+    /// Instead of `dissipation`: speed after over speed before, above 0 and at most 1.
+    #[quantity(unit = "1", constant, requires = RESTITUTION)]
+    pub restitution: Option<Formula>,
+    /// Speed of the impact for which the restitution holds.
+    #[quantity(unit = "m/s or rad/s", constant, positive)]
+    pub impact_velocity: Option<Formula>,
+    /// Whose formula makes dissipation of restitution.
+    #[key(default = RestitutionLaw::HuntCrossley)]
+    pub law: RestitutionLaw,
+}
+
+/// Whose formula gives χ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Choice)]
+pub enum RestitutionLaw {
+    /// 3 (1 - e)/(2 v)
+    HuntCrossley,
+    /// 3 (1 - e^2)/(4 v)
+    LankaraniNikravesh,
+}
+
+/// n
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponent(pub f64);
+
+/// Of K: force over a power of the depth, or a plain number in SI where no unit has that power.
+fn stiffness_dimension(exponent: Option<Exponent>, units: usize) -> Dimension {
+    let coordinates = [JointCoordinate::Displacement, JointCoordinate::Angle];
+    let [depth, _, effort] = dimensions_of(coordinates[units]);
+    let power = exponent.and_then(|Exponent(exponent)| depth.to_the(exponent));
+    power.map_or(Dimension::NUMBER, |power| effort.per(power))
+}
+
+impl Checked for Impact {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        let given = |key: &str| fields.get(key).is_some();
+        if !["restitution", "impact_velocity", "law"].into_iter().any(given) {
+            return;
+        }
+        reader.required(fields, "restitution");
+        reader.required(fields, "impact_velocity");
+        if given("dissipation") {
+            let message = "`dissipation` and `restitution` exclude each other";
+            reader.error(fields.key_span("dissipation"), message, None);
+        }
+    }
+}
+
+impl Value for Exponent {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, _: &Quantity) -> Option<Self> {
+        let exponent = reader.number(node, Dimension::NUMBER)?;
+        if (1.0..=3.0).contains(&exponent) {
+            return Some(Self(exponent));
+        }
+        let help = "1 is a linear spring, 1.5 Hertz's contact of curved surfaces".to_owned();
+        reader.error(node.span.clone(), format!("an exponent from 1 to 3 belongs here, not {exponent}"), help);
+        None
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<values::Number>()
+    }
+
+    fn to_json(&self) -> Option<serde_json::Value> {
+        Some(self.0.into())
+    }
+}

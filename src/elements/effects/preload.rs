@@ -1,0 +1,57 @@
+//! A constant tension between two points, or a constant force or torque of a joint.
+//!
+//! ```text
+//! F_A = F (r_B − r_A)/ℓ,   F_B = −F_A,   V = F ℓ          N, J
+//! at a joint: F pushes its coordinate s up,   V = −F s          N or N m
+//! ```
+//!
+//! Points that coincide have no line between them.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{ForceElement, Sensor};
+use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, SymbolTable};
+
+/// A constant tension between two points, or a constant force or torque of a joint.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "preload",
+    what = "a preload",
+    equation = "F constant, along the line between two points or on a joint's coordinate",
+    source = "Newton",
+    example = "{ between: [arm.tip, cart.hook], value: 15 N }",
+    checked
+)]
+pub struct Preload {
+    /// Two points, each `body.point` or `body`, that it pulls together.
+    pub between: Option<[PointRef; 2]>,
+    /// Instead of `between`: a joint's coordinate that it pushes up.
+    #[group]
+    pub on: Option<OnJoint>,
+    /// The force or torque; may depend on t and the motion.
+    #[quantity(unit = "N or N*m")]
+    pub value: Formula,
+}
+
+impl ForceElement for Preload {
+    const SENSORS: &'static [Sensor] = &[];
+
+    fn coordinates(&self) -> Vec<OnJoint> {
+        self.on.into_iter().collect()
+    }
+}
+
+impl Checked for Preload {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        match [fields.get("on"), fields.get("between")] {
+            [None, None] => {
+                reader.required(fields, "between");
+            }
+            [Some(_), Some(_)] => {
+                reader.error(fields.key_span("between"), "`on` and `between` exclude each other", None);
+            }
+            _ => {}
+        }
+    }
+}

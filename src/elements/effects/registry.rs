@@ -1,0 +1,140 @@
+//! The registry: from a list of files and structs, the enum of all effects and what is asked of each.
+
+/// `effects! { file::Struct, … }`
+macro_rules! effects {
+    ($($file:ident::$name:ident),* $(,)?) => {
+        $(pub mod $file;)*
+        $(#[doc(no_inline)] pub use self::$file::$name;)*
+
+        /// An effect of any kind.
+        #[derive(Clone, Debug)]
+        #[allow(missing_docs)] // each is documented in its file
+        pub enum EffectKind {
+            $($name($name),)*
+        }
+
+        $(impl From<$name> for EffectKind {
+            fn from(effect: $name) -> Self {
+                Self::$name(effect)
+            }
+        })*
+
+        impl EffectKind {
+            /// The words for effects in a model file.
+            pub const KEYWORDS: &'static [&'static str] = &[$(<$name as $crate::grammar::Element>::KEYWORD),*];
+
+            /// Reads an effect; `own` is its name, by which its formulas may refer to what it measures.
+            pub(crate) fn read<S: $crate::grammar::SymbolTable>(
+                reader: &mut $crate::grammar::Reader<'_, S>,
+                own: &str,
+                node: &$crate::grammar::Node,
+                at: $crate::grammar::Span,
+            ) -> Option<Self> {
+                use $crate::grammar::Element;
+                let entry = reader.kind_of_entry("an effect", Self::KEYWORDS, node, at)?;
+                let (node, at) = (&entry.value, entry.key_span.clone());
+                let kind = match entry.key.as_str() {
+                    $(<$name as Element>::KEYWORD => {
+                        reader.unread.push((own.to_owned(), <$name as ForceElement>::SENSORS.to_vec()));
+                        <$name as Element>::read_node(reader, node, at).map(Self::$name)
+                    })*
+                    _ => None,
+                };
+                if kind.is_some() {
+                    reader.unread.pop();
+                }
+                kind
+            }
+
+            /// The key of an effect that leaves the plane, by the text alone.
+            pub(crate) fn leaves_plane(keyword: &str, mapping: &$crate::grammar::Node) -> Option<&'static str> {
+                match keyword {
+                    $(<$name as $crate::grammar::Element>::KEYWORD => <$name as $crate::grammar::Group>::leaves_plane(mapping),)*
+                    _ => None,
+                }
+            }
+
+            /// Of every effect, in the order of the registry.
+            pub fn docs() -> Vec<$crate::grammar::ElementDocs> {
+                vec![$($crate::grammar::ElementDocs::of::<$name>()),*]
+            }
+
+            /// The word for it in a model file.
+            pub fn keyword(&self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => <$name as $crate::grammar::Element>::KEYWORD,)*
+                }
+            }
+
+            /// Every formula in it.
+            pub fn formulas(&self) -> Vec<&symdiff::Formula> {
+                let mut found = Vec::new();
+                match self {
+                    $(Self::$name(effect) => $crate::grammar::Group::formulas(effect, &mut found),)*
+                }
+                found
+            }
+
+            /// Every body, point and joint that it names, formulas aside.
+            pub fn references(&mut self) -> Vec<$crate::grammar::Reference<'_>> {
+                let mut found = Vec::new();
+                match self {
+                    $(Self::$name(effect) => $crate::grammar::Group::references(effect, &mut found),)*
+                }
+                found
+            }
+
+            /// What it measures, for outputs.
+            pub fn measures(&self) -> Vec<Sensor> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::sensors(effect),)*
+                }
+            }
+
+            /// Coordinates of joints that it acts on.
+            pub fn coordinates(&self) -> Vec<$crate::grammar::OnJoint> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::coordinates(effect),)*
+                }
+            }
+
+            /// What it acts on.
+            pub fn scope(&self) -> Scope {
+                match self {
+                    $(Self::$name(effect) => ForceElement::scope(effect),)*
+                }
+            }
+
+            /// The mass between two points that it adds to the mechanism.
+            pub fn inertia(&self) -> Option<LineMass<'_>> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::inertia(effect),)*
+                }
+            }
+
+            /// The joint whose reaction its force grows with, and the factor.
+            pub fn loading_joint(&self) -> Option<(usize, &symdiff::Formula)> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::loading_joint(effect),)*
+                }
+            }
+        }
+
+        impl JsonSchema for EffectKind {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                "Effect".into()
+            }
+
+            fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                let kinds = vec![$((
+                    <$name as $crate::grammar::Element>::KEYWORD,
+                    <$name as $crate::grammar::Element>::DESCRIPTION,
+                    generator.subschema_for::<$name>(),
+                )),*];
+                $crate::grammar::kinds_schema("An effect: one kind with its details.", kinds)
+            }
+        }
+    };
+}
+
+pub(super) use effects;

@@ -1,0 +1,67 @@
+//! Spring and damper between two points A and B; d = r_B − r_A.
+//!
+//! ```text
+//! along the connecting line:    f = k (ℓ − ℓ₀) + c ℓ̇,     ℓ = |d|,     V = ½ k (ℓ − ℓ₀)²          N, J
+//!                               F_B = −f d/ℓ = −[k (1 − ℓ₀/ℓ) + c (d · ḋ)/ℓ²] d,                 F_A = −F_B
+//! along an axis e, |e| = 1:     f = k (s − ℓ₀) + c ṡ,     s = e · d,   V = ½ k (s − ℓ₀)²
+//!                               F_B = −f e,                                                      F_A = −F_B
+//! ```
+//!
+//! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
+//! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
+//! ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
+//! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may depend on.
+//! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+
+/// A spring and damper between two points.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "spring_damper",
+    what = "`spring_damper`",
+    equation = "f = k (ℓ − ℓ₀) + c ℓ̇ + force(ℓ, ℓ̇), pulls the points together",
+    source = "Hooke; Kelvin and Voigt",
+    example = "{ between: [arm.tip, ball], stiffness: 500, damping: 4, free_length: 1 }",
+    checked
+)]
+pub struct SpringDamper {
+    /// Two points, each `body.point` or `body`.
+    pub between: [PointRef; 2],
+    /// Direction in the ground's frame.
+    #[key(otherwise = "the line between the points")]
+    pub along: Option<Direction>,
+    /// Tension by stretch.
+    #[quantity(unit = "N/m", default = 0)]
+    pub stiffness: Formula,
+    /// Tension by rate of stretch.
+    #[quantity(unit = "N*s/m", default = 0)]
+    pub damping: Formula,
+    /// Length without tension.
+    #[quantity(unit = "m", default = 0)]
+    pub free_length: Formula,
+    /// Further tension; may depend on the spring's own `NAME.length` and `NAME.rate`.
+    #[quantity(unit = "N")]
+    pub force: Option<Formula>,
+}
+
+impl ForceElement for SpringDamper {
+    const SENSORS: &'static [Sensor] = &[
+        (Measure::Length, Dimension::LENGTH),
+        (Measure::Rate, Dimension::VELOCITY),
+        (Measure::Force, Dimension::FORCE),
+    ];
+}
+
+impl Checked for SpringDamper {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        if ["stiffness", "damping", "force"].iter().all(|key| fields.get(key).is_none()) {
+            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+        }
+    }
+}

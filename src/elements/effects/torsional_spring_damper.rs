@@ -1,0 +1,79 @@
+//! Torsional spring and damper between two bodies' angles, or on the angle of a joint.
+//!
+//! ```text
+//! τ = k (φ − φ₀) + c φ̇,   φ = θ₂ − θ₁ or the joint's angle,   V = ½ k (φ − φ₀)²          N m, J
+//! −τ about the axis on the second body, +τ on the first
+//! ```
+//!
+//! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
+//! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
+
+use mbint_derive::Element;
+use symdiff::Formula;
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Measure, OnJoint, Reader, SymbolTable, TurningJoint};
+
+/// A spring and damper between the angles of two bodies, or on the angle of a joint.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "torsional_spring_damper",
+    what = "`torsional_spring_damper`",
+    equation = "τ = k (φ − φ₀) + c φ̇ + torque(φ, φ̇), turns back",
+    source = "Hooke; Kelvin and Voigt",
+    example = "{ on: hinge, stiffness: 5, damping: 0.1, free_angle: 0.3 }",
+    checked
+)]
+pub struct TorsionalSpringDamper {
+    /// Two bodies, by their angles about z.
+    pub between: Option<[BodyRef; 2]>,
+    /// Instead of `between`: a joint.
+    pub on: Option<TurningJoint>,
+    /// Torque by twist.
+    #[quantity(unit = "N*m/rad", default = 0)]
+    pub stiffness: Formula,
+    /// Torque by rate of twist.
+    #[quantity(unit = "N*m*s/rad", default = 0)]
+    pub damping: Formula,
+    /// Twist without torque.
+    #[quantity(unit = "rad", default = 0)]
+    pub free_angle: Formula,
+    /// Further torque against the twist; may depend on the spring's own `NAME.angle` and `NAME.rate`.
+    #[quantity(unit = "N*m")]
+    pub torque: Option<Formula>,
+}
+
+impl ForceElement for TorsionalSpringDamper {
+    const SENSORS: &'static [Sensor] = &[
+        (Measure::Angle, Dimension::ANGLE),
+        (Measure::Rate, Dimension::ANGULAR_VELOCITY),
+        (Measure::Torque, Dimension::TORQUE),
+    ];
+
+    fn coordinates(&self) -> Vec<OnJoint> {
+        self.on.iter().map(|joint| OnJoint { joint: joint.0, coordinate: JointCoordinate::Angle }).collect()
+    }
+}
+
+impl Checked for TorsionalSpringDamper {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        if fields.get("on").is_none() {
+            reader.required(fields, "between");
+        }
+        reader.exclude(fields, ["on", "between"]);
+        if ["stiffness", "damping", "torque"].iter().all(|key| fields.get(key).is_none()) {
+            reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
+        }
+    }
+
+    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        let bodies = self.between.iter().flatten().filter(|_| self.on.is_none());
+        let turning = bodies.into_iter().find(|body| reader.model.has_orientation(body.0));
+        if let (Some(body), Some(node)) = (turning, fields.get("between")) {
+            let message = format!("`{}` turns about more than z, so it has no angle", reader.model.body_name(body.0));
+            let help = "write `on` with the joint whose angle it acts on, or make it a `bushing`";
+            reader.error(node.span.clone(), message, help.to_owned());
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! What is estimated of the outputs in a row: range, errors and sensitivity.
+
+use super::composition::{Previous, RangeSearch, Row};
+use super::sensitivity::SensitivityAnalysis;
+use crate::methods::result::{Estimate, Sensitivity};
+use crate::methods::validation::ValidationTable;
+
+/// Estimates ranges with their errors.
+pub(super) struct RangeEstimator<'a> {
+    pub search: &'a RangeSearch,
+    /// ξ of the validation samples, and their motions.
+    pub validation: (&'a [Vec<f64>], &'a ValidationTable),
+    /// Samples of the whole box with the schedule's steps and with halved ones, where the time steps' errors are asked for.
+    pub halved: Option<(&'a ValidationTable, &'a ValidationTable)>,
+    pub sensitivity: Option<SensitivityAnalysis>,
+}
+
+impl RangeEstimator<'_> {
+    /// Estimates of every output in a row, whose number among all is `place`.
+    pub fn estimate(&self, row: &Row, place: usize, previous: &mut Previous) -> Vec<Estimate> {
+        let found = row.range(self.search, previous);
+        let errors = row.errors(self.search, self.validation, place, &found);
+        let step_errors = match self.halved {
+            Some(halved) => row.step_errors(self.search, halved, place, &found),
+            None => vec![f64::NAN; found.len()],
+        };
+        let sensitivities: Vec<Option<Sensitivity>> = match &self.sensitivity {
+            Some(analysis) => analysis.of_row(row, &found).into_iter().map(Some).collect(),
+            None => vec![None; found.len()],
+        };
+        let estimate = |(((range, error), step_error), sensitivity)| Estimate { range, error, step_error, sensitivity };
+        let ranges = found.iter().map(|found| found.range);
+        ranges.zip(errors).zip(step_errors).zip(sensitivities).map(estimate).collect()
+    }
+}

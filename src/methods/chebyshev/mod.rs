@@ -1,0 +1,275 @@
+//! Chebyshev bounds: a polynomial in the parameters, from samples at Chebyshev nodes, and its range.
+//!
+//! What is expanded are the independent coordinates, from which the outputs follow (`composition`), or the outputs themselves (the
+//! paper's). The degree is given, or grows until a tolerance is met (`adaptive`).
+
+mod adaptive;
+mod composition;
+mod estimator;
+mod sensitivity;
+mod sub_box;
+
+use rayon::prelude::*;
+
+use super::BoundsRequest;
+use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
+use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
+use super::request::MOST_SIMULATIONS;
+use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
+use super::validation::Validation;
+use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SparseWork, Surrogate, SurrogateWork, largest};
+use adaptive::{Adaptation, Goal};
+pub use composition::can_compose;
+use composition::{Composer, Previous, RangeSearch, Row};
+use estimator::RangeEstimator;
+use sensitivity::SensitivityAnalysis;
+
+/// The least share of a tolerance that is left to the surrogate, whatever the steps take.
+const LEAST_SHARE: f64 = 0.25;
+
+/// What a Chebyshev surrogate expands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Expand {
+    /// The independent coordinates and their velocities; outputs follow from them.
+    Coordinates,
+    /// Each output (the paper's).
+    Output,
+}
+
+/// The degree of a Chebyshev polynomial.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Degree {
+    /// Given for each parameter.
+    Fixed {
+        /// Degree in each parameter.
+        order: Vec<usize>,
+        /// Number of nodes along each axis, more than the degree.
+        nodes: Vec<usize>,
+    },
+    /// As the tolerance asks for.
+    Adaptive,
+}
+
+/// Chebyshev bounds.
+#[derive(Clone, Debug)]
+pub struct Chebyshev {
+    /// Degree in each parameter.
+    pub degree: Degree,
+    /// What is expanded.
+    pub expand: Expand,
+    /// How the ranges of the outputs' polynomials are found, where those are expanded.
+    pub range: RangeKind,
+}
+
+impl Chebyshev {
+    /// As the tolerance asks for.
+    pub const ADAPTIVE: Self = Self { degree: Degree::Adaptive, expand: Expand::Coordinates, range: RangeKind::Tight };
+
+    /// Most parameters for which full grids are the default.
+    pub const FEW: usize = 3;
+
+    /// Degree where a model asks for none.
+    pub const ORDER: usize = 5;
+
+    /// For a request without a degree: [`ORDER`](Self::ORDER), or adaptive where there is a tolerance or there are many
+    /// parameters.
+    pub fn unspecified(k: usize, tolerance: Option<f64>) -> Self {
+        if tolerance.is_some() || k > Self::FEW { Self::ADAPTIVE } else { Self::of_order(Self::ORDER, k) }
+    }
+
+    /// One degree for each of k parameters, one node more than the degree.
+    pub fn of_order(order: usize, k: usize) -> Self {
+        let degree = Degree::Fixed { order: vec![order; k], nodes: vec![order + 1; k] };
+        Self { degree, expand: Expand::Coordinates, range: RangeKind::Tight }
+    }
+
+    /// The same with the outputs expanded.
+    pub fn of_outputs(order: usize, k: usize, range: RangeKind) -> Self {
+        Self { expand: Expand::Output, range, ..Self::of_order(order, k) }
+    }
+}
+
+/// A curve of `mbint cost`.
+const fn curve(
+    name: &'static str,
+    label: &'static str,
+    color: [u8; 3],
+    composes: bool,
+    ask: fn(&mut BoundsRequest, usize, usize),
+) -> CostCurve {
+    let simulations = |order: usize, k: usize| ((order + 1) as f64).powi(k as i32);
+    CostCurve { name, label, color, varied: Varied::Order, counts: &[2, 3, 5, 8], composes, simulations, ask }
+}
+
+impl Registered for Chebyshev {
+    const ABOUT: About = About {
+        label: "Chebyshev",
+        summary: "a Chebyshev polynomial in the parameters, from samples, and its range",
+        source: "Wu, Luo & Zhang: Chebyshev interval method; Gerstner & Griebel, Computing 71 (2003) 65",
+        color: [0, 114, 178],
+        fill: 0.16,
+        dashes: None,
+        is_sampled: true,
+        has_sensitivities: true,
+        curves: &[
+            curve("chebyshev.coordinates", "Chebyshev, composed", [0, 114, 178], true, |request, order, k| {
+                request.chebyshev = Some(Self::of_order(order, k));
+            }),
+            curve("chebyshev.tight", "Chebyshev, tight", [86, 180, 233], false, |request, order, k| {
+                request.chebyshev = Some(Self::of_outputs(order, k, RangeKind::Tight));
+            }),
+            curve("chebyshev.interval", "Chebyshev, Σ|c|", [0, 158, 115], false, |request, order, k| {
+                request.chebyshev = Some(Self::of_outputs(order, k, RangeKind::Interval));
+            }),
+        ],
+    };
+
+    fn default_for(problem: &Problem) -> Self {
+        Self::unspecified(problem.parameters, problem.tolerance)
+    }
+}
+
+impl BoundingMethod for Chebyshev {
+    fn fit(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        let k = problem.parameters;
+        // The adaptive degree is that of coordinates; where they cannot be expanded, outputs are, to a usual degree.
+        if self.degree == Degree::Adaptive && !problem.composes {
+            let order = if k <= Self::FEW { Self::ORDER } else { 2 };
+            *self = Self { expand: Expand::Output, ..Self::of_order(order, k) };
+        }
+        match self.samples() {
+            Some(samples) if samples > MOST_SIMULATIONS => Err(Refusal::too_many("chebyshev", samples, k)),
+            _ => Ok(()),
+        }
+    }
+
+    fn narrow(&mut self, kept: &[usize]) {
+        if let Degree::Fixed { order, nodes } = &mut self.degree {
+            super::request::pick(order, kept);
+            super::request::pick(nodes, kept);
+        }
+    }
+
+    fn samples(&self) -> Option<f64> {
+        match &self.degree {
+            Degree::Fixed { nodes, .. } => Some(nodes.iter().map(|&count| count as f64).product()),
+            Degree::Adaptive => None,
+        }
+    }
+
+    fn observes(&self, problem: &Problem) -> Observed {
+        if self.expand == Expand::Coordinates && problem.composes { Observed::Motion } else { Observed::Outputs }
+    }
+
+    fn bound(
+        &self,
+        ensemble: &dyn Ensemble,
+        validation: &Validation,
+        request: &BoundsRequest,
+    ) -> Result<MethodResult, EnsembleError> {
+        let Degree::Fixed { order, nodes } = &self.degree else { return adapted(ensemble, validation, request) };
+        let surrogate = Surrogate::tensor(order, nodes);
+        let samples = ensemble.domain().points(surrogate.samples());
+        let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
+        let (bands, simulated) = match self.expand {
+            Expand::Coordinates if composes => composed(ensemble, &surrogate, &samples, validation)?,
+            _ => expanded(ensemble, &surrogate, PolynomialRange::new(order, self.range), &samples, validation)?,
+        };
+        Ok(bands.finish(samples.len(), simulated))
+    }
+}
+
+/// To the degree that the tolerance asks for.
+fn adapted(
+    ensemble: &dyn Ensemble,
+    validation: &Validation,
+    request: &BoundsRequest,
+) -> Result<MethodResult, EnsembleError> {
+    let tolerance = request.tolerance.unwrap_or(BoundsRequest::TOLERANCE);
+    let spent = validation.simulations;
+    let mut goal = Goal { allowed: Vec::new(), rows: ensemble.rows(), budget: request.budget, spent };
+    for output in 0..ensemble.outputs() {
+        let (span, time) = (validation.spans[output], validation.time_error(output, ensemble.rows()));
+        let allowed = tolerance * span;
+        // Where the steps miss the tolerance nothing is to be gained.
+        let missed = |time: &f64| time.is_nan() || *time > allowed;
+        let resolved = time.iter().position(missed).unwrap_or(ensemble.rows());
+        goal.rows = goal.rows.min(if span > 0.0 { resolved } else { goal.rows });
+        let time = largest(time[..resolved].iter().copied());
+        goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
+    }
+    let adapted = Adaptation::new(ensemble, goal, validation).search()?;
+    let outputs = ensemble.outputs();
+    let mut bands = BandBuilder::new(outputs, ensemble.rows());
+    for (place, estimate) in adapted.found.into_iter().enumerate() {
+        bands.set_estimate(place / outputs, place % outputs, estimate);
+    }
+    let result = bands.finish(adapted.simulations - spent, adapted.simulated);
+    Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), ..result })
+}
+
+/// The outputs follow from the expanded independent coordinates.
+fn composed(
+    ensemble: &dyn Ensemble,
+    surrogate: &Surrogate,
+    samples: &[Vec<f64>],
+    validation: &Validation,
+) -> Result<(BandBuilder, Simulated), EnsembleError> {
+    let domain: &ParameterBox = ensemble.domain();
+    let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
+    let mut composer = Composer::new(ensemble);
+    let search = RangeSearch::new(domain.dimension());
+    let estimator = RangeEstimator {
+        search: &search,
+        validation: (&validation.points, &validation.direct),
+        halved: Some((&validation.direct, &validation.halved)),
+        sensitivity: Some(SensitivityAnalysis::new(domain, surrogate)),
+    };
+    let stride = lines(ensemble, Observed::Motion) * samples.len();
+    let mut failure = None;
+    let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, finish: false };
+    let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
+        let times: Vec<f64> = rows.clone().map(|row| ensemble.time(row)).collect();
+        let first = rows.start;
+        let look = |place: usize, row: &Row, previous: &mut Previous| estimator.estimate(row, first + place, previous);
+        match composer.rows(surrogate, domain, &times, (values, stride), look) {
+            Ok(found) => {
+                for (row, estimates) in rows.zip(found) {
+                    let estimates = estimates.into_iter().enumerate();
+                    estimates.for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
+                }
+            }
+            Err(error) => failure = Some(error),
+        }
+    })?;
+    failure.map_or(Ok((bands, simulated)), Err)
+}
+
+/// The outputs themselves are expanded.
+fn expanded(
+    ensemble: &dyn Ensemble,
+    surrogate: &Surrogate,
+    range: PolynomialRange,
+    samples: &[Vec<f64>],
+    validation: &Validation,
+) -> Result<(BandBuilder, Simulated), EnsembleError> {
+    let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, finish: false };
+    let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
+        let found: Vec<PolynomialEstimate> = values
+            .par_chunks_exact(samples.len())
+            .map_init(
+                || (range.clone(), SurrogateWork::default(), SparseWork::default()),
+                |(range, work, sparse), responses| {
+                    let coefficients = surrogate.coefficients(responses, work);
+                    let mut at_validation = vec![0.0; validation.points.len()];
+                    surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
+                    let enclosed = range.enclose(&coefficients);
+                    PolynomialEstimate { range: enclosed.outer, excess: enclosed.excess(), at_validation }
+                },
+            )
+            .collect();
+        bands.set_polynomials(rows, &found, validation);
+    })?;
+    Ok((bands, simulated))
+}

@@ -1,0 +1,220 @@
+//! What is bounded, as methods see it: outputs over time as functions of the uncertain parameters.
+//!
+//! A method asks an [`Ensemble`] for samples, a jet or an enclosure. It knows neither the mechanism behind it nor its steps, nor which
+//! other methods run.
+
+use std::ops::Range as Rows;
+
+use symdiff::jet::JetSpace;
+use symdiff::taylor_model::ModelSpace;
+
+use crate::numerics::ParameterBox;
+
+/// Why an ensemble has no result at all, in its own terms.
+pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Simulations that one order of a jet counts as in progress reports.
+pub const JET_WORK: usize = 5;
+
+/// What is kept of a simulation in each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Observed {
+    /// The outputs.
+    Outputs,
+    /// Coordinates (n), their velocities (n), then the outputs.
+    Motion,
+}
+
+/// How long samples are simulated together of which one stops early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Until {
+    /// Until the first stops: without it the others are of no use.
+    FirstStop,
+    /// To the end: the others are of use without it.
+    End,
+}
+
+/// How samples are simulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampling {
+    /// What is kept.
+    pub observed: Observed,
+    /// When to end.
+    pub until: Until,
+    /// Whether to go on after an interruption, since half of the rows would be of no use.
+    pub finish: bool,
+}
+
+/// Why a sample stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StopCause {
+    /// A step did not converge; the equation with the largest residual.
+    NotConverged {
+        /// Its number among the equations of motion and the constraints.
+        equation: usize,
+    },
+    /// A constraint cannot be fulfilled beyond this position.
+    Locked {
+        /// Its number.
+        constraint: usize,
+        /// What remains of it.
+        residual: f64,
+    },
+    /// The sample goes on, but its jet does not: the Newton matrix is singular.
+    SingularJet,
+}
+
+/// Where a sample stopped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Number of the sample.
+    pub sample: usize,
+    /// First row that it did not reach.
+    pub row: usize,
+    /// s
+    pub time: f64,
+    /// Why.
+    pub cause: StopCause,
+}
+
+impl Stop {
+    /// Whether it is no sample that stopped, but a jet.
+    pub fn is_of_jet(&self) -> bool {
+        self.cause == StopCause::SingularJet
+    }
+}
+
+/// What simulations took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Newton iterations.
+    pub iterations: u64,
+    /// Steps solved by the dense rank-revealing factorisation.
+    pub rank_revealing: u64,
+}
+
+impl std::ops::AddAssign for Effort {
+    fn add_assign(&mut self, other: Self) {
+        self.iterations += other.iterations;
+        self.rank_revealing += other.rank_revealing;
+    }
+}
+
+/// What came of samples that were simulated together.
+#[derive(Clone, Debug, Default)]
+pub struct Simulated {
+    /// What they took.
+    pub effort: Effort,
+    /// The sample with the largest error ratio (sum of its local errors over the tolerance), and that ratio.
+    pub worst_ratio: Option<(Vec<f64>, f64)>,
+    /// The first sample that stopped, with its parameters.
+    pub stop: Option<(Stop, Vec<f64>)>,
+    /// Numbers of all samples that stopped.
+    pub stopped: Vec<usize>,
+    /// Rows at the end that are not known.
+    pub missing: usize,
+}
+
+impl Simulated {
+    /// Adds a shard whose first sample has the number `first`.
+    pub fn add(&mut self, first: usize, shard: Self) {
+        self.effort += shard.effort;
+        let stop = shard.stop.map(|(stop, sample)| (Stop { sample: first + stop.sample, ..stop }, sample));
+        self.stop = self.stop.take().into_iter().chain(stop).min_by_key(|(stop, _)| (stop.row, stop.sample));
+        self.stopped.extend(shard.stopped.into_iter().map(|sample| first + sample));
+        self.missing = self.missing.max(shard.missing);
+        let ratios = self.worst_ratio.take().into_iter().chain(shard.worst_ratio);
+        self.worst_ratio = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a });
+    }
+}
+
+/// Why an enclosure ends before the last row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lost {
+    /// End of the step that could not be enclosed, s.
+    pub time: f64,
+    /// Why.
+    pub why: String,
+    /// Whether a smaller piece of the box may get further.
+    pub is_too_wide: bool,
+}
+
+/// Outputs over time as functions of the uncertain parameters.
+pub trait Ensemble: Sync {
+    /// The box of the uncertain parameters.
+    fn domain(&self) -> &ParameterBox;
+
+    /// Number of outputs.
+    fn outputs(&self) -> usize;
+
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Time of a row, s.
+    fn time(&self, row: usize) -> f64;
+
+    /// Width below which an output's range is rounding.
+    fn rounding(&self, output: usize) -> f64;
+
+    /// Whether what has been found so far is enough.
+    fn is_interrupted(&self) -> bool;
+
+    /// Simulates samples block by block; `reduce` gets the rows of a block and their values (row, line, sample). Ends as
+    /// `sampling` says, or at an interruption.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    fn simulate(
+        &self,
+        samples: &[Vec<f64>],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, EnsembleError>;
+
+    /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of a block
+    /// and their coefficients (row, output, monomial).
+    ///
+    /// # Errors
+    /// Where the middle of the box cannot be assembled.
+    fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError>;
+
+    /// What prevents an enclosure, if something does.
+    fn obstacle_to_enclosure(&self) -> Option<String>;
+
+    /// Encloses the outputs over a piece of the box; `row` gets the Taylor models of one row after the other. Returns why it
+    /// ended early; at an interruption it just ends.
+    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<Lost>;
+
+    /// Scale of every coordinate (n).
+    fn scales(&self) -> &[f64];
+
+    /// Coordinates that are best taken as independent at a motion (2n values) of these parameters.
+    fn independent(&self, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize>;
+
+    /// The loop closure over a choice of independent coordinates.
+    ///
+    /// # Errors
+    /// Where it cannot be compiled.
+    fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
+}
+
+/// Number of values that a row has for each sample.
+pub fn lines(ensemble: &dyn Ensemble, observed: Observed) -> usize {
+    match observed {
+        Observed::Outputs => ensemble.outputs(),
+        Observed::Motion => 2 * ensemble.scales().len() + ensemble.outputs(),
+    }
+}
+
+/// Outputs from independent coordinates and their velocities, without time integration.
+pub trait Closure: Sync {
+    /// The independent coordinates.
+    fn independent(&self) -> &[usize];
+
+    /// Whether the outputs depend on velocities.
+    fn needs_velocities(&self) -> bool;
+
+    /// Outputs (output, point) at `count` points, given their parameters (parameter, point) and motions (2n lines, point); NaN
+    /// where there is no solution near a motion.
+    fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64>;
+}

@@ -1,0 +1,36 @@
+//! Bounding methods: what the outputs of an ensemble can be over a box of parameters.
+//!
+//! Each method is one file (what can be asked of it, how it bounds, its label and colour) and one line below, from which follow the
+//! names on the command line, the order of bands in files, the legend of plots and `mbint explain --methods`. A method sees an
+//! [`Ensemble`] and knows neither mechanics nor who runs it.
+
+mod ensemble;
+mod registry;
+mod request;
+mod result;
+mod validation;
+
+mod certified;
+mod chebyshev;
+mod scan;
+mod taylor;
+
+pub use certified::Certified;
+pub use chebyshev::{Chebyshev, Degree, Expand, can_compose};
+pub use ensemble::{
+    Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
+    lines,
+};
+pub use registry::{About, BoundingMethod, CostCurve, Curve, Problem, Refusal, Registered, Varied};
+pub use request::{Budget, MOST_SIMULATIONS};
+pub use result::{BandBuilder, Estimate, MethodResult, Sensitivity};
+pub use scan::Scan;
+pub use taylor::Taylor;
+pub use validation::{Validation, ValidationTable};
+
+registry::methods! {
+    chebyshev: Chebyshev,
+    taylor: Taylor,
+    scan: Scan,
+    certified: Certified,
+}

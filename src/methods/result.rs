@@ -1,0 +1,128 @@
+//! What a method finds.
+
+use std::ops::Range as Rows;
+
+use super::ensemble::Simulated;
+use super::validation::Validation;
+use crate::numerics::{Range, surrogate_error};
+
+/// How an output's spread in one row comes about.
+#[derive(Clone, Debug)]
+pub struct Sensitivity {
+    /// First-order Sobol indices: each parameter's share of the variance, alone.
+    pub main: Vec<f64>,
+    /// Total Sobol indices: the same together with others.
+    pub total: Vec<f64>,
+    /// Width of the range if a parameter were at its nominal value.
+    pub width_without: Vec<f64>,
+}
+
+/// A method's bands of all outputs, their errors, and what they took.
+#[derive(Clone, Debug, Default)]
+pub struct MethodResult {
+    /// By output and row.
+    pub bands: Vec<Vec<Range>>,
+    /// The surrogate's error, by output and row.
+    pub surrogate: Vec<Vec<f64>>,
+    /// The time steps' error where the method knows it better than the validation samples' outputs do; else NaN.
+    pub steps: Vec<Vec<f64>>,
+    /// By output and row, where known.
+    pub sensitivities: Vec<Vec<Option<Sensitivity>>>,
+    /// Rows in which something is known.
+    pub reached: usize,
+    /// Why the bounds end early, where that is not a sample's stop.
+    pub note: Option<String>,
+    /// Number of simulations.
+    pub simulations: usize,
+    /// Highest degree in each parameter, where the tolerance decided it.
+    pub order: Option<Vec<usize>>,
+    /// Number of boxes into which the box was split, where the tolerance decided it.
+    pub boxes: Option<usize>,
+    /// What came of the simulations.
+    pub simulated: Simulated,
+}
+
+/// What is estimated of one output in one row.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// The range.
+    pub range: Range,
+    /// Error of the surrogate.
+    pub error: f64,
+    /// Error of the time steps; NaN where not asked for.
+    pub step_error: f64,
+    /// Where asked for.
+    pub sensitivity: Option<Sensitivity>,
+}
+
+/// An output's polynomial in a row: its range, how much too wide that may be, and its values at the validation samples.
+pub(super) struct PolynomialEstimate {
+    pub range: Range,
+    pub excess: f64,
+    pub at_validation: Vec<f64>,
+}
+
+/// Collects a method's bands row by row.
+#[derive(Debug)]
+pub struct BandBuilder {
+    bands: Vec<Vec<Range>>,
+    surrogate: Vec<Vec<f64>>,
+    steps: Vec<Vec<f64>>,
+    sensitivities: Vec<Vec<Option<Sensitivity>>>,
+}
+
+impl BandBuilder {
+    /// For so many outputs and rows, all unknown.
+    pub fn new(outputs: usize, rows: usize) -> Self {
+        Self {
+            bands: vec![vec![Range::UNKNOWN; rows]; outputs],
+            surrogate: vec![vec![f64::NAN; rows]; outputs],
+            steps: vec![vec![f64::NAN; rows]; outputs],
+            sensitivities: vec![vec![None; rows]; outputs],
+        }
+    }
+
+    /// Sets one output's range and surrogate error in one row.
+    pub fn set(&mut self, row: usize, output: usize, range: Range, surrogate: f64) {
+        self.bands[output][row] = range;
+        self.surrogate[output][row] = surrogate;
+    }
+
+    /// Sets all that is estimated of one output in one row.
+    pub fn set_estimate(&mut self, row: usize, output: usize, estimate: Estimate) {
+        self.set(row, output, estimate.range, estimate.error);
+        self.steps[output][row] = estimate.step_error;
+        self.sensitivities[output][row] = estimate.sensitivity;
+    }
+
+    /// Sets ranges of polynomials, row by row, output by output.
+    pub(super) fn set_polynomials(&mut self, rows: Rows<usize>, found: &[PolynomialEstimate], validation: &Validation) {
+        for (row, found) in rows.zip(found.chunks_exact(self.bands.len())) {
+            for (output, PolynomialEstimate { range, excess, at_validation }) in found.iter().enumerate() {
+                let error = surrogate_error(at_validation, &validation.direct.at(row, output));
+                self.set(row, output, *range, error + excess);
+            }
+        }
+    }
+
+    /// All rows but those that are missing.
+    pub fn finish(mut self, simulations: usize, simulated: Simulated) -> MethodResult {
+        let rows = self.bands.first().map_or(0, Vec::len);
+        let reached = rows - simulated.missing.min(rows);
+        self.bands.iter_mut().for_each(|ranges| ranges[reached..].fill(Range::UNKNOWN));
+        self.surrogate.iter_mut().chain(&mut self.steps).for_each(|errors| errors[reached..].fill(f64::NAN));
+        self.sensitivities.iter_mut().for_each(|sensitivities| sensitivities[reached..].fill(None));
+        MethodResult {
+            bands: self.bands,
+            surrogate: self.surrogate,
+            steps: self.steps,
+            sensitivities: self.sensitivities,
+            reached,
+            note: None,
+            simulations,
+            order: None,
+            boxes: None,
+            simulated,
+        }
+    }
+}

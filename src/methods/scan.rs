@@ -1,0 +1,122 @@
+//! Scanning bounds: least and largest values over a full grid of samples. They are inner bounds; the error says how far the outputs may
+//! go beyond them between the samples.
+
+use super::BoundsRequest;
+use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
+use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
+use super::request::MOST_SIMULATIONS;
+use super::result::{BandBuilder, MethodResult};
+use super::validation::Validation;
+use crate::numerics::{ParameterBox, ScanBounds, TensorGrid, largest};
+
+/// Fewest and most samples that are simulated at once.
+const SHARD: usize = 2048;
+const LARGEST_SHARD: usize = 16384;
+
+/// Scanning bounds.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    /// Points along each axis, both ends included.
+    pub points: Vec<usize>,
+}
+
+impl Scan {
+    /// Points along an axis where a model asks for none, the paper's.
+    pub const POINTS: usize = 30;
+
+    /// One number of points for each of k parameters.
+    pub fn of_points(points: usize, k: usize) -> Self {
+        Self { points: vec![points; k] }
+    }
+}
+
+impl Registered for Scan {
+    const ABOUT: About = About {
+        label: "Scan",
+        summary: "least and largest values over a grid of samples: inner bounds",
+        source: "Wu, Luo & Zhang, section 5: the scanning method",
+        color: [130, 25, 80],
+        fill: 0.10,
+        dashes: Some([2.0, 6.5]),
+        is_sampled: true,
+        has_sensitivities: false,
+        curves: &[CostCurve {
+            name: "scan",
+            label: "Scan",
+            color: [130, 25, 80],
+            varied: Varied::Points,
+            counts: &[5, 10, 30],
+            composes: false,
+            simulations: |points, k| (points as f64).powi(k as i32),
+            ask: |request, points, k| request.scan = Some(Scan::of_points(points, k)),
+        }],
+    };
+
+    fn default_for(problem: &Problem) -> Self {
+        Self::of_points(Self::POINTS, problem.parameters)
+    }
+}
+
+impl BoundingMethod for Scan {
+    fn fit(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        let samples: f64 = self.points.iter().map(|&count| count as f64).product();
+        if samples > MOST_SIMULATIONS { Err(Refusal::too_many("scan", samples, problem.parameters)) } else { Ok(()) }
+    }
+
+    fn narrow(&mut self, kept: &[usize]) {
+        super::request::pick(&mut self.points, kept);
+    }
+
+    /// The points of a part lie as close as in the whole.
+    fn restrict(&mut self, part: &ParameterBox, whole: &ParameterBox) {
+        for (axis, points) in self.points.iter_mut().enumerate() {
+            let share = part.half_width(axis) / whole.half_width(axis);
+            let scaled = (*points as f64 * share).ceil() as usize;
+            *points = if share < 1.0 { scaled.max(2) } else { *points };
+        }
+    }
+
+    fn samples(&self) -> Option<f64> {
+        Some(self.points.iter().map(|&count| count as f64).product())
+    }
+
+    fn bound(
+        &self,
+        ensemble: &dyn Ensemble,
+        validation: &Validation,
+        _: &BoundsRequest,
+    ) -> Result<MethodResult, EnsembleError> {
+        let grid = TensorGrid::full_factorial(&self.points);
+        let (outputs, rows) = (ensemble.outputs(), ensemble.rows());
+        let mut bounds = ScanBounds::new(rows, outputs, &self.points);
+        let mut total = Simulated::default();
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+        // Slabs of the first axis stay together, so that neighbours do.
+        let slab = grid.len() / self.points.first().copied().unwrap_or(1);
+        let shard_size = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
+        for first in (0..grid.len()).step_by(shard_size) {
+            if ensemble.is_interrupted() {
+                // A part of the grid bounds nothing.
+                total.missing = rows;
+                break;
+            }
+            let sample = |index| ensemble.domain().point(&grid.sample(index));
+            let shard: Vec<Vec<f64>> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
+            let simulated = ensemble.simulate(&shard, sampling, &mut |rows, values| {
+                for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
+                    for (output, values) in values.chunks_exact(shard.len()).enumerate() {
+                        bounds.observe(row, output, first, values);
+                    }
+                }
+            })?;
+            total.add(first, simulated);
+        }
+        let mut bands = BandBuilder::new(outputs, rows);
+        for (row, output) in (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))) {
+            let range = bounds.range(row, output);
+            let outside = validation.direct.at(row, output).into_iter().map(|value| range.distance(value));
+            bands.set(row, output, range, largest(outside.chain([bounds.error(row, output)])));
+        }
+        Ok(bands.finish(grid.len(), total))
+    }
+}

@@ -1,0 +1,157 @@
+//! From what methods found under one schedule to bounds and a summary.
+
+use super::single::{Outcome, Ran, Results, Study};
+use crate::methods::{Method, Sensitivity, Stop, StopCause};
+use crate::numerics::{BandError, time_error, time_error_certified};
+use crate::results::{
+    Band, Bounds, Contribution, ContributionSummary, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
+    SingularSummary, Summary,
+};
+use crate::simulate::{OpenConstraint, SimulationError};
+
+/// Said of results that the user did not wait for.
+const INTERRUPTED: &str =
+    "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
+
+/// Bounds up to the last row of which something is known, and the summary.
+pub(super) fn conclude(study: &Study, results: Results, note: Option<String>) -> Ran {
+    let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
+    // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
+    let rows = results.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
+    let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        nominal: results.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
+        bands: bands(study, &results, place, rows),
+    });
+    let contributions = contributions(study, &results, rows);
+    let bounds = Bounds {
+        contributions,
+        times: (0..rows).map(|row| results.schedule.time(row)).collect(),
+        outputs: outputs.collect(),
+        covered: Vec::new(),
+    };
+    let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
+    let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
+    let stopped = stop.map(|(stop, sample)| failure(study, &stop, &sample));
+    let failure = stopped.or(note).or_else(interrupted).or_else(notes);
+    let whole = results.whole().min(rows);
+    let summary = summary(study, results, &bounds, failure);
+    Ran { bounds, summary, whole }
+}
+
+/// Every parameter's contribution to every output's spread, from a method that knows it.
+fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
+    let known = |(_, outcome): &&(Method, Outcome)| outcome.result.sensitivities.iter().flatten().any(Option::is_some);
+    let Some((_, outcome)) = results.methods.iter().find(known) else { return Vec::new() };
+    let of_parameter = |rows_of_output: &[Option<Sensitivity>], place: usize| {
+        let over_time = |pick: fn(&Sensitivity) -> &Vec<f64>| {
+            let at = |row: &Option<Sensitivity>| row.as_ref().map_or(f64::NAN, |sensitivity| pick(sensitivity)[place]);
+            rows_of_output[..rows].iter().map(at).collect()
+        };
+        Contribution {
+            parameter: study.simulator.system.parameters[place].name.clone(),
+            main: over_time(|sensitivity| &sensitivity.main),
+            total: over_time(|sensitivity| &sensitivity.total),
+            width_without: over_time(|sensitivity| &sensitivity.width_without),
+        }
+    };
+    let parameters = 0..study.domain.dimension();
+    let of_output =
+        |rows: &Vec<Option<Sensitivity>>| parameters.clone().map(|place| of_parameter(rows, place)).collect();
+    outcome.result.sensitivities.iter().map(of_output).collect()
+}
+
+/// An output's band by every method, with its error.
+fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
+    let Some((validation, _)) = &results.validation else { return Vec::new() };
+    let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
+        let ranges = &outcome.result.bands[output][..rows];
+        let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
+        let time: Vec<f64> = (0..rows)
+            .map(|row| match halved {
+                Some(halved) => time_error_certified(ranges[row], halved[row]),
+                // Either is enough: what the validation samples near the ends show, and what the coordinates' errors do to the ends,
+                // which is nothing where a range is saturated. (`min` passes over NaN.)
+                None => time_error(ranges[row], &validation.direct.at(row, output), &validation.halved.at(row, output))
+                    .min(outcome.result.steps[output][row]),
+            })
+            .collect();
+        let surrogate = &outcome.result.surrogate[output][..rows];
+        Band {
+            method: *method,
+            lower: ranges.iter().map(|range| range.lower).collect(),
+            upper: ranges.iter().map(|range| range.upper).collect(),
+            error: BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance),
+        }
+    };
+    results.methods.iter().enumerate().map(band).collect()
+}
+
+/// What happened where a sample stopped, for people.
+fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
+    let parameters = study.simulator.with_names(sample);
+    let Stop { sample, time, cause, .. } = *stop;
+    match cause {
+        StopCause::SingularJet => {
+            format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
+        }
+        StopCause::Locked { constraint, residual } => {
+            let locked = study.simulator.locked(OpenConstraint { constraint, residual }, time, parameters);
+            format!("{locked}; results up to that time are kept")
+        }
+        StopCause::NotConverged { equation } => {
+            let equation = study.simulator.equation_name(equation);
+            let failed = SimulationError::NotConverged { sample, time, equation, parameters };
+            format!(
+                "{failed}; bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step"
+            )
+        }
+    }
+}
+
+fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
+    let system = &study.simulator.system;
+    let mobility = &study.simulator.mobility;
+    let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
+    let singular =
+        results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
+    Summary {
+        model: study.description.name.clone(),
+        mbint: env!("CARGO_PKG_VERSION").to_owned(),
+        coordinates: system.q.len(),
+        constraints: system.lambda.len(),
+        degrees_of_freedom: mobility.degrees_of_freedom,
+        redundant_constraints: names(&mobility.redundant),
+        undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+        singular_at_start: names(&mobility.singular_at_start),
+        singular_configurations: singular.collect(),
+        alpha: study.description.simulation.alpha,
+        duration: study.description.simulation.duration,
+        parameters: system
+            .parameters
+            .iter()
+            .map(|parameter| ParameterSummary {
+                name: parameter.name.clone(),
+                unit: parameter.unit.clone(),
+                nominal: parameter.nominal,
+                lower: parameter.lower,
+                upper: parameter.upper,
+            })
+            .collect(),
+        methods: std::iter::once(results.nominal.summary)
+            .chain(results.validation.map(|(_, summary)| summary))
+            .chain(results.methods.into_iter().map(|(_, outcome)| outcome.summary))
+            .chain(results.halved.into_iter().map(|(method, outcome)| MethodSummary {
+                method: format!("{} with halved steps", method.name()),
+                ..outcome.summary
+            }))
+            .collect(),
+        errors: ErrorSummary::of(bounds),
+        contributions: ContributionSummary::of(bounds),
+        pieces: Vec::new(),
+        not_simulated: Vec::new(),
+        subsystems: Vec::new(),
+        failure,
+    }
+}

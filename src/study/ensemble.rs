@@ -1,0 +1,271 @@
+//! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
+
+use std::ops::Range as Rows;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use symdiff::jet::JetSpace;
+use symdiff::taylor_model::ModelSpace;
+
+use crate::methods::{
+    self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
+};
+use crate::numerics::{ParameterBox, Range};
+use crate::simulate::{
+    Certifier, Closure, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint, Points,
+    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+};
+
+/// Values (rows × lines × samples) that one block holds.
+const BLOCK: usize = 1 << 20;
+
+/// Most rows of a block.
+const MOST_ROWS: usize = 64;
+
+/// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's iteration ends at 1e-12 or
+/// so.
+const AT_REST: f64 = 1e-10;
+
+/// How far a run has come, in simulations times rows.
+pub(super) struct Progress<'a> {
+    done: AtomicUsize,
+    total: usize,
+    report: &'a (dyn Fn(f64) + Sync),
+}
+
+impl<'a> Progress<'a> {
+    /// Before the first simulation.
+    pub fn new(total: usize, report: &'a (dyn Fn(f64) + Sync)) -> Self {
+        Self { done: AtomicUsize::new(0), total, report }
+    }
+
+    fn advance(&self, work: usize) {
+        let done = self.done.fetch_add(work, Ordering::Relaxed) + work;
+        (self.report)((done as f64 / self.total as f64).min(1.0));
+    }
+}
+
+/// A mechanism under one schedule.
+pub(super) struct Motions<'a> {
+    simulator: &'a Simulator,
+    domain: &'a ParameterBox,
+    schedule: &'a Schedule,
+    /// Of the steps' local errors, where they are controlled.
+    tolerance: Option<f64>,
+    progress: &'a Progress<'a>,
+    interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Made when something is enclosed.
+    certifier: OnceLock<Certifier<'a>>,
+}
+
+impl<'a> Motions<'a> {
+    /// Of a mechanism over a box.
+    pub fn new(
+        simulator: &'a Simulator,
+        domain: &'a ParameterBox,
+        schedule: &'a Schedule,
+        tolerance: Option<f64>,
+        progress: &'a Progress<'a>,
+        interrupted: &'a (dyn Fn() -> bool + Sync),
+    ) -> Self {
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, certifier: OnceLock::new() }
+    }
+
+    /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
+    /// after an interruption.
+    ///
+    /// # Errors
+    /// Where it cannot be assembled.
+    pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
+        let outputs = self.outputs();
+        let mut bands = BandBuilder::new(outputs, self.schedule.rows);
+        let sample = std::slice::from_ref(&self.domain.nominal);
+        let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
+        let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+        let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
+            for (row, values) in rows.zip(values.chunks_exact(outputs)) {
+                for (output, &value) in values.iter().enumerate() {
+                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
+                }
+            }
+        });
+        Ok((bands.finish(1, simulated), run.singular_passes()))
+    }
+
+    fn advance(
+        &self,
+        run: &mut EnsembleRun,
+        samples: &[Vec<f64>],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Simulated {
+        let observed = match sampling.observed {
+            methods::Observed::Outputs => Observed::Outputs,
+            methods::Observed::Motion => Observed::Motion,
+        };
+        let Sampling { until, finish, .. } = sampling;
+        let rows_a_block = (BLOCK / (observed.count(self.simulator) * samples.len()).max(1)).clamp(1, MOST_ROWS);
+        let mut values = Vec::new();
+        let mut stop: Option<Stop> = None;
+        let mut stopped = Vec::new();
+        let mut next = 0;
+        let goes_on = |stop: &Option<Stop>| stop.is_none() || until == Until::End;
+        while next < self.schedule.rows && goes_on(&stop) && (finish || !self.is_interrupted()) {
+            let rows = next..(next + rows_a_block).min(self.schedule.rows);
+            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, observed, &mut values);
+            stopped.extend(stops.iter().map(|stop| stop.sample));
+            stop = stop.into_iter().chain(stops).min_by_key(|stop| (stop.row, stop.sample));
+            reduce(rows.clone(), &values);
+            self.progress.advance(samples.len() * rows.len());
+            next = rows.end;
+        }
+        let reached = match &stop {
+            Some(stop) if until == Until::FirstStop => stop.row,
+            _ => next,
+        };
+        let stop = stop.map(|stop| Stop { open: run.open_constraint(&stop, self.schedule), ..stop });
+        Simulated {
+            effort: effort(run.counters()),
+            worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
+            stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
+            stopped,
+            missing: self.schedule.rows - reached,
+        }
+    }
+}
+
+fn effort(counters: Counters) -> Effort {
+    Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
+}
+
+fn stopped_at(stop: &Stop) -> methods::Stop {
+    let cause = match stop.open {
+        _ if stop.singular => StopCause::SingularJet,
+        Some(OpenConstraint { constraint, residual }) => StopCause::Locked { constraint, residual },
+        None => StopCause::NotConverged { equation: stop.equation },
+    };
+    methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
+}
+
+impl Ensemble for Motions<'_> {
+    fn domain(&self) -> &ParameterBox {
+        self.domain
+    }
+
+    fn outputs(&self) -> usize {
+        self.simulator.program.outputs.len()
+    }
+
+    fn rows(&self) -> usize {
+        self.schedule.rows
+    }
+
+    fn time(&self, row: usize) -> f64 {
+        self.schedule.time(row)
+    }
+
+    fn rounding(&self, output: usize) -> f64 {
+        let length = self.simulator.system.length;
+        let duration = self.schedule.output_step * self.schedule.rows as f64;
+        // What has no size of its own, as a force, has no rounding that could be told.
+        AT_REST
+            * match self.simulator.system.outputs[output].unit.as_str() {
+                "rad" => 1.0,
+                "m" => length,
+                "rad/s" => 1.0 / duration,
+                "m/s" => length / duration,
+                _ => 0.0,
+            }
+    }
+
+    fn is_interrupted(&self) -> bool {
+        (self.interrupted)()
+    }
+
+    fn simulate(
+        &self,
+        samples: &[Vec<f64>],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, EnsembleError> {
+        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        Ok(self.advance(&mut run, samples, sampling, reduce))
+    }
+
+    fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
+        let parameters = 0..self.domain.dimension();
+        let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
+        let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
+        let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
+        let mut values = Vec::new();
+        let mut stop = None;
+        let mut next = 0;
+        while next < self.schedule.rows && stop.is_none() && !self.is_interrupted() {
+            let rows = next..(next + MOST_ROWS).min(self.schedule.rows);
+            stop = jet.advance(self.schedule, rows.clone(), &mut values);
+            reduce(rows.clone(), &values);
+            self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
+            next = rows.end;
+        }
+        let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
+        let stop = stop.map(|stop| (stopped_at(&stop), center));
+        Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
+    }
+
+    fn obstacle_to_enclosure(&self) -> Option<String> {
+        let effect = self.simulator.system.effects.iter().find(|effect| !effect.enclosed)?;
+        Some(format!("effect {} ({})", effect.name, effect.kind))
+    }
+
+    fn enclose(&self, space: &ModelSpace, piece: &ParameterBox, row: &mut dyn FnMut(&[f64])) -> Option<methods::Lost> {
+        let lost = |time: f64, lost: EnclosureError| {
+            Some(methods::Lost { time, why: lost.to_string(), is_too_wide: lost == EnclosureError::Unproven })
+        };
+        let certifier = self.certifier.get_or_init(|| Certifier::new(self.simulator));
+        let first_step = self.schedule.first_step();
+        let mut enclosure = match Enclosure::start(certifier, space, &piece.lower, &piece.upper, first_step) {
+            Ok(enclosure) => enclosure,
+            Err(why) => return lost(0.0, why),
+        };
+        let mut models = Vec::new();
+        for next in 0..self.schedule.rows {
+            if self.is_interrupted() {
+                break;
+            }
+            if let Err((time, why)) = enclosure.advance(self.schedule, next) {
+                return lost(time, why);
+            }
+            enclosure.observe(&mut models);
+            row(&models);
+        }
+        None
+    }
+
+    fn scales(&self) -> &[f64] {
+        &self.simulator.program.scale
+    }
+
+    fn independent(&self, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
+        choose_independent(self.simulator, parameters, motion, time)
+    }
+
+    fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
+        Ok(Box::new(Closure::new(self.simulator, independent)?))
+    }
+}
+
+impl methods::Closure for Closure<'_> {
+    fn independent(&self) -> &[usize] {
+        Closure::independent(self)
+    }
+
+    fn needs_velocities(&self) -> bool {
+        Closure::needs_velocities(self)
+    }
+
+    fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
+        let mut values = Vec::new();
+        Closure::outputs(self, time, &Points { count, parameters, motion }, &mut values);
+        values
+    }
+}

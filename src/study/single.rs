@@ -1,0 +1,375 @@
+//! One subsystem's study: the step schedule that all samples share, and the methods under it.
+
+use super::conclude::conclude;
+use super::ensemble::{Motions, Progress};
+use super::step_search::StepSearch;
+use super::{Options, RunError};
+use crate::methods::{
+    BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Stop, Validation,
+    can_compose,
+};
+use crate::model::{Description, Stepping};
+use crate::numerics::{ParameterBox, corners, probes, validation};
+use crate::results::{Bounds, MethodSummary, Summary};
+use crate::simulate::{Schedule, SimulationError, Simulator, SingularPass, ToleranceSchedule, schedule_for_tolerance};
+
+/// Corners of the box that join the nominal sample as controlling samples of the step size.
+const CONTROLLING_CORNERS: usize = 16;
+
+/// How often samples that turn out to need smaller steps may be added to the controlling samples.
+const CONTROL_ROUNDS: usize = 8;
+
+/// A compiled subsystem, and what is asked of it.
+pub(super) struct Study<'a> {
+    pub(super) description: &'a Description,
+    pub(super) simulator: Simulator,
+    pub(super) domain: ParameterBox,
+    pub(super) request: BoundsRequest,
+    /// Whether all samples are simulated with halved steps too.
+    certify_time: bool,
+    pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    /// Whether what is finished is enough.
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// A method's result and its line in the summary.
+pub(super) struct Outcome {
+    pub result: MethodResult,
+    pub summary: MethodSummary,
+}
+
+/// What one schedule yields.
+pub(super) struct Results {
+    pub schedule: Schedule,
+    pub nominal: Outcome,
+    /// Singular configurations that the nominal motion passes.
+    pub singular: Vec<SingularPass>,
+    /// Absent where no method is asked for.
+    pub validation: Option<(Validation, MethodSummary)>,
+    pub methods: Vec<(Method, Outcome)>,
+    /// The same with halved steps, where asked for.
+    pub halved: Vec<(Method, Outcome)>,
+}
+
+impl Results {
+    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
+    }
+
+    /// Samples that stopped.
+    pub fn stops(&self) -> impl Iterator<Item = &(Stop, Vec<f64>)> {
+        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.stop.as_ref());
+        self.outcomes().filter_map(|outcome| outcome.result.simulated.stop.as_ref()).chain(validation)
+    }
+
+    /// Rows that every sample of every method has reached, validation samples included.
+    pub fn whole(&self) -> usize {
+        let nominal = self.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
+        let stops = self.stops().filter(|(stop, _)| !stop.is_of_jet() && nominal != Some(stop));
+        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
+    }
+
+    /// The sample with the largest error ratio, where that is more than 1.
+    fn beyond_tolerance(&self) -> Option<(Vec<f64>, f64)> {
+        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
+        let ratios =
+            self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
+        ratios.filter(|(_, ratio)| *ratio > 1.0).max_by(|a, b| a.1.total_cmp(&b.1)).cloned()
+    }
+}
+
+/// What a study found.
+pub(super) struct Ran {
+    pub bounds: Bounds,
+    pub summary: Summary,
+    /// Rows that every sample of every method has reached.
+    pub whole: usize,
+}
+
+/// How far validation samples of a box came.
+pub(super) struct Tried {
+    /// Rows that all have reached.
+    pub reached: usize,
+    /// ξ of those that did not reach the end.
+    pub stopped: Vec<Vec<f64>>,
+    /// Whether any did.
+    pub any: bool,
+}
+
+/// What a subsystem is to its bounding methods.
+pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
+    let parameters = simulator.system.parameters.len();
+    Problem {
+        parameters,
+        composes: can_compose(parameters, simulator.system.q.len()),
+        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
+        tolerance: description.bounds.tolerance,
+    }
+}
+
+impl<'a> Study<'a> {
+    /// Of a subsystem that is compiled already.
+    ///
+    /// # Errors
+    /// Where a method cannot bound it.
+    pub(super) fn new(
+        description: &'a Description,
+        simulator: Simulator,
+        options: &Options<'a>,
+    ) -> Result<Self, RunError> {
+        let parameters = &simulator.system.parameters;
+        let domain = ParameterBox {
+            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        };
+        let problem = problem(description, &simulator);
+        let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
+        let Options { certify_time, progress, interrupted, .. } = *options;
+        Ok(Self { description, simulator, domain, request, certify_time, progress, interrupted })
+    }
+
+    /// The same over a part of the box.
+    pub(super) fn over<'b>(&'b self, part: &ParameterBox, progress: &'b (dyn Fn(f64) + Sync)) -> Study<'b> {
+        let mut request = self.request.clone();
+        request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
+        Study { domain: part.clone(), request, progress, simulator: self.simulator.clone(), ..*self }
+    }
+
+    /// Rows of output that are asked for.
+    pub(super) fn rows(&self) -> usize {
+        Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
+    }
+
+    /// The motions under a schedule.
+    pub(super) fn motions<'s>(
+        &'s self,
+        schedule: &'s Schedule,
+        tolerance: Option<f64>,
+        progress: &'s Progress<'s>,
+    ) -> Motions<'s> {
+        Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
+    }
+
+    /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
+    pub(super) fn try_samples(&self) -> Result<Tried, RunError> {
+        let simulation = &self.description.simulation;
+        let (duration, output_step) = (simulation.duration, simulation.output_step);
+        match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let schedule = Schedule::fixed(duration, step, output_step);
+                let halved = schedule.refined(2);
+                let progress = Progress::new(usize::MAX, self.progress);
+                let [direct, halved] = [&schedule, &halved].map(|schedule| self.motions(schedule, None, &progress));
+                let validation = Validation::run(&direct, &halved, Observed::Outputs).map_err(simulation_error)?;
+                let Validation { points, simulated, .. } = validation;
+                Ok(Tried {
+                    reached: simulated.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
+                    any: simulated.stopped.len() < points.len(),
+                    stopped: simulated.stopped.iter().map(|&sample| points[sample].clone()).collect(),
+                })
+            }
+            Stepping::Tolerance(tolerance) => {
+                let samples = self.controlling_samples();
+                let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
+                // The nominal sample may be of another part of the box.
+                let inside = |sample: &Vec<f64>| samples[0] != *sample || self.domain.contains(sample);
+                let going = (0..samples.len()).filter(|sample| !controlled.dropped.contains(sample));
+                Ok(Tried {
+                    reached: controlled.complete_rows.min(controlled.schedule.rows),
+                    any: going.into_iter().any(|sample| inside(&samples[sample])),
+                    stopped: controlled.dropped.iter().map(|&sample| self.domain.xi(&samples[sample])).collect(),
+                })
+            }
+        }
+    }
+
+    /// Runs every method.
+    pub(super) fn run(&self) -> Result<Ran, RunError> {
+        let simulation = &self.description.simulation;
+        match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
+                let results = self.methods(&schedule, None)?;
+                Ok(conclude(self, results, None))
+            }
+            Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
+        }
+    }
+
+    /// The schedule of the controlling samples is tried on all samples; one that needs smaller steps becomes a controlling sample,
+    /// and all run again.
+    fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
+        let simulation = &self.description.simulation;
+        let mut samples = self.controlling_samples();
+        let mut round = 1;
+        loop {
+            let (duration, output_step) = (simulation.duration, simulation.output_step);
+            let ToleranceSchedule { schedule, failure, .. } =
+                schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
+            let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
+            let results = self.methods(&schedule, Some(tolerance))?;
+            match results.beyond_tolerance() {
+                None => return Ok(conclude(self, results, failure)),
+                Some((_, ratio)) if round == CONTROL_ROUNDS => {
+                    let note = format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance");
+                    return Ok(conclude(self, results, Some(note)));
+                }
+                Some((sample, _)) => samples.push(sample),
+            }
+            round += 1;
+        }
+    }
+
+    /// The nominal sample and corners of the box.
+    fn controlling_samples(&self) -> Vec<Vec<f64>> {
+        let mut samples = vec![self.domain.nominal.clone()];
+        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.point(xi)) {
+            if !samples.contains(&corner) {
+                samples.push(corner);
+            }
+        }
+        samples
+    }
+
+    /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
+    /// validation samples decide how the schedule's steps are divided or joined.
+    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+        if self.domain.dimension() == 0 {
+            return self.deterministic(schedule, tolerance);
+        }
+        let progress = Progress::new(self.total_work(schedule), self.progress);
+        let (schedule, validation) = if self.request.is_empty() {
+            (schedule.clone(), None)
+        } else {
+            let (schedule, validation) = self.balance(schedule, tolerance, &progress)?;
+            (schedule, Some(validation))
+        };
+        let motions = self.motions(&schedule, tolerance, &progress);
+        let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
+        let (mut methods, mut halved) = (Vec::new(), Vec::new());
+        if let Some((validation, _)) = &validation {
+            methods = self.bound(&motions, &schedule, validation, |_| true)?;
+            if self.certify_time && !(self.interrupted)() {
+                let schedule = schedule.refined(2);
+                let motions = self.motions(&schedule, None, &progress);
+                halved = self.bound(&motions, &schedule, validation, |method| method.about().is_sampled)?;
+            }
+        }
+        drop(motions);
+        Ok(Results { schedule, nominal, singular, validation, methods, halved })
+    }
+
+    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    fn balance(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<f64>,
+        progress: &Progress,
+    ) -> Result<(Schedule, (Validation, MethodSummary)), SimulationError> {
+        let problem = problem(self.description, &self.simulator);
+        let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
+        let motion = self.request.methods().iter().any(needs_motion);
+        let observed = if motion { Observed::Motion } else { Observed::Outputs };
+        let mut steps = StepSearch::new(schedule);
+        loop {
+            let begun = std::time::Instant::now();
+            let schedule = steps.schedule();
+            let halved = schedule.refined(2);
+            let direct = self.motions(&schedule, tolerance, progress);
+            let halved = self.motions(&halved, None, progress);
+            let validation = Validation::run(&direct, &halved, observed).map_err(simulation_error)?;
+            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
+            let summary = validation_summary(&schedule, &validation, stop, begun);
+            let enough = match self.request.tolerance {
+                Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
+                None => true,
+            };
+            drop((direct, halved));
+            if enough {
+                return Ok((schedule, (validation, summary)));
+            }
+        }
+    }
+
+    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out.
+    pub(super) fn bound(
+        &self,
+        motions: &Motions,
+        schedule: &Schedule,
+        validation: &Validation,
+        wanted: impl Fn(Method) -> bool,
+    ) -> Result<Vec<(Method, Outcome)>, SimulationError> {
+        let mut outcomes = Vec::new();
+        for (method, request) in self.request.methods().into_iter().filter(|(method, _)| wanted(*method)) {
+            if (self.interrupted)() {
+                break;
+            }
+            let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
+            let (outcome, ()) = timed(schedule, method.name(), || Ok((bound()?, ())))?;
+            outcomes.push((method, outcome));
+        }
+        Ok(outcomes)
+    }
+
+    /// Samples × rows of all methods.
+    fn total_work(&self, schedule: &Schedule) -> usize {
+        let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
+        let methods: usize = self.request.methods().iter().map(work).sum();
+        let k = self.domain.dimension();
+        let held_out = if self.request.is_empty() { 0 } else { probes(k).len() + validation(k).len() };
+        (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
+    }
+}
+
+/// The error of simulations behind that of an ensemble.
+pub(super) fn simulation_error(error: EnsembleError) -> SimulationError {
+    // `Motions` has no other errors.
+    *error.downcast().expect("motions fail as simulations do")
+}
+
+/// A method's result with its line in the summary.
+pub(super) fn timed<T>(
+    schedule: &Schedule,
+    method: &str,
+    bound: impl FnOnce() -> Result<(MethodResult, T), SimulationError>,
+) -> Result<(Outcome, T), SimulationError> {
+    let begun = std::time::Instant::now();
+    let (result, other) = bound()?;
+    let simulated = &result.simulated;
+    let summary = MethodSummary {
+        method: method.to_owned(),
+        solves: result.simulations,
+        steps: steps(schedule, simulated.stop.as_ref().map(|(stop, _)| stop)),
+        newton_iterations: simulated.effort.iterations,
+        rank_revealing_solves: simulated.effort.rank_revealing,
+        order: result.order.clone(),
+        boxes: result.boxes,
+        seconds: Some(begun.elapsed().as_secs_f64()),
+    };
+    Ok((Outcome { result, summary }, other))
+}
+
+/// The validation samples' line in the summary.
+pub(super) fn validation_summary(
+    schedule: &Schedule,
+    validation: &Validation,
+    stop: Option<&Stop>,
+    begun: std::time::Instant,
+) -> MethodSummary {
+    MethodSummary {
+        method: "validation".to_owned(),
+        solves: validation.simulations,
+        steps: steps(schedule, stop),
+        newton_iterations: validation.effort.iterations,
+        rank_revealing_solves: validation.effort.rank_revealing,
+        order: None,
+        boxes: None,
+        seconds: Some(begun.elapsed().as_secs_f64()),
+    }
+}
+
+/// Steps up to where a sample stopped, or to the end.
+fn steps(schedule: &Schedule, stop: Option<&Stop>) -> usize {
+    schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1))
+}
