@@ -15,6 +15,8 @@
 use symdiff::{Builder, Expr};
 
 use super::carried::Carried;
+pub use crate::multibody::MaterialPoint;
+
 use super::rotation::{self, Quaternion};
 use super::space::{self, Matrix, Vector};
 
@@ -73,19 +75,6 @@ pub struct Attitude {
     pub omega: Vector,
     /// ω̇ in the ground's axes.
     pub alpha: Vector,
-}
-
-/// A point fixed in a body.
-#[derive(Clone, Copy, Debug)]
-pub struct MaterialPoint {
-    /// Index of the body.
-    pub body: usize,
-    /// R s: from the frame's origin to the point, in the ground's frame.
-    pub arm: Vector,
-    /// r
-    pub position: Vector,
-    /// ṙ
-    pub velocity: Vector,
 }
 
 /// First three of a list of coordinates.

@@ -8,10 +8,11 @@ use crate::model::{Description, Formulation};
 use super::body::{Body, EULER, Turn};
 use super::effects::{self, Loads};
 use super::error::BuildError;
-use super::joints::{self, Row};
+use super::joints;
 use super::mechanism::Mechanism;
 use super::recursion;
 use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, ResidualUnit, System};
+use crate::elements::joints::Row;
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
 /// only.
@@ -79,7 +80,7 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
     for (index, joint) in description.joints.iter().enumerate() {
         if mechanism.tree.uses(index) {
             // Its reaction follows from the motion, once the forces are known.
-            let none = joints::reaction(g, &joint.kind, &[]);
+            let none = joints::reaction(g, &*joint.kind, &[]);
             mechanism.reactions.push(none);
             continue;
         }
@@ -87,15 +88,15 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         let mut kept = Vec::with_capacity(rows.len());
         for row in rows {
             let name = if row.name.is_empty() { joint.name.clone() } else { format!("{}.{}", joint.name, row.name) };
-            let info = ConstraintInfo { name, joint: joint.name.clone(), unit: residual_unit(g, &row) };
+            let info = ConstraintInfo { name, joint: joint.name.clone(), unit: residual_unit(&row) };
             if is_effective(g, &mechanism, length, &info, row)? {
-                kept.push((row, constraints.add(g, info, row.value)));
+                kept.push((row, constraints.add(g, info, row.value.expr())));
             } else {
                 let why = "nothing that it constrains can move".to_owned();
                 left_out.push(LeftOut { what: format!("constraint {}", info.name), why });
             }
         }
-        let reaction = joints::reaction(g, &joint.kind, &kept);
+        let reaction = joints::reaction(g, &*joint.kind, &kept);
         mechanism.reactions.push(reaction);
         closures.push(index);
         for (coordinate, value) in mechanism.definitions(g, index)? {
@@ -240,9 +241,8 @@ impl Constraints {
 }
 
 /// Unit of a row's Φ: m where its multiplier is a force, rad where it is a torque alone.
-fn residual_unit(g: &Builder, row: &Row) -> ResidualUnit {
-    let is_zero = |vector: &[Expr; 3]| vector.iter().all(|&component| g.is_zero(component));
-    match (is_zero(&row.force), is_zero(&row.torque)) {
+fn residual_unit(row: &Row) -> ResidualUnit {
+    match (row.force.is_zero(), row.torque.is_zero()) {
         (false, _) => ResidualUnit::Length,
         (true, false) => ResidualUnit::Angle,
         (true, true) => ResidualUnit::Number,
@@ -251,14 +251,14 @@ fn residual_unit(g: &Builder, row: &Row) -> ResidualUnit {
 
 /// Whether a row constrains anything. One without a coordinate holds always, and is not needed, or never.
 fn is_effective(g: &Builder, m: &Mechanism, length: f64, info: &ConstraintInfo, row: Row) -> Result<bool, BuildError> {
-    if !m.is_given(g, &[row.value]) {
+    if !m.is_given(g, &[row.value.expr()]) {
         return Ok(true);
     }
     let samples = [
-        (None, m.sample(g, &[row.value], 0.0, |parameter| parameter.nominal)),
-        (Some("at the parameters' lower bounds"), m.sample(g, &[row.value], 0.0, |parameter| parameter.lower)),
-        (Some("at the parameters' upper bounds"), m.sample(g, &[row.value], 0.0, |parameter| parameter.upper)),
-        (Some("at t = 1 s"), m.sample(g, &[row.value], 1.0, |parameter| parameter.nominal)),
+        (None, m.sample(g, &[row.value.expr()], 0.0, |parameter| parameter.nominal)),
+        (Some("at the parameters' lower bounds"), m.sample(g, &[row.value.expr()], 0.0, |parameter| parameter.lower)),
+        (Some("at the parameters' upper bounds"), m.sample(g, &[row.value.expr()], 0.0, |parameter| parameter.upper)),
+        (Some("at t = 1 s"), m.sample(g, &[row.value.expr()], 1.0, |parameter| parameter.nominal)),
     ];
     for (at, values) in samples {
         let residual = values[0];

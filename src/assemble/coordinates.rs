@@ -21,7 +21,7 @@ use crate::model::{Description, Referent, StartValue, TimeOrder};
 
 use super::body::ANGLE;
 use super::error::BuildError;
-use super::joints::{self, Pair};
+use super::joints;
 use super::mechanism::{Context, Mechanism};
 use super::space;
 
@@ -133,7 +133,7 @@ impl Mechanism<'_> {
                 let turned = g.sub(second, first);
                 g.sub(turned, value)
             } else {
-                let pair = Pair::of(g, self, between);
+                let pair = self.pair(g, between);
                 let axis = self.vector(g, axis, Context::Time)?;
                 let axis = space::unit(g, axis);
                 match coordinate {

@@ -1,7 +1,6 @@
 //! The symbols of a mechanism, and what a formula's names mean in them.
 
 use std::collections::{BTreeMap, HashMap};
-use std::fmt;
 
 use symdiff::{Builder, Expr, Formula, Scalar};
 
@@ -17,33 +16,8 @@ use super::rotation::{self, Quaternion};
 use super::space::{self, Vector};
 use super::system::UncertainParameter;
 use super::tree::Tree;
-
-/// What a formula may speak of; each includes those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Context {
-    /// Masses, points, values at the start.
-    Parameters,
-    /// Held coordinates, and numbers of joints (drivers).
-    Time,
-    /// Constraints: Φ(q, t).
-    Positions,
-    /// Effects: Q(t, q, v, λ).
-    Motion,
-    /// Outputs.
-    Everything,
-}
-
-impl fmt::Display for Context {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Parameters => "parameters",
-            Self::Time => "parameters and t",
-            Self::Positions => "parameters, t and positions",
-            Self::Motion => "parameters, t, positions, velocities and reactions",
-            Self::Everything => "all that is observed",
-        })
-    }
-}
+use crate::multibody::Pair;
+pub use crate::multibody::{Context, Frame};
 
 impl Context {
     /// The smallest context in which something is known.
@@ -95,15 +69,6 @@ impl Owner {
             Self::Joint(_, coordinate) => coordinate == JointCoordinate::Displacement,
         }
     }
-}
-
-/// A frame fixed in a body.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    /// Its origin.
-    pub point: MaterialPoint,
-    /// Its orientation against the ground.
-    pub orientation: Quaternion,
 }
 
 /// A description's symbols and bodies; its reactions and potentials as the joints and effects are built.
@@ -396,6 +361,12 @@ impl<'d> Mechanism<'d> {
             None => orientation,
         };
         Frame { point: self.point(g, point), orientation }
+    }
+
+    /// The frames at two points.
+    pub fn pair(&self, g: &Builder, between: [PointRef; 2]) -> Pair {
+        let [first, second] = between.map(|point| self.frame(g, point));
+        Pair { first, second }
     }
 
     /// Whether only parameters and t stand in the expressions.

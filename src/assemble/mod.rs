@@ -18,7 +18,6 @@ mod build;
 mod carried;
 mod coordinates;
 mod effects;
-mod error;
 mod flexible;
 mod formulation;
 mod inertia;
@@ -29,13 +28,13 @@ mod outputs;
 mod placement;
 mod pose;
 mod recursion;
-mod rotation;
-mod space;
 mod start;
 mod system;
 #[cfg(test)]
 pub(crate) mod tests;
 mod tree;
+
+use crate::multibody::{error, rotation, space};
 
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
 pub use error::BuildError;

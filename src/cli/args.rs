@@ -170,7 +170,7 @@ pub(super) struct ExplainArgs {
     pub format: Format,
 
     /// Print a list as a page of the book.
-    #[arg(long, hide = true, requires = "list", conflicts_with_all = ["format", "effects"])]
+    #[arg(long, hide = true, requires = "list", conflicts_with_all = ["format", "effects", "joints", "methods"])]
     pub page: bool,
 }
 
@@ -181,6 +181,14 @@ pub(super) struct ListArgs {
     /// List every effect with its keys, units, equation and source.
     #[arg(long)]
     pub effects: bool,
+
+    /// List every joint with its keys, units, equations and the signs of its reaction.
+    #[arg(long)]
+    pub joints: bool,
+
+    /// List every bounding method with its keys and source.
+    #[arg(long)]
+    pub methods: bool,
 
     /// List every unit with its value in SI units.
     #[arg(long)]

@@ -107,7 +107,7 @@ fn bounds(study: &CostStudy) -> Table<8> {
             whole(point.order),
             whole(point.points),
             step(point.step),
-            point.solves.to_string(),
+            point.simulations.to_string(),
             format!("{:.1e}", point.seconds),
             error(over_width, own),
             error(under_coverage, own),
@@ -194,9 +194,9 @@ fn choice(study: &CostStudy) -> String {
             }
             Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
         };
-        let (label, step, solves) =
-            (point.method.label(), step(point.step), count(point.solves, "simulation", "simulations"));
-        format!("{label}{count_of}, steps of {step}: {solves} in {}, {off}", seconds(point.seconds))
+        let (label, step) = (point.method.label(), step(point.step));
+        let simulations = count(point.simulations, "simulation", "simulations");
+        format!("{label}{count_of}, steps of {step}: {simulations} in {}, {off}", seconds(point.seconds))
     };
     match (study.cheapest(), study.nearest()) {
         _ if own >= wanted => {
@@ -219,7 +219,7 @@ mod tests {
         let point = |method, order, points, seconds, over_width, under_coverage| CostPoint {
             order,
             points,
-            solves: 36,
+            simulations: 36,
             steps: 2000,
             seconds,
             deviation: Deviation::Bounds { over_width, under_coverage },

@@ -4,20 +4,14 @@ use super::args::{ExplainArgs, Format};
 use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
 use super::table::{Align, Table};
-use super::{Failure, Status, effects, load};
+use super::{Failure, Status, effects, joints, load, methods};
+use crate::elements::JointKind;
 use crate::results::{Decision, Explanation};
 use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
     let Some(path) = &args.model else {
-        let list = match (args.list.listing(), args.format) {
-            (Some(listing), _) if args.page => listing.page(),
-            (Some(listing), Format::Text) => listing.text(),
-            (Some(listing), Format::Json) => listing.json()?,
-            (None, Format::Text) => effects::text()?,
-            (None, Format::Json) => to_json(&effects::all()?)?,
-        };
-        return console.print(&list).map(|()| Status::Done);
+        return console.print(&listed(args)?).map(|()| Status::Done);
     };
     let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
@@ -28,6 +22,25 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
         Format::Json => to_json(&explanation)?,
     })?;
     Ok(Status::Done)
+}
+
+/// The list that is asked for.
+fn listed(args: &ExplainArgs) -> Result<String, Failure> {
+    if let Some(listing) = args.list.listing() {
+        return match args.format {
+            _ if args.page => Ok(listing.page()),
+            Format::Text => Ok(listing.text()),
+            Format::Json => listing.json(),
+        };
+    }
+    match args.format {
+        Format::Text if args.list.methods => Ok(methods::text()),
+        Format::Json if args.list.methods => to_json(&methods::all()),
+        Format::Text if args.list.joints => Ok(joints::text()),
+        Format::Json if args.list.joints => to_json(&JointKind::docs()),
+        Format::Text => effects::text(),
+        Format::Json => to_json(&effects::all()?),
+    }
 }
 
 /// The explanation for people, one paragraph per subject that the model has.

@@ -134,7 +134,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
     for method in &summary.methods {
         table.row([
             method.method.clone(),
-            method.solves.to_string(),
+            method.simulations.to_string(),
             method.steps.to_string(),
             method.newton_iterations.to_string(),
             method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
@@ -169,11 +169,11 @@ mod tests {
 
     #[test]
     fn the_overview_is_aligned() {
-        let method = |method: &str, solves, seconds, rank_revealing_solves| MethodSummary {
+        let method = |method: &str, simulations, seconds, rank_revealing_solves| MethodSummary {
             method: method.into(),
-            solves,
-            steps: 2000 * solves,
-            newton_iterations: 4013 * solves as u64,
+            simulations,
+            steps: 2000 * simulations,
+            newton_iterations: 4013 * simulations as u64,
             rank_revealing_solves,
             order: None,
             boxes: None,

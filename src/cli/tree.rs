@@ -25,9 +25,12 @@ fn joint(joint: &TreeJoint) -> String {
         let preposition = if joint.unit == "m" { "along" } else { "about" };
         let _ = write!(text, " {preposition} {x} {y} {z}");
     }
-    if let Some([lower, upper]) = joint.limits.filter(|_| joint.axis.is_some()) {
-        let _ = write!(text, ", {lower} to {upper} {}", joint.unit);
-    }
+    let _ = match joint.limits.map(|limit| limit.filter(|_| joint.axis.is_some())) {
+        [Some(lower), Some(upper)] => write!(text, ", {lower} to {upper} {}", joint.unit),
+        [Some(lower), None] => write!(text, ", from {lower} {}", joint.unit),
+        [None, Some(upper)] => write!(text, ", up to {upper} {}", joint.unit),
+        [None, None] => Ok(()),
+    };
     for (what, value) in [("damping", joint.damping), ("friction", joint.friction)] {
         if value != 0.0 {
             let _ = write!(text, ", {what} {value}");

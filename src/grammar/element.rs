@@ -260,6 +260,17 @@ pub fn kinds_schema(description: &str, kinds: Vec<(&'static str, &'static str, S
     })
 }
 
+/// The mapping of an element, or the list that may stand for it.
+pub fn short_or_full<E: Element + schemars::JsonSchema>(generator: &mut SchemaGenerator) -> Schema {
+    let full = generator.subschema_for::<E>();
+    let Some(short) = E::SHORT else { return full };
+    let keys = E::keys(generator);
+    let Some(key) = keys.into_iter().find(|key| key.name == short) else { return full };
+    let mut list = key.schema;
+    list.insert("description".to_owned(), format!("Short for `{{ {short}: … }}`.").into());
+    schemars::json_schema!({ "anyOf": [list, full] })
+}
+
 /// An example as JSON.
 fn json_of(yaml: &str) -> serde_json::Value {
     fn value(node: &Node) -> serde_json::Value {

@@ -160,6 +160,30 @@ impl Direction {
     }
 }
 
+/// One in the first point's frame, one in the second's.
+impl Value for [Direction; 2] {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span, _quantity: &Quantity) -> Option<Self> {
+        let [first, second] = reader.two(node, "a list of two directions")?.map(|node| reader.direction(node));
+        Some([Direction(first?), Direction(second?)])
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        generator.subschema_for::<[values::Direction; 2]>()
+    }
+
+    fn to_json(&self) -> Option<serde_json::Value> {
+        self.iter().map(|direction| vector_as_json(&direction.0)).collect()
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        found.extend(self.iter().flat_map(|direction| &direction.0));
+    }
+
+    fn leaves_plane(node: &Node) -> bool {
+        matches!(&node.value, yaml::Value::Sequence(items) if items.iter().any(plane::points_out))
+    }
+}
+
 impl Axis {
     /// z.
     pub fn z() -> Self {
@@ -211,7 +235,6 @@ pub struct TurningJoint(pub usize);
 
 /// A joint with a displacement, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(dead_code)] // joints that couple others refer to it
 pub struct SlidingJoint(pub usize);
 
 reference! {

@@ -21,9 +21,8 @@ pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
     Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, kinds_schema,
-    object_schema, ordered,
+    object_schema, ordered, short_or_full,
 };
-#[allow(unused_imports)] // joints that couple others refer to a SlidingJoint
 pub use kinds::{Axis, BodyRef, Components, Direction, PerAxis, SlidingJoint, TurningJoint};
 pub use names::Context;
 pub use reader::{Fields, Reader};

@@ -1,4 +1,4 @@
-//! Parts of motions that names can speak of: `body.vx`, `body.omega.z`, `joint.angle`.
+//! Parts of motions that names can refer to: `body.vx`, `body.omega.z`, `joint.angle`.
 
 use super::quantity::Dimension;
 use super::symbols::{Coordinate, JointCoordinate, TimeOrder};

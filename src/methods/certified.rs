@@ -5,7 +5,8 @@ use symdiff::taylor_model::{ModelSpace, up};
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Lost, Simulated};
-use super::registry::{About, BoundingMethod, Problem, Refusal, Registered};
+use super::registry::{About, BoundingMethod, Refusal, Registered};
+use super::request::Problem;
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::numerics::{ParameterBox, Range, RangeKind, TaylorRange};

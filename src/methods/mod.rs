@@ -21,16 +21,20 @@ pub use ensemble::{
     Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
     lines,
 };
-pub use registry::{About, BoundingMethod, CostCurve, Curve, Problem, Refusal, Registered, Varied};
-pub use request::{Budget, MOST_SIMULATIONS};
+pub use registry::{About, BoundingMethod, CostCurve, Curve, Refusal, Registered, Varied};
+pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, Estimate, MethodResult, Sensitivity};
 pub use scan::Scan;
 pub use taylor::Taylor;
 pub use validation::{Validation, ValidationTable};
 
 registry::methods! {
-    chebyshev: Chebyshev,
-    taylor: Taylor,
-    scan: Scan,
-    certified: Certified,
+    /// A Chebyshev polynomial in the parameters.
+    chebyshev: Chebyshev, keys chebyshev::keys::Chebyshev;
+    /// A Taylor polynomial in the parameters.
+    taylor: Taylor, keys taylor::keys::Taylor;
+    /// Many samples; inner bounds.
+    scan: Scan, keys scan::keys::Scan;
+    /// Proven enclosures; asked for by `--certify`.
+    certified: Certified;
 }

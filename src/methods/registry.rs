@@ -3,24 +3,11 @@
 use std::fmt::Debug;
 
 use super::ensemble::{Ensemble, EnsembleError, Observed};
-use super::request::Budget;
+use super::request::{Budget, Problem};
 use super::result::MethodResult;
 use super::validation::Validation;
 use super::{BoundsRequest, Method};
 use crate::numerics::ParameterBox;
-
-/// What a method is asked to bound, before anything is simulated.
-#[derive(Clone, Copy, Debug)]
-pub struct Problem {
-    /// Number of uncertain parameters.
-    pub parameters: usize,
-    /// Whether outputs can follow from expanded coordinates.
-    pub composes: bool,
-    /// Whether all steps have a given length.
-    pub has_fixed_steps: bool,
-    /// Error allowed of the bounds.
-    pub tolerance: Option<f64>,
-}
 
 /// Why a method cannot be run, for people.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -166,7 +153,7 @@ pub trait BoundingMethod: Debug {
 
 /// Makes [`Method`](super::Method) and [`BoundsRequest`](super::BoundsRequest) of the list of methods.
 macro_rules! methods {
-    ($($keyword:ident: $Type:ident,)*) => {
+    ($($(#[doc = $doc:literal])* $keyword:ident: $Type:ident $(, keys $keys:path)?;)*) => {
         /// A bounding method.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Method {
@@ -182,6 +169,11 @@ macro_rules! methods {
                 match self { $(Self::$Type => stringify!($keyword),)* }
             }
 
+            /// The schema of what a file may ask of it; absent where only the command line asks for it.
+            pub fn schema(self) -> Option<schemars::Schema> {
+                match self { $(Self::$Type => registry::schema!($($keys)?),)* }
+            }
+
             /// What people see of it.
             pub fn about(self) -> &'static $crate::methods::About {
                 match self { $(Self::$Type => &<$Type as $crate::methods::Registered>::ABOUT,)* }
@@ -195,8 +187,10 @@ macro_rules! methods {
             pub tolerance: Option<f64>,
             /// What may be spent on it.
             pub budget: Budget,
-            $(#[doc = concat!("Bounds by `", stringify!($keyword), "`.")] pub $keyword: Option<$Type>,)*
+            $($(#[doc = $doc])* pub $keyword: Option<$Type>,)*
         }
+
+        registry::keys! { {} $({ $(#[doc = $doc])* $keyword $(: $keys)? })* }
 
         impl BoundsRequest {
             /// The methods that are asked for.
@@ -226,6 +220,20 @@ macro_rules! methods {
                 }
             }
 
+            /// Reads what a file asks of each method.
+            fn read_methods<S: $crate::grammar::SymbolTable>(
+                &mut self,
+                reader: &mut $crate::grammar::Reader<'_, S>,
+                fields: &$crate::grammar::Fields<'_>,
+                uncertain: &[String],
+            ) {
+                $($(if let Some(node) = fields.get(stringify!($keyword))
+                    && let Some(fields) = reader.fields::<$keys>(node, fields.key_span(stringify!($keyword)))
+                {
+                    self.$keyword = $Type::read(reader, &fields, uncertain, self.tolerance);
+                })?)*
+            }
+
             /// Leaves out a method.
             pub fn omit(&mut self, method: Method) {
                 match method { $(Method::$Type => self.$keyword = None,)* }
@@ -234,7 +242,50 @@ macro_rules! methods {
     };
 }
 
-pub(super) use methods;
+/// The mapping `bounds:`, of the methods that have keys.
+macro_rules! keys {
+    ({ $($done:tt)* } { $(#[doc = $doc:literal])* $keyword:ident: $keys:path } $($rest:tt)*) => {
+        registry::keys! { { $($done)* $(#[doc = $doc])* $keyword: Option<$keys>, } $($rest)* }
+    };
+    ({ $($done:tt)* } { $(#[doc = $doc:literal])* $keyword:ident } $($rest:tt)*) => {
+        registry::keys! { { $($done)* } $($rest)* }
+    };
+    ({ $($done:tt)* }) => {
+        /// Keys of the file.
+        pub(crate) mod keys {
+            #![allow(dead_code)] // the fields are there for their names and types
+
+            use schemars::JsonSchema;
+
+            use super::*;
+            use crate::grammar::values::Number;
+
+            crate::grammar::mapping::grammar! {
+                /// Which bounds to compute; a method that is not named is not run.
+                Bounds is "`bounds`" {
+                    /// Error allowed of every bound, relative to how far its output ranges over the run. Chebyshev's degree (where it has no
+                    /// `order`) and the steps are then chosen to meet it; what misses it is flagged.
+                    tolerance: Option<Number>,
+                    /// What may be spent on the tolerance.
+                    budget: Option<request::keys::Budget>,
+                    $($done)*
+                }
+            }
+        }
+    };
+}
+
+/// The schema of a method's keys.
+macro_rules! schema {
+    () => {
+        None
+    };
+    ($keys:path) => {
+        Some(schemars::schema_for!($keys))
+    };
+}
+
+pub(super) use {keys, methods, schema};
 
 impl BoundsRequest {
     /// Whether no method is asked for.

@@ -3,15 +3,37 @@
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
-use super::request::MOST_SIMULATIONS;
+use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
+use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
+use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, ScanBounds, TensorGrid, largest};
 
 /// Fewest and most samples that are simulated at once.
 const SHARD: usize = 2048;
 const LARGEST_SHARD: usize = 16384;
+
+/// Most points along an axis.
+const MOST_POINTS: usize = 1_000_000;
+
+/// Keys of the file.
+pub(crate) mod keys {
+    #![allow(dead_code)] // the fields are there for their names and types
+
+    use schemars::JsonSchema;
+
+    use crate::grammar::mapping::grammar;
+    use crate::methods::request::keys::PerParameter;
+
+    grammar! {
+        /// Scanning bounds.
+        Scan is "`scan`" {
+            /// Points, for all parameters or by parameter, both ends included; by default 30.
+            points: Option<PerParameter>,
+        }
+    }
+}
 
 /// Scanning bounds.
 #[derive(Clone, Debug)]
@@ -27,6 +49,18 @@ impl Scan {
     /// One number of points for each of k parameters.
     pub fn of_points(points: usize, k: usize) -> Self {
         Self { points: vec![points; k] }
+    }
+
+    /// Reads its keys.
+    pub(super) fn read<S: SymbolTable>(
+        reader: &mut Reader<'_, S>,
+        fields: &Fields,
+        uncertain: &[String],
+        _tolerance: Option<f64>,
+    ) -> Option<Self> {
+        let points = request::per_parameter(reader, fields, "points", uncertain, 2..=MOST_POINTS, Self::POINTS)?;
+        request::check_simulations(reader, fields, "points", &points);
+        Some(Self { points })
     }
 }
 
@@ -64,7 +98,7 @@ impl BoundingMethod for Scan {
     }
 
     fn narrow(&mut self, kept: &[usize]) {
-        super::request::pick(&mut self.points, kept);
+        request::pick(&mut self.points, kept);
     }
 
     /// The points of a part lie as close as in the whole.

@@ -5,11 +5,38 @@ use symdiff::jet::JetSpace;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, JET_WORK};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Registered, Varied};
-use super::request::Budget;
+use super::registry::{About, BoundingMethod, CostCurve, Registered, Varied};
+use super::request::{self, Budget, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
+use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{RangeKind, TaylorRange};
+
+/// Coefficients of a Taylor polynomial.
+const MOST_COEFFICIENTS: f64 = 1e5;
+
+/// Highest order.
+const MOST_ORDER: usize = 50;
+
+/// Keys of the file.
+pub(crate) mod keys {
+    #![allow(dead_code)] // the fields are there for their names and types
+
+    use schemars::JsonSchema;
+
+    use crate::grammar::mapping::grammar;
+    use crate::methods::request::keys::Range;
+
+    grammar! {
+        /// Taylor bounds.
+        Taylor is "`taylor`" {
+            /// Total degree; by default 2.
+            order: Option<u32>,
+            /// By default tight.
+            range: Option<Range>,
+        }
+    }
+}
 
 /// Taylor bounds.
 #[derive(Clone, Debug)]
@@ -23,6 +50,25 @@ pub struct Taylor {
 impl Taylor {
     /// Degree where a model asks for none, the paper's.
     pub const ORDER: usize = 2;
+
+    /// Reads its keys.
+    pub(super) fn read<S: SymbolTable>(
+        reader: &mut Reader<'_, S>,
+        fields: &Fields,
+        uncertain: &[String],
+        _tolerance: Option<f64>,
+    ) -> Option<Self> {
+        let range = request::range(reader, fields);
+        let order = fields.get("order").map_or(Some(Self::ORDER), |node| reader.count(node, 1, MOST_ORDER))?;
+        // Monomials of degree up to n in k variables: (n + k)! / (n! k!).
+        let uncertain = uncertain.len();
+        let coefficients = (1..=uncertain).fold(1.0, |count, k| count * (order + k) as f64 / k as f64);
+        if coefficients > MOST_COEFFICIENTS {
+            let message = format!("order {order} in {uncertain} parameters has {coefficients:.2e} coefficients");
+            reader.error(fields.key_span("order"), message, format!("at most {MOST_COEFFICIENTS:e} can be computed"));
+        }
+        Some(Self { order, range: range? })
+    }
 }
 
 impl Default for Taylor {

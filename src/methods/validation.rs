@@ -1,7 +1,6 @@
 //! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step halved.
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
-use super::result::MethodResult;
 use crate::numerics::{BandError, Range, largest, probes, time_error, validation};
 
 /// All values of a few samples in all rows.
@@ -112,18 +111,19 @@ impl Validation {
         Ok(Self { points, direct, halved, simulations, effort, simulated, spans })
     }
 
-    /// Where nothing is uncertain: the nominal sample is the only one, and is simulated with each step halved.
+    /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is simulated with each
+    /// step halved.
     ///
     /// # Errors
     /// Where it cannot be assembled.
     pub fn of_nominal(
         ensemble: &dyn Ensemble,
         halved: &dyn Ensemble,
-        nominal: &MethodResult,
+        (nominal, reached): (&[Vec<Range>], usize),
     ) -> Result<Self, EnsembleError> {
         let points = validation(0);
-        let at = |row: usize| nominal.bands.iter().map(move |ranges| ranges[row].lower);
-        let values = (0..nominal.reached).flat_map(at).collect();
+        let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
+        let values = (0..reached).flat_map(at).collect();
         let direct = ValidationTable { motions: 0, outputs: ensemble.outputs(), samples: points.len(), values };
         let samples = ensemble.domain().points(&points);
         let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;

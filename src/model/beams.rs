@@ -103,11 +103,7 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
 impl Description {
     /// Number of elements of a beam; `None` where there is none of that name.
     pub(super) fn elements_of(&self, beam: &str) -> Option<usize> {
-        // Its nodes follow each other; a single body with a full stop in its name, which is told as wrong, makes no beam.
-        let node = |name: &str| {
-            self.bodies.iter().position(|body| body.name.strip_prefix(beam).is_some_and(|rest| rest == name))
-        };
-        node(".end")?.checked_sub(node(".start")?).filter(|&elements| elements > 0)
+        self.beams.iter().find(|known| known.name == beam).map(|beam| beam.elements)
     }
 
     /// What of a beam has a name of its own.

@@ -4,7 +4,7 @@ use crate::grammar::{Coordinate, Rotation};
 use symdiff::Formula;
 
 use super::beams;
-use super::description::{Body, Inertia, Point};
+use super::description::{Body, FlexibleBeam, Inertia, Point};
 use super::file;
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
@@ -44,6 +44,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         reader.name(entry, "a body");
         if let Some(elements) = beams::elements(entry).filter(|_| entry.key != GROUND) {
             reader.model.bodies.extend(beams::nodes(&entry.key, elements).map(|name| empty(&name)));
+            reader.model.beams.push(FlexibleBeam { name: entry.key.clone(), elements });
             continue;
         }
         let mut body = empty(&entry.key);

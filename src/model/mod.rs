@@ -15,7 +15,6 @@ mod bounds;
 mod effects;
 mod joints;
 mod load;
-mod motors;
 mod overrides;
 mod parameters;
 mod requests;

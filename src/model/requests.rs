@@ -141,7 +141,7 @@ fn output(reader: &mut Reader, entry: &Entry) -> Option<Output> {
         }
     };
     if formula.names().next().is_none() {
-        reader.error(node.span.clone(), "this output is the same always: no name stands in it", None);
+        reader.error(node.span.clone(), "constant output: it refers to no variable", None);
     }
     Some(Output { name: entry.key.clone(), formula, unit })
 }

@@ -3,14 +3,12 @@
 //! Decided before anything else is read, on the text alone, because it says which coordinates a body has.
 
 use super::description::Space;
+use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
-use crate::grammar::plane::{leaves_plane, points_out, turns_out};
+use crate::grammar::plane::leaves_plane;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::yaml::{Entry, Node, Value};
-
-/// Kinds of joints that only make sense in space.
-pub const SPATIAL_JOINTS: [&str; 5] = ["spherical", "cylindrical", "screw", "universal", "planar"];
 
 /// Parts of names at the start that only bodies in space have.
 const SPATIAL_STARTS: [&str; 5] = ["z", "vz", "orientation", "omega", "omega_body"];
@@ -79,12 +77,7 @@ fn body_leaves(body: &Node) -> Option<String> {
 
 fn joint_leaves(joint: &Node) -> Option<String> {
     let [kind] = mapping(joint) else { return None };
-    if SPATIAL_JOINTS.contains(&kind.key.as_str()) {
-        return Some("the kind".to_owned());
-    }
-    let axis = get(&kind.value, "axis").or_else(|| get(&kind.value, "normal"))?;
-    let leaves = if kind.key == "revolute" { turns_out(axis) } else { points_out(axis) };
-    leaves.then(|| "the axis".to_owned())
+    JointKind::leaves_plane(&kind.key, &kind.value).map(|what| format!("the {what}"))
 }
 
 fn effect_leaves(effect: &Node) -> Option<String> {

@@ -93,7 +93,7 @@ fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
         .collect()
 }
 
-/// Two columns of a CSV file. Its own errors are told at their places in it.
+/// Two columns of a CSV file. Errors in it have their places in it.
 fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[Number; 2]>> {
     let scalar = reader.scalar(node, "the name of a file")?;
     let path = reader.folder.join(&scalar.text);

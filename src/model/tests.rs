@@ -1,4 +1,4 @@
-//! The whole way from text to description.
+//! From text to description.
 
 use super::*;
 use crate::elements::joints::*;

@@ -36,6 +36,11 @@ impl<'g> Vector<'g> {
         self.0.map(Scalar::expr)
     }
 
+    /// Whether it is the constant 0.
+    pub fn is_zero(self) -> bool {
+        self.0.iter().all(|component| component.is_zero())
+    }
+
     /// Each component's image, in order.
     pub fn map(self, image: impl FnMut(Scalar<'g>) -> Scalar<'g>) -> Self {
         Self(self.0.map(image))

@@ -16,6 +16,7 @@ mod error;
 mod extremes;
 mod leja;
 mod peak;
+mod polynomial_range;
 mod range;
 mod samples;
 mod scan;
@@ -27,7 +28,6 @@ mod sparse_transform;
 mod surrogate;
 mod taylor;
 mod tensor;
-mod union;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
@@ -35,7 +35,8 @@ pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extremes::{Extent, extremes, extremes_near};
-pub use range::{Enclosed, PolynomialRange, Range, RangeKind};
+pub use polynomial_range::{PolynomialRange, RangeKind};
+pub use range::{EMPTY, Enclosed, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
@@ -46,4 +47,3 @@ pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
 pub use tensor::Work;
-pub use union::{EMPTY, union};

@@ -2,7 +2,8 @@
 
 use symdiff::jet::Monomials;
 
-use super::range::{Enclosed, PolynomialRange, Range, RangeKind};
+use super::polynomial_range::{PolynomialRange, RangeKind};
+use super::range::{Enclosed, Range};
 use super::tensor::{Matrix, Separable, Work};
 
 /// Most coefficients of the tensor in which the tight range is sought; beyond, the range is taken term by term, and how much

@@ -7,7 +7,7 @@ use crate::numerics::{BandError, EMPTY, Range, largest, union};
 impl MethodSummary {
     /// Adds what the same method took elsewhere.
     pub fn add(&mut self, other: &Self) {
-        self.solves += other.solves;
+        self.simulations += other.simulations;
         self.steps = self.steps.max(other.steps);
         self.newton_iterations += other.newton_iterations;
         self.rank_revealing_solves += other.rank_revealing_solves;

@@ -130,7 +130,8 @@ pub struct ContributionSummary {
 #[allow(missing_docs)]
 pub struct MethodSummary {
     pub method: String,
-    pub solves: usize,
+    /// Number of simulations.
+    pub simulations: usize,
     pub steps: usize,
     pub newton_iterations: u64,
     /// Steps that fell back to the dense rank-revealing solve.

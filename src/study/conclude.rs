@@ -13,31 +13,34 @@ use crate::simulate::{OpenConstraint, SimulationError};
 const INTERRUPTED: &str =
     "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
 
-/// Bounds up to the last row of which something is known, and the summary.
-pub(super) fn conclude(study: &Study, results: Results, note: Option<String>) -> Ran {
-    let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
-    // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
-    let rows = results.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
-    let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
-        name: output.name.clone(),
-        unit: output.unit.clone(),
-        nominal: results.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
-        bands: bands(study, &results, place, rows),
-    });
-    let contributions = contributions(study, &results, rows);
-    let bounds = Bounds {
-        contributions,
-        times: (0..rows).map(|row| results.schedule.time(row)).collect(),
-        outputs: outputs.collect(),
-        covered: Vec::new(),
-    };
-    let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
-    let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
-    let stopped = stop.map(|(stop, sample)| failure(study, &stop, &sample));
-    let failure = stopped.or(note).or_else(interrupted).or_else(notes);
-    let whole = results.whole().min(rows);
-    let summary = summary(study, results, &bounds, failure);
-    Ran { bounds, summary, whole }
+impl Study<'_> {
+    /// Bounds up to the last row of which something is known, and the summary.
+    pub(super) fn conclude(&self, results: Results, note: Option<String>) -> Ran {
+        let study = self;
+        let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
+        // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
+        let rows = results.outcomes().map(|outcome| outcome.result.reached).max().unwrap_or(0);
+        let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
+            name: output.name.clone(),
+            unit: output.unit.clone(),
+            nominal: results.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
+            bands: bands(study, &results, place, rows),
+        });
+        let contributions = contributions(study, &results, rows);
+        let bounds = Bounds {
+            contributions,
+            times: (0..rows).map(|row| results.schedule.time(row)).collect(),
+            outputs: outputs.collect(),
+            covered: Vec::new(),
+        };
+        let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
+        let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
+        let stopped = stop.map(|(stop, sample)| failure(study, &stop, &sample));
+        let failure = stopped.or(note).or_else(interrupted).or_else(notes);
+        let whole = results.whole().min(rows);
+        let summary = summary(study, results, &bounds, failure);
+        Ran { bounds, summary, whole }
+    }
 }
 
 /// Every parameter's contribution to every output's spread, from a method that knows it.

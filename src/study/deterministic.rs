@@ -36,9 +36,10 @@ impl Study<'_> {
                 return Ok(results);
             }
             let begun = Instant::now();
+            let nominal = &results.nominal.result;
             let finer = self.motions(&halved, None, &progress);
-            let validation =
-                Validation::of_nominal(&motions, &finer, &results.nominal.result).map_err(simulation_error)?;
+            let validation = Validation::of_nominal(&motions, &finer, (&nominal.bands, nominal.reached))
+                .map_err(simulation_error)?;
             if let Some(allowed) = self.request.tolerance
                 && steps.adjust(validation.worst_share(allowed, schedule.rows))
             {

@@ -1,6 +1,5 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
-use super::conclude::conclude;
 use super::ensemble::{Motions, Progress};
 use super::step_search::StepSearch;
 use super::{Options, RunError};
@@ -191,7 +190,7 @@ impl<'a> Study<'a> {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
                 let results = self.methods(&schedule, None)?;
-                Ok(conclude(self, results, None))
+                Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
         }
@@ -210,10 +209,10 @@ impl<'a> Study<'a> {
             let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
             let results = self.methods(&schedule, Some(tolerance))?;
             match results.beyond_tolerance() {
-                None => return Ok(conclude(self, results, failure)),
+                None => return Ok(self.conclude(results, failure)),
                 Some((_, ratio)) if round == CONTROL_ROUNDS => {
                     let note = format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance");
-                    return Ok(conclude(self, results, Some(note)));
+                    return Ok(self.conclude(results, Some(note)));
                 }
                 Some((sample, _)) => samples.push(sample),
             }
@@ -339,7 +338,7 @@ pub(super) fn timed<T>(
     let simulated = &result.simulated;
     let summary = MethodSummary {
         method: method.to_owned(),
-        solves: result.simulations,
+        simulations: result.simulations,
         steps: steps(schedule, simulated.stop.as_ref().map(|(stop, _)| stop)),
         newton_iterations: simulated.effort.iterations,
         rank_revealing_solves: simulated.effort.rank_revealing,
@@ -359,7 +358,7 @@ pub(super) fn validation_summary(
 ) -> MethodSummary {
     MethodSummary {
         method: "validation".to_owned(),
-        solves: validation.simulations,
+        simulations: validation.simulations,
         steps: steps(schedule, stop),
         newton_iterations: validation.effort.iterations,
         rank_revealing_solves: validation.effort.rank_revealing,

@@ -1,4 +1,4 @@
-//! How a diagnostic looks: rustc's way, through `annotate-snippets`.
+//! Diagnostics as text, in the style of rustc, through `annotate-snippets`.
 
 use std::ops::Range;
 

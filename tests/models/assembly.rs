@@ -1,8 +1,8 @@
-//! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not: `tests/faults/infeasible.rs`.)
+//! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not: `tests/program/faults/infeasible.rs`.)
 
 use mbint::study::{self, Options};
 
-use super::common::read;
+use crate::common::read;
 
 #[test]
 fn inconsistent_velocities_are_reported() {

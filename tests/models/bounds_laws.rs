@@ -5,7 +5,7 @@ use mbint::model::{Description, ParameterValue};
 use mbint::numerics::RangeKind;
 use mbint::results::{Bounds, Method};
 
-use super::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
+use crate::common::{Findings, Vary, band, distance, largest, load, model, model_files, output, read, run};
 
 /// Share of the times at which a method's band leaves another's by more than the errors of both.
 fn outside(output: &mbint::results::OutputBounds, inner: Method, outer: Method) -> f64 {

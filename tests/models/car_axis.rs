@@ -4,31 +4,16 @@
 
 use mbint::model::Description;
 
-use super::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
-
-/// t, xl, yl, xr, yr: `ivp/car_axis.csv`.
-const STATES: [[f64; 5]; 6] = [
-    [0.5, 0.0478878180617, 0.497089687181, 1.04357714998, 0.404338653155],
-    [1.0, 0.0271820954401, 0.498911552629, 1.02454879597, 0.426388006981],
-    [1.5, -0.0324929726285, 0.498613008425, 0.963531453617, 0.587693546832],
-    [2.0, -0.0456044836429, 0.497445343219, 0.951740760593, 0.570263361597],
-    [2.5, 0.00661519488556, 0.499775444142, 1.00657630196, 0.508594987559],
-    [3.0, 0.0493455784275, 0.49698946023, 1.04174252489, 0.373911027265],
-];
+use crate::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
 
 const NAMES: [&str; 4] = ["left.x", "left.y", "right.x", "right.y"];
-
-fn states() -> Vec<[f64; 5]> {
-    let Some(rows) = reference("ivp/car_axis.csv") else { return STATES.to_vec() };
-    rows.iter().map(|row| std::array::from_fn(|place| row[place])).collect()
-}
 
 fn car_axis() -> Description {
     model("car_axis").observing(&NAMES)
 }
 
 fn error(curves: [&[f64]; 4], row_of: impl Fn(f64) -> usize) -> f64 {
-    let states = states();
+    let states = reference("ivp/car_axis.csv");
     let errors = states
         .iter()
         .flat_map(|state| (0..4).map(move |place| (state[0], place, state[place + 1])))

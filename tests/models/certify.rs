@@ -8,7 +8,7 @@ use mbint::model::Description;
 use mbint::results::{Bounds, Method};
 use mbint::study::{self, Options};
 
-use super::common::*;
+use crate::common::*;
 
 /// Error of an ordinary sample: Newton's tolerance, gathered over the steps.
 const NEWTON: f64 = 1e-9;

@@ -4,7 +4,7 @@ use mbint::methods::{Chebyshev, Degree, Expand, Scan};
 use mbint::model::{Description, ParameterValue};
 use mbint::results::{Method, OutputBounds};
 
-use super::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
+use crate::common::{Findings, band, load, model, model_files, output, run, uncertain_count};
 
 fn composed(mut description: Description, order: usize, points: usize) -> Description {
     let k = uncertain_count(&description);

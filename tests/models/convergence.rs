@@ -5,7 +5,7 @@
 
 use mbint::model::Description;
 
-use super::common::{Findings, Vary, curve, distance, distance_from, model, nominal, order, read, row};
+use crate::common::{Findings, Vary, curve, distance, distance_from, model, nominal, order, read, row};
 
 /// A rod that hangs by its end, its frame at the hinge: M depends on the angle through the centre of mass.
 fn rod_about_its_end() -> Description {

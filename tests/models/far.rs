@@ -8,7 +8,7 @@ use mbint::simulate::{Simulator, Stepper};
 use mbint::study::{self, Options, prepare};
 use symdiff::Tape;
 
-use super::common::{Vary, read, run};
+use crate::common::{Vary, read, run};
 
 const STEP: f64 = 1e-3;
 

@@ -7,7 +7,7 @@ use mbint::model::{Description, Formulation};
 use mbint::simulate::{SimulationError, Simulator};
 use mbint::study;
 
-use super::common::{Vary, largest, load, model_files, nominal, read, richardson};
+use crate::common::{Vary, largest, load, model_files, nominal, read, richardson};
 
 fn within(mut description: Description, formulation: Formulation) -> Description {
     description.simulation.formulation = formulation;

@@ -2,7 +2,7 @@
 
 use mbint::model::{Description, Formulation};
 
-use super::common::{Findings, Vary, largest, model, nominal, order};
+use crate::common::{Findings, Vary, largest, model, nominal, order};
 
 /// Models and the gaps of their joints: positions, then the velocities.
 const GAPS: [(&str, &[&str], &[&str]); 5] = [

@@ -4,7 +4,7 @@ use mbint::export::bounds_csv;
 use mbint::model::Description;
 use mbint::study::{self, Options};
 
-use super::common::{Vary, load, model, model_files};
+use crate::common::{Vary, load, model, model_files};
 
 fn bytes(description: &Description, threads: usize) -> (Vec<u8>, String) {
     let options = Options { threads: Some(threads), ..Options::default() };

@@ -1,8 +1,7 @@
 //! Rotations in space: what a scheme of the wrong order, or a body that is not rigid, would lose.
 
+use crate::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row};
 use mbint::model::Description;
-
-use super::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row, run};
 
 /// |pᵀp − 1| / 2 is a constraint like any other: Newton ends at 1e-11.
 const NORM: &str = "(a.p0^2 + a.p1^2 + a.p2^2 + a.p3^2 - 1)/2";
@@ -107,50 +106,10 @@ simulation: {{ duration: 0.01, step: 1e-3 }}
     assert!((tilted[5] + 0.3).abs() < 1e-12 && (tilted[2] - half * 0.2_f64.cos()).abs() < 1e-12);
 }
 
-/// The orientation hangs on h, which is uncertain, and the Euler parameters' rates on both; what is kept is ω.
-#[test]
-fn an_angular_velocity_is_kept_where_assembly_finds_the_orientation() {
-    let description = read(
-        "
-parameters: { h: { value: 0.5, unit: m, tolerance: 10% } }
-bodies:
-  ground: { points: { floor: [0, 0, -h] } }
-  a: { mass: 1, inertia: [0.1, 0.2, 0.3], points: { foot: [0, 0, 0], tip: [1, 0, 0] } }
-joints:
-  ball: { spherical: [ground, a.foot] }
-  floor: { point_on_plane: [ground.floor, a.tip] }
-effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }
-initial: { a.omega: [0, 0, 2] }
-outputs: { spin: a.omega.z, across: a.omega.x, height: a.tip.z }
-simulation: { duration: 0.5, step: 1e-3, output_step: 0.05 }
-bounds: { chebyshev: { order: 6 }, taylor: { order: 4 }, scan: { points: 9 } }
-",
-    );
-    let bounds = run(&description);
-    for (output, wanted) in bounds.outputs[..2].iter().zip([2.0, 0.0]) {
-        for band in &output.bands {
-            let off = (band.lower[0] - wanted).abs().max((band.upper[0] - wanted).abs());
-            // A surrogate may be off by its error.
-            assert!(off < band.error.total[0].max(1e-12), "{} {:?}: {off:e}", output.name, band.method);
-        }
-    }
-    let height = &bounds.outputs[2].bands[0];
-    assert!((height.lower[5] + 0.55).abs() < 1e-9 && (height.upper[5] + 0.45).abs() < 1e-9, "{height:?}");
-}
-
-/// t, x, y, z of the centre of mass, p0, ω'_x: `iftomm/heavy_top.csv` (minimal coordinates, 1e-11).
-const HEAVY_TOP: [[f64; 6]; 3] = [
-    [0.1, 0.4212966589253931, 0.8945719743455961, -0.1491647005619066, 0.3318229126082999, 4.808941331728133],
-    [0.25, 0.5488841430087967, 0.4069941523329173, -0.7301246178018581, 0.8387373244146774, -5.915114128198268],
-    [0.5, -0.7024682970566172, -0.02116518470183421, -0.7114002576517062, 0.5845606240694595, -0.4710531017442818],
-];
-
 #[test]
 fn the_heavy_top_is_that_of_another_formulation() {
-    let rows: Vec<Vec<f64>> = match reference("iftomm/heavy_top.csv") {
-        Some(rows) => rows.iter().filter(|row| row[0] <= 0.5).map(|row| [&row[..5], &row[8..9]].concat()).collect(),
-        None => HEAVY_TOP.iter().map(|row| row.to_vec()).collect(),
-    };
+    // t, centre of mass, p0, ω'_x, from minimal coordinates.
+    let rows = reference("iftomm/heavy_top.csv");
     let formulas = ["top.x", "top.y", "top.z", "top.p0", "top.omega_body.x"];
     let all = [&formulas[..], &["top.omega_body.y", "energy"]].concat();
     let description = model("heavy_top").duration(0.5).rows_every(1e-3).observing(&all);

@@ -3,7 +3,7 @@
 use mbint::model;
 use mbint::results::Method;
 
-use super::common::{load, load_all, model_files, run_methods};
+use crate::common::{load, load_all, model_files, run_methods};
 
 #[test]
 fn every_model_is_read_without_a_word() {

@@ -7,11 +7,10 @@ use mbint::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Steppe
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
 
-use super::closed_forms::PENDULUM;
-use super::common::{Vary, distance, largest, model, order, read, richardson};
-use super::linkages::{FOUR_BAR_N2, two_loops};
+use super::linkages::{two_loops, two_loops_reference};
 use super::singular::{one_crank, parallelogram};
-use super::slider_crank::STATES;
+use super::slider_crank::states;
+use crate::common::{Vary, distance, largest, model, order, read, reference, richardson};
 
 const HHT: Scheme = Scheme::Hht { alpha: -0.1 };
 
@@ -57,18 +56,22 @@ fn errors(description: &Description, scheme: Scheme, h: f64, exact: &[(usize, us
     [coarse, fine, limit].map(|courses| largest(exact.iter().map(|&(row, output, value)| courses[output][row] - value)))
 }
 
+/// The two first outputs of a reference's rows that are so many seconds apart, with the number of the row and of the output.
+fn every(interval: f64, reference: &[Vec<f64>]) -> Vec<(usize, usize, f64)> {
+    let row = |line: &Vec<f64>| {
+        let row = (line[0] / interval).round();
+        ((row * interval - line[0]).abs() < 1e-9).then_some(row as usize)
+    };
+    let rows = reference.iter().filter_map(|line| row(line).map(|row| (row, line)));
+    rows.flat_map(|(row, line)| [(row, 0, line[1]), (row, 1, line[2])]).collect()
+}
+
 #[test]
 fn every_scheme_is_of_second_order() {
     let pendulum = model("pendulum").observing(&["bob.x", "bob.y"]).rows_every(0.5);
-    let swings: Vec<(usize, usize, f64)> = PENDULUM
-        .iter()
-        .flat_map(|&(t, x, y)| [(0, x), (1, y)].map(|(output, exact)| ((2.0 * t) as usize, output, exact)))
-        .collect();
+    let swings = every(0.5, &reference("iftomm/pendulum.csv"));
     let crank = model("slider_crank").observing(&["slider.x", "crank.angle"]).rows_every(0.25);
-    let turns: Vec<(usize, usize, f64)> = STATES
-        .iter()
-        .flat_map(|&(t, x, angle, _)| [(0, x), (1, angle)].map(|(output, exact)| ((4.0 * t) as usize, output, exact)))
-        .collect();
+    let turns = every(0.25, &states());
     for scheme in SCHEMES {
         for (name, description, h, exact) in
             [("pendulum", &pendulum, 5e-4, &swings), ("slider crank", &crank, 5e-5, &turns)]
@@ -254,10 +257,7 @@ fn redundancy_and_singular_positions_are_passed_by_every_scheme() {
     let cranks = read(&parallelogram(3, 0.5, 0.0)).observing(&["c0.angle"]).rows_every(2.0);
     let loops = read(&two_loops()).observing(&["bar0.end.x", "bar0.end.y"]).rows_every(2.5);
     let angle = [(1, 0, one_crank(3.0, 0.5, 0.0))];
-    let ends: Vec<(usize, usize, f64)> = FOUR_BAR_N2[1..]
-        .iter()
-        .flat_map(|&(t, x, y)| [(0, x), (1, y)].map(|(output, exact)| ((t / 2.5) as usize, output, exact)))
-        .collect();
+    let ends = every(2.5, &two_loops_reference());
     for scheme in SCHEMES {
         for (name, description, exact) in [("cranks", &cranks, &angle[..]), ("loops", &loops, &ends)] {
             let [coarse, fine, _] = errors(description, scheme, 2.5e-4, exact);

@@ -3,8 +3,8 @@
 use mbint::results::Method;
 use mbint::study::{self, Options};
 
-use super::common::{band, curve, output, read, run_methods};
-use super::runge_kutta::runge_kutta;
+use crate::common::runge_kutta::runge_kutta;
+use crate::common::{band, curve, output, read, run_methods};
 
 /// Cranks at whole distances, a bar along all their ends; every angle and its rate as given.
 pub fn parallelogram(cranks: usize, angle: f64, rate: f64) -> String {

@@ -7,13 +7,12 @@ use std::fmt::Write as _;
 
 use mbint::results::{Bounds, OutputBounds};
 
-use super::common::{load_all, model_files, run};
+use crate::common::{load_all, model_files, run};
 
 /// Times that are shown of a run.
 const TIMES: usize = 10;
 
-/// Digits that are shown of an output's span. Machines and builds differ by Newton's tolerance at most, 1e-11 of a
-/// position and 1e-7 of a reaction: hardly ever enough to turn the last digit.
+/// Digits that are shown of an output's span.
 const DIGITS: i32 = 5;
 
 /// Decimals that show [`DIGITS`] digits of everything the output does.
@@ -24,6 +23,11 @@ fn decimals(output: &OutputBounds) -> usize {
             (least.min(value), greatest.max(value))
         });
     (DIGITS - 1 - (greatest - least).log10().floor() as i32).max(0) as usize
+}
+
+/// Two digits, however small. Results are the same to the bit on every machine, so that rounding does not turn them.
+fn error(value: f64) -> String {
+    format!("{value:.1e}")
 }
 
 fn table(bounds: &Bounds) -> String {
@@ -50,8 +54,8 @@ fn table(bounds: &Bounds) -> String {
         for row in (0..TIMES).map(|place| (place + 1) * rows / TIMES) {
             write!(text, "{:>8} {:>12}", format!("{:.4}", bounds.times[row]), number(output.nominal[row])).unwrap();
             for band in &output.bands {
-                for value in [band.lower[row], band.upper[row], band.error.total[row]] {
-                    write!(text, " {:>15}", number(value)).unwrap();
+                for value in [number(band.lower[row]), number(band.upper[row]), error(band.error.total[row])] {
+                    write!(text, " {value:>15}").unwrap();
                 }
             }
             text += "\n";

@@ -1,12 +1,10 @@
 //! Linkages and couplings in space against their closed forms, and mechanisms of the plane against themselves in space.
 
-use std::f64::consts::TAU;
-
-use mbint::model::{Description, Formulation};
-
-use super::common::{
+use crate::common::{
     Findings, Vary, curve, distance_from, largest, model, nominal, order, read, reference, richardson, row, run_methods,
 };
+use mbint::model::Description;
+use std::f64::consts::TAU;
 
 /// Positions are those of closed loops: Newton ends at 1e-11 of the model's size.
 const CLOSED: f64 = 1e-9;
@@ -45,35 +43,6 @@ fn the_spatial_four_bar_needs_its_motor_for_what_energy_it_gains() {
     });
     println!("{errors:?}");
     assert!(errors[1].abs() < 1e-5 && errors[1].abs() < 0.3 * errors[0].abs(), "{errors:?}");
-}
-
-#[test]
-fn a_universal_joint_turns_unevenly() {
-    let bend = 30_f64.to_radians();
-    let description =
-        model("universal_joint").observing(&["driven.omega_body.x", "driven.rim.x", "driven.rim.y", "driven.rim.z"]);
-    let runs = [1e-3, 5e-4].map(|h| nominal(&description.clone().step(h)));
-    // At the start the driving arm of the cross is across the plane of the shafts: tan θ₂ = tan θ₁ cos β.
-    let driven = |t: f64| {
-        let (sin, cos) = (TAU * t).sin_cos();
-        (sin * bend.cos()).atan2(cos)
-    };
-    let bounds = &runs[1];
-    let rim = ["driven.rim.x", "driven.rim.y", "driven.rim.z"].map(|name| curve(bounds, name));
-    for (k, &t) in bounds.times.iter().enumerate() {
-        let across = -rim[0][k] * bend.sin() + rim[1][k] * bend.cos();
-        let angle = (-across).atan2(rim[2][k]);
-        let off = (angle - driven(t) + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
-        assert!(off.abs() < CLOSED, "at {t} s the angle is {angle}, not {}", driven(t));
-    }
-    let speed = |t: f64| TAU * bend.cos() / (1.0 - (bend.sin() * (TAU * t).sin()).powi(2));
-    let first = row(bounds, 0.1);
-    let errors = runs
-        .each_ref()
-        .map(|run| distance_from(&run.times[first..], &curve(run, "driven.omega_body.x")[first..], speed));
-    println!("speed {errors:?}");
-    assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1, "{errors:?}");
-    assert!(errors[1] < 1e-3, "{errors:?}");
 }
 
 /// Lengths a, b and twists α, β with a / sin α = b / sin β: the only loop of four revolute joints in space that moves.
@@ -130,135 +99,10 @@ simulation: {{ duration: 1.5, step: 1e-2, output_step: 0.05 }}
     findings.none();
 }
 
-/// s = pitch φ / 2π over several turns, and (J + m (pitch/2π)²) φ̈ = τ.
-#[test]
-fn a_screw_advances_by_its_pitch() {
-    let description = read(
-        "
-bodies:
-  ground: { points: { O: { rotation: { rpy: [0.3, -0.5, 0.2] } } } }
-  nut: { mass: 2, inertia: [0.01, 0.02, 0.03] }
-joints: { thread: { screw: { between: [ground.O, nut], axis: x, pitch: 40 mm } } }
-effects: { drive: { torque: { on: thread, value: 0.05 } } }
-initial: { thread.angle: 0, thread.angular_velocity: 3 }
-outputs: { angle: thread.angle, along: thread.displacement, force: thread.force, torque: thread.torque }
-simulation: { duration: 4, step: 1e-2, output_step: 0.1 }
-",
-    );
-    let advance = 0.04 / TAU;
-    let acceleration = 0.05 / (0.01 + 2.0 * advance * advance);
-    let runs = [1e-2, 5e-3].map(|h| nominal(&description.clone().step(h)));
-    let angle = |t: f64| 3.0 * t + 0.5 * acceleration * t * t;
-    let errors = runs.each_ref().map(|run| distance_from(&run.times, curve(run, "angle"), angle));
-    println!("angle {errors:?} of {}", angle(4.0));
-    assert!(angle(4.0) > 7.0 * TAU);
-    assert!(order(errors[0], errors[1]) > 1.9, "{errors:?}");
-    let extrapolated = richardson(curve(&runs[0], "angle"), curve(&runs[1], "angle"));
-    assert!(distance_from(&runs[0].times, &extrapolated, angle) < 2e-3);
-    let along = runs[1].outputs[1].nominal.iter().zip(&runs[1].outputs[0].nominal);
-    assert!(largest(along.map(|(along, angle)| along - advance * angle)) < 1e-10);
-}
-
-/// Two wheels on skew axles and a rack: (J₁ + r² J₂ + R² m) φ̈ = τ.
-#[test]
-fn gears_and_racks_share_the_torque() {
-    let description = read(
-        "
-bodies:
-  ground:
-    points:
-      A: { position: [0, 0, 0], rotation: { rpy: [0.4, 0, 0] } }
-      B: { position: [1, 0, 0], rotation: { rpy: [0, 1.2, 0] } }
-      C: [0, 0, 2]
-  pinion: { mass: 1, inertia: [0.02, 0.02, 0.02] }
-  wheel: { mass: 1, inertia: [0.005, 0.005, 0.005] }
-  bar: { mass: 3, inertia: [0.1, 0.1, 0.1] }
-joints:
-  first: { revolute: [ground.A, pinion] }
-  second: { revolute: [ground.B, wheel] }
-  slide: { prismatic: { between: [ground.C, bar], axis: [1, 2, 2] } }
-  mesh: { gear: { between: [first, second], ratio: -2 } }
-  teeth: { rack: { pinion: second, rack: slide, radius: 0.05, offset: 0.1 } }
-effects: { motor: { torque: { on: first, value: 0.6 } } }
-initial: { first.angle: 0, first.angular_velocity: 1 }
-outputs: { first: first.angle, second: second.angle, rack: slide.displacement, force: teeth.force, torque: mesh.torque }
-simulation: { duration: 1, step: 2e-3, output_step: 0.1, formulation: absolute }
-",
-    );
-    let acceleration = 0.6 / (0.02 + 4.0 * 0.005 + 0.01 * 3.0);
-    let runs = [2e-3, 1e-3].map(|h| nominal(&description.clone().step(h)));
-    let angle = |t: f64| t + 0.5 * acceleration * t * t;
-    let errors = runs.each_ref().map(|run| distance_from(&run.times, curve(run, "first"), angle));
-    println!("angle {errors:?}");
-    assert!(order(errors[0], errors[1]) > 1.9 && errors[1] < 1e-4, "{errors:?}");
-    // The joints' own angles speed up evenly: nothing is left to be approximated.
-    let mut own = description;
-    own.simulation.formulation = Formulation::Joint;
-    let own = nominal(&own);
-    assert!(distance_from(&own.times, curve(&own, "first"), angle) < 1e-12);
-    let fine = &runs[1];
-    let first = curve(fine, "first");
-    assert!(largest(curve(fine, "second").iter().zip(first).map(|(second, first)| second + 2.0 * first)) < 1e-10);
-    assert!(largest(curve(fine, "rack").iter().zip(first).map(|(s, first)| s + 0.1 * first - 0.1)) < 1e-10);
-    // What pushes the rack, and what turns the wheel with it: −2 (J₂ + r² m) φ̈.
-    let after = |name: &str| curve(fine, name)[1..].iter().copied();
-    assert!(largest(after("force").map(|force| force - 3.0 * 0.1 * acceleration)) < 1e-3);
-    assert!(largest(after("torque").map(|torque| torque - 2.0 * (0.005 + 0.0025 * 3.0) * acceleration)) < 1e-3);
-}
-
-/// A bob on a string goes round at ω² = g / (L cos 30°), also where it only turns about z, and as a whole body.
-#[test]
-fn a_conical_pendulum_goes_round() {
-    let (length, height) = (0.8_f64, 0.8 * 30_f64.to_radians().cos());
-    let omega = (9.81 / height).sqrt();
-    for body in [
-        "mass: 2, coordinates: [x, y, z]",
-        "mass: 2, inertia: 0.1, coordinates: [x, y, z, angle]",
-        "mass: 2, inertia: 0.1",
-    ] {
-        let description = read(&format!(
-            "
-bodies: {{ bob: {{ {body} }} }}
-joints: {{ string: {{ distance: {{ between: [ground, bob], length: {length} }} }} }}
-effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }} }}
-initial: {{ bob.x: {}, bob.y: 0, bob.vy: {}, bob.vx: 0, bob.vz: 0 }}
-guess: {{ bob.z: -0.6 }}
-outputs: {{ x: bob.x, z: bob.z, pull: string.force, up: string.force.z }}
-simulation: {{ duration: 3, step: 2e-3, output_step: 0.02 }}
-",
-            0.5 * length,
-            0.5 * length * omega,
-        ));
-        let runs = [2e-3, 1e-3].map(|h| nominal(&description.clone().step(h)));
-        let errors =
-            runs.each_ref().map(|run| distance_from(&run.times, curve(run, "x"), |t| 0.5 * length * (omega * t).cos()));
-        assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1 && errors[1] < 1e-4, "{body}: {errors:?}");
-        assert!(distance_from(&runs[1].times, curve(&runs[1], "z"), |_| -height) < 1e-4, "{body}");
-        assert!(distance_from(&runs[1].times, curve(&runs[1], "up"), |_| 2.0 * 9.81) < 1e-3, "{body}");
-        // With a tolerance, the steps find themselves.
-        let controlled = nominal(&description.tolerance(1e-7));
-        let off = distance_from(&controlled.times, curve(&controlled, "x"), |t| 0.5 * length * (omega * t).cos());
-        assert!(off < 1e-3, "{body}: {off:e}");
-    }
-}
-
-/// t, the corners P3 and P2: `iftomm/bricard.csv` (minimal coordinates, 1e-11).
-const BRICARD: [[f64; 7]; 1] = [[
-    1.0,
-    0.510_501_461_187_223,
-    -1.649167599394805,
-    0.1401231145531879,
-    0.2744813192646251,
-    -0.8867079387346724,
-    -0.4623300026873754,
-]];
-
 #[test]
 fn bricards_mechanism_falls_and_comes_back() {
-    let rows: Vec<Vec<f64>> = match reference("iftomm/bricard.csv") {
-        Some(rows) => rows.iter().map(|row| row[..7].to_vec()).collect(),
-        None => BRICARD.iter().map(|row| row.to_vec()).collect(),
-    };
+    // t, the corners P3 and P2.
+    let rows = reference("iftomm/bricard.csv");
     let formulas = ["rod3.P3.x", "rod3.P3.y", "rod3.P3.z", "rod3.P2.x", "rod3.P2.y", "rod3.P2.z"];
     let all = [&formulas[..], &["energy"]].concat();
     let description = model("bricard").observing(&all).duration(10.0).rows_every(1e-2);

@@ -1,11 +1,9 @@
 //! Tables in formulas: recorded excitations and measured characteristics.
 
-use std::fmt::Write as _;
-
+use crate::common::{band, curve, distance, nominal, output, read, run};
 use mbint::model;
 use mbint::results::Method;
-
-use super::common::{band, curve, distance, distance_from, nominal, output, read, run};
+use std::fmt::Write as _;
 
 /// A recording of a sine drives a mass as the sine itself does, but for what a spline of its samples leaves.
 #[test]
@@ -41,48 +39,6 @@ simulation: {{ duration: 3, step: 1e-3, output_step: 0.01 }}
     let formula = run("amplitude*3*sin(2*(t + late)/stretch)");
     let apart = distance(curve(&table, "x"), curve(&formula, "x"));
     assert!(apart < 1e-7, "{apart:e}");
-}
-
-/// A prescribed motion by a table: the motor's coordinate is the spline.
-#[test]
-fn a_motor_follows_a_table() {
-    let bounds = nominal(&read(
-        "
-tables: { cam: { points: [[0, 0], [0.5, 0.1], [1, 0.3], [1.5, 0.2], [2, 0]], units: [s, rad] } }
-bodies: { wheel: { mass: 1, inertia: 0.02 } }
-joints:
-  shaft: { revolute: [ground, wheel] }
-  drive: { motor: { on: shaft, position: cam(t) } }
-outputs: { angle: wheel.angle, wanted: cam(t) }
-simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
-",
-    ));
-    assert!(distance(curve(&bounds, "angle"), curve(&bounds, "wanted")) < 1e-12);
-    assert!((curve(&bounds, "angle")[10] - 0.3).abs() < 1e-12);
-}
-
-/// A spring by a table of a parabola's slope keeps the energy that the parabola's integral says.
-#[test]
-fn a_spring_may_have_a_measured_characteristic() {
-    let mut points = String::new();
-    for i in -20..=20 {
-        let x = 0.02 * f64::from(i);
-        write!(points, "[{x}, {}], ", 50.0 * x + 400.0 * x.powi(3)).unwrap();
-    }
-    let bounds = nominal(&read(&format!(
-        "
-tables: {{ measured: {{ points: [{points}], units: [m, N] }} }}
-bodies: {{ mass: {{ mass: 0.5, coordinates: [x] }} }}
-effects: {{ hard: {{ spring_damper: {{ between: [ground, mass], along: x, force: measured(hard.length) }} }} }}
-initial: {{ mass.x: 0.3, mass.vx: 0 }}
-outputs: {{ energy: 0.25*mass.vx^2 + 25*mass.x^2 + 100*mass.x^4 }}
-simulation: {{ duration: 2, step: 5e-4, output_step: 0.01 }}
-"
-    )));
-    let start = 25.0 * 0.09 + 100.0 * 0.0081;
-    let error = distance_from(&bounds.times, curve(&bounds, "energy"), |_| start);
-    // HHT's dissipation at this step and the spline's natural ends.
-    assert!(error < 2e-3 * start, "{error:e}");
 }
 
 /// Amplitude, offset and time scale of a recording may be uncertain: all methods run over the table, and agree.

@@ -4,8 +4,8 @@ use mbint::methods::{BoundsRequest, Budget, Chebyshev};
 use mbint::model::{Description, ParameterValue};
 use mbint::results::{Bounds, Method};
 
-use super::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
-use super::runge_kutta::runge_kutta;
+use crate::common::runge_kutta::runge_kutta;
+use crate::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
 
 fn within(mut description: Description, tolerance: f64, solves: usize) -> Description {
     description.bounds = BoundsRequest {
@@ -25,14 +25,14 @@ fn unresolved(bounds: &Bounds) -> usize {
 /// `bounds: { tolerance: … }` is enough: the true error is within it, and so is the one that is told.
 #[test]
 fn the_tolerance_is_met() {
-    let Some(rows) = reference("slider_crank/bounds_l1_1pct.csv") else { return };
+    let rows = reference("slider_crank/bounds_l1_1pct.csv");
     for tolerance in [1e-2, 1e-3, 1e-4] {
         let description = within(model("slider_crank_one").observing(&["slider.x"]), tolerance, 1000);
         let (bounds, summary) = run_methods(&description, None);
         assert_eq!(unresolved(&bounds), 0, "{tolerance}");
         let band = band(&bounds.outputs[0], Method::Chebyshev);
         let errors = rows.iter().filter(|row| row[0] > 0.0).map(|truth| {
-            let row = super::common::row(&bounds, truth[0]);
+            let row = crate::common::row(&bounds, truth[0]);
             let error = (band.lower[row] - truth[2]).abs().max((band.upper[row] - truth[3]).abs());
             (error, band.error.total[row])
         });
@@ -52,7 +52,7 @@ fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
     let description = within(model("slider_crank"), 1e-4, 60);
     let (bounds, summary) = run_methods(&description, None);
     let solves: usize =
-        summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.solves).sum();
+        summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.simulations).sum();
     assert!(solves <= 60 + 26, "{solves}");
     assert!(unresolved(&bounds) > 0);
     assert!(summary.errors[0].unresolved_from.is_some());
@@ -169,7 +169,7 @@ fn eight_parameters_take_five_hundred_simulations() {
         assert!((found - expected).abs() < 1e-8, "the other equations are wrong: {found}, {expected}");
     }
     let (bounds, summary) = run_methods(&within(eight().rows_every(0.1), 2e-3, 500), None);
-    let solves: usize = summary.methods.iter().map(|method| method.solves).sum();
+    let solves: usize = summary.methods.iter().map(|method| method.simulations).sum();
     assert!(solves <= 501, "{solves}");
     let band = band(&bounds.outputs[0], Method::Chebyshev);
     let (mut width, mut true_width, mut covered) = (0.0, 0.0, 0);

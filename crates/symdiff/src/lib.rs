@@ -1,40 +1,36 @@
-//! Hash-consed expressions, symbolic derivatives, and staged tapes evaluated over tiles of samples.
+//! Hash-consed expressions, symbolic derivatives, and tapes of instructions evaluated over tiles of samples.
 //!
-//! The way through: [`formula`] text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s →
-//! numbers in a [`Tile`]. The crate knows no mechanics.
+//! The data flow: text → [`Formula`] → [`Expr`] in a [`Graph`] → derivatives → [`lower`] → [`Tape`]s → numbers in a [`Tile`],
+//! polynomials in a [`JetMemory`], or enclosures in a [`ModelMemory`].
+//!
+//! ```
+//! use symdiff::{Builder, Input, Tile, lower};
+//!
+//! // ∂/∂x (x² sin y), symbolically.
+//! let builder = Builder::new();
+//! let [x, y] = ["x", "y"].map(|name| builder.variable(name));
+//! let derivative = (x * x * y.sin()).derivative(x);
+//!
+//! // As a tape, over four samples at once: x and y stand in the first two registers.
+//! let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol: symbol.expr(), stage: 0, slot });
+//! let lowered = lower(&builder.graph(), &inputs, 0, 2, &[vec![(derivative.expr(), None)]]);
+//! let mut tile = Tile::new(4, lowered.slots, &lowered.constants);
+//! tile.lane_mut(0).copy_from_slice(&[0.0, 1.0, 2.0, 3.0]);
+//! tile.lane_mut(1).fill(std::f64::consts::FRAC_PI_2);
+//! tile.run(&lowered.kernels[0]);
+//! assert_eq!(tile.lane(lowered.outputs[0][0] as usize), [0.0, 2.0, 4.0, 6.0]);
+//! ```
 
-mod blocks;
-mod builder;
-mod derivative;
+pub mod eval;
 mod expr;
 pub mod formula;
-mod integral;
-pub mod interval;
-pub mod jet;
-mod jet_memory;
-mod lanes;
-mod model_memory;
-mod scalar;
-mod schedule;
-pub mod sincos;
-mod slots;
-mod spline;
-mod stages;
-mod steps;
-mod tape;
-pub mod taylor_model;
-mod vectorised;
+mod lower;
 
-pub use builder::{Builder, Scalar};
-pub use derivative::SparseMatrix;
-pub use expr::{Binary, Expr, Graph, Node, Unary};
+pub use eval::interval::Interval;
+pub use eval::jet::JetMemory;
+pub use eval::taylor_model::ModelMemory;
+pub use eval::tile::{Tile, WIDTHS};
+pub use eval::{Vectorise, interval, jet, sincos, taylor_model, vectorised};
+pub use expr::{Binary, Builder, Expr, Graph, Node, Scalar, SparseMatrix, Spline, SplineError, Unary};
 pub use formula::{Formula, SyntaxError};
-pub use interval::Interval;
-pub use jet_memory::JetMemory;
-pub use lanes::{Tile, WIDTHS};
-pub use model_memory::ModelMemory;
-pub use schedule::{Lowered, Outputs, lower, lower_where};
-pub use spline::{Spline, SplineError};
-pub use stages::{Input, Stages};
-pub use tape::{Guard, Op, Operands, Tape};
-pub use vectorised::{Vectorise, vectorised};
+pub use lower::{Guard, Input, Lowered, Op, Operands, Outputs, Stages, Tape, lower, lower_where};

@@ -19,7 +19,6 @@
 use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::joints::Pair;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::rotation;
 use crate::assemble::space::{self, Vector};
@@ -80,7 +79,7 @@ pub fn apply(
     stiffness: &Law,
     damping: &Law,
 ) -> Result<(), BuildError> {
-    let pair = Pair::of(g, m, between);
+    let pair = m.pair(g, between);
     let axes: [Vector; 3] = std::array::from_fn(|axis| {
         let unit = space::along(g, axis);
         pair.outward(g, unit)

@@ -17,10 +17,10 @@
 use symdiff::{Builder, Expr, Formula};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::joints::Pair;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
 use crate::model::{Contact, Measure, PointRef};
+use crate::multibody::Pair;
 
 use super::Loads;
 use super::dry_friction::DryFriction;
@@ -93,7 +93,7 @@ struct Gap {
 impl Touch {
     /// Adds the forces.
     pub fn apply(&self, g: &Builder, m: &Mechanism, loads: &mut Loads) {
-        let pair = Pair::of(g, m, self.between);
+        let pair = m.pair(g, self.between);
         let Gap { gap, normal, overlap } = self.gap(g, &pair);
         let inward = space::scale(g, self.radius, normal);
         let place = space::sub(g, pair.second.point.position, inward);

@@ -1,5 +1,6 @@
 use crate::assemble::{self, System};
 use crate::elements::joints::*;
+use crate::grammar::{Axis, Direction};
 use crate::model::{JointKind, Turning};
 
 use super::model::{Model, formula, pair, vector};
@@ -23,10 +24,10 @@ fn value(system: &System, state: &State, name: &str) -> f64 {
 fn kinds(m: &Model) -> Vec<JointKind> {
     let between = m.between("a.P", "b.P");
     vec![
-        JointKind::Revolute(Revolute { between, axis: vector(["0", "0", "1"]) }),
-        JointKind::Prismatic(Prismatic { between, axis: pair("1", "2"), angle: formula("0.3") }),
+        JointKind::Revolute(Revolute { between, axis: Axis(vector(["0", "0", "1"])) }),
+        JointKind::Prismatic(Prismatic { between, axis: Direction(pair("1", "2")), angle: formula("0.3") }),
         JointKind::Fixed(Fixed { between, angle: formula("0.3") }),
-        JointKind::PinInSlot(PinInSlot { between, axis: pair("1", "2") }),
+        JointKind::PinInSlot(PinInSlot { between, axis: Direction(pair("1", "2")) }),
         JointKind::Distance(Distance { between, length: formula("d") }),
         JointKind::Gear(Gear {
             between: [Turning::Body(1), Turning::Body(2)],
@@ -155,7 +156,7 @@ fn rows_that_always_hold_are_left_out() {
     m.hold('y', "h");
     let guide = JointKind::Prismatic(Prismatic {
         between: m.between("ground.G", "cross.P"),
-        axis: pair("1", "0"),
+        axis: Direction(pair("1", "0")),
         angle: formula("0"),
     });
     m.joint("guide", guide);

@@ -4,6 +4,7 @@ use symdiff::Formula;
 
 use crate::assemble::{self, System};
 use crate::elements::joints::Revolute;
+use crate::grammar::Axis;
 use crate::grammar::{Components, Direction};
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
@@ -128,7 +129,7 @@ impl Model {
 
     pub fn revolute(&mut self, name: &str, first: &str, second: &str) {
         let between = self.between(first, second);
-        self.joint(name, JointKind::Revolute(Revolute { between, axis: vector(["0", "0", "1"]) }));
+        self.joint(name, JointKind::Revolute(Revolute { between, axis: Axis(vector(["0", "0", "1"])) }));
     }
 
     pub fn effect(&mut self, kind: impl Into<EffectKind>) {

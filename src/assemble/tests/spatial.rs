@@ -5,7 +5,7 @@ use symdiff::Expr;
 
 use crate::assemble::System;
 use crate::elements::joints::*;
-use crate::grammar::{BodyRef, Components, Direction, PerAxis};
+use crate::grammar::{Axis, BodyRef, Components, Direction, PerAxis};
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{Bushing, EffectKind, Force, Gravity, JointKind, Rotation, SpringDamper, Torque};
@@ -118,17 +118,23 @@ fn kinds(m: &Model) -> Vec<(JointKind, usize)> {
     let axis = || vector(["1", "-2", "0.5"]);
     let (pitch, length) = (formula("0.3"), formula("d"));
     vec![
-        (JointKind::Revolute(Revolute { between, axis: axis() }), 5),
-        (JointKind::Prismatic(Prismatic { between, axis: axis(), angle: formula("0.3") }), 5),
+        (JointKind::Revolute(Revolute { between, axis: Axis(axis()) }), 5),
+        (JointKind::Prismatic(Prismatic { between, axis: Direction(axis()), angle: formula("0.3") }), 5),
         (JointKind::Fixed(Fixed { between, angle: formula("0.3") }), 6),
-        (JointKind::PinInSlot(PinInSlot { between, axis: vector(["1", "-2", "0"]) }), 4),
-        (JointKind::Cylindrical(Cylindrical { between, axis: axis() }), 4),
-        (JointKind::Screw(Screw { between, axis: axis(), pitch }), 5),
+        (JointKind::PinInSlot(PinInSlot { between, axis: Direction(vector(["1", "-2", "0"])) }), 4),
+        (JointKind::Cylindrical(Cylindrical { between, axis: Axis(axis()) }), 4),
+        (JointKind::Screw(Screw { between, axis: Axis(axis()), pitch }), 5),
         (JointKind::Spherical(Spherical { between }), 3),
-        (JointKind::Universal(Universal { between, axes: [vector(["1", "2", "0"]), vector(["2", "-1", "3"])] }), 4),
-        (JointKind::Planar(Planar { between, normal: axis() }), 3),
-        (JointKind::PointOnLine(PointOnLine { between, axis: axis() }), 2),
-        (JointKind::PointOnPlane(PointOnPlane { between, normal: axis() }), 1),
+        (
+            JointKind::Universal(Universal {
+                between,
+                axes: [Direction(vector(["1", "2", "0"])), Direction(vector(["2", "-1", "3"]))],
+            }),
+            4,
+        ),
+        (JointKind::Planar(Planar { between, normal: Direction(axis()) }), 3),
+        (JointKind::PointOnLine(PointOnLine { between, axis: Direction(axis()) }), 2),
+        (JointKind::PointOnPlane(PointOnPlane { between, normal: Direction(axis()) }), 1),
         (JointKind::Distance(Distance { between, length }), 1),
     ]
 }

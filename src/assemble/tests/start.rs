@@ -1,5 +1,6 @@
 use crate::assemble::System;
 use crate::elements::joints::*;
+use crate::grammar::Direction;
 use crate::model::{JointKind, StartValue, TimeOrder};
 
 use super::model::{Model, formula, pair, slider_crank};
@@ -76,7 +77,7 @@ fn a_slider_with_all_coordinates_comes_after_its_rod() {
     m.body("slider", "1", "1", "xya", &[]);
     let guide = JointKind::Prismatic(Prismatic {
         between: m.between("ground", "slider"),
-        axis: pair("1", "0"),
+        axis: Direction(pair("1", "0")),
         angle: formula("0"),
     });
     m.joint("guide", guide);

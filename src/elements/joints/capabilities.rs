@@ -2,9 +2,33 @@
 
 use std::fmt::Debug;
 
+use serde::Serialize;
 use symdiff::Formula;
 
-use crate::grammar::{JointCoordinate, OnJoint, PointRef};
+use crate::grammar::{Element, JointCoordinate, OnJoint, PointRef};
+
+use super::rows::{Kinematics, Rows};
+
+/// What is the same of every joint of a kind, beside its keys.
+pub trait JointElement: Element + Joint {
+    /// Whether it leaves the plane, whatever its axes.
+    const SPATIAL: bool = false;
+    /// Whether it refers to other joints, so that it is read after them.
+    const COUPLES: bool = false;
+    /// What its constraints and their multipliers mean.
+    const ROWS: &'static [RowDocs];
+}
+
+/// One or several constraints of a joint, for people.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RowDocs {
+    /// Their names, as in `pin.x`; empty where the joint has one alone.
+    pub name: &'static str,
+    /// Of the residual.
+    pub unit: &'static str,
+    /// Unit, sign and frame of the multiplier λ.
+    pub multiplier: &'static str,
+}
 
 /// A joint, as the stages see it. What a kind does not say has the default: it has not that capability.
 pub trait Joint: Debug {
@@ -40,6 +64,12 @@ pub trait Joint: Debug {
     fn axis_of(&self, coordinate: JointCoordinate) -> Option<&[Formula; 3]> {
         self.mobilizer()?.axis_of(coordinate)
     }
+
+    /// Its constraints; `own` is its own index.
+    ///
+    /// # Errors
+    /// A formula with a name that cannot stand in it; the reader of model files lets none through.
+    fn rows<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Rows<'g>;
 
     /// The angle of the second frame against the first, where the joint welds its bodies together.
     fn weld(&self) -> Option<&Formula> {

@@ -1,28 +1,75 @@
 //! Gear: two angles in a fixed ratio.
+//!
+//! ```text
+//! Φ = φ₂ − ratio φ₁ − offset = 0          1 row, rad
+//! ```
+//!
+//! φ is the angle of a body about z, or of a joint about its axis. An external pair has a negative ratio. −Φ_qᵀ λ is the
+//! torque −λ on the second and +ratio λ on the first; the difference is carried by whatever holds the axles, so this is no
+//! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Tooth
+//! forces on the axles are not part of it: the reaction has no force.
 
+use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::{Turning, JointCoordinate, OnJoint};
+use crate::grammar::{JointCoordinate, OnJoint, Turning};
+use crate::multibody::Vector;
 
-use super::Joint;
+use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
-/// angle of the second = ratio · angle of the first + offset.
-#[derive(Clone, Debug)]
+/// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "gear",
+    what = "a gear",
+    equation = "φ₂ − ratio φ₁ − offset = 0",
+    source = "Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4",
+    example = "{ between: [pinion, wheel], ratio: -0.5 }"
+)]
 pub struct Gear {
-    /// The first and the second.
+    /// Two bodies (their angles about z) or two joints.
     pub between: [Turning; 2],
-    /// Negative for an external pair.
+    /// Angle of the second per angle of the first; negative for external gears.
+    #[quantity(unit = "1", nonzero, constant)]
     pub ratio: Formula,
-    /// rad
+    /// Angle of the second where that of the first is zero.
+    #[quantity(unit = "rad", default = 0, constant)]
     pub offset: Formula,
 }
 
+impl JointElement for Gear {
+    const COUPLES: bool = true;
+    const ROWS: &'static [RowDocs] = &[RowDocs {
+        name: "",
+        unit: "rad",
+        multiplier: "N m: −λ is the torque on the second, +ratio λ that on the first",
+    }];
+}
+
+/// The coordinate of an angle that is a joint's.
+fn of_joint(angle: Turning) -> Option<OnJoint> {
+    match angle {
+        Turning::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
+        Turning::Body(_) => None,
+    }
+}
+
 impl Joint for Gear {
-    fn coordinates(&self, _: usize) -> Vec<OnJoint> {
-        let of_joint = |angle| match angle {
-            Turning::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
-            Turning::Body(_) => None,
-        };
+    fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
         self.between.into_iter().filter_map(of_joint).collect()
+    }
+
+    fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
+        let (ratio, offset) = (k.number(&self.ratio)?, k.number(&self.offset)?);
+        let [first, second] = self.between.map(|angle| match angle {
+            Turning::Body(body) => k.angle(body),
+            Turning::Joint(joint) => k.coordinate(OnJoint { joint, coordinate: JointCoordinate::Angle }),
+        });
+        let value = second - ratio * first - offset;
+        let axis = match of_joint(self.between[1]) {
+            Some(on) => k.axis(on)?,
+            None => Vector::along(k.graph(), 2),
+        };
+        Ok(vec![Row { name: "", value, force: Vector::zero(k.graph()), torque: -axis }])
     }
 }

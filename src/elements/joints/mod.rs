@@ -1,47 +1,22 @@
-//! Joints, one file each: what a joint is between, what it leaves free, and what follows for the other stages.
+//! Joints, one file each: keys, constraints, and what follows from these for the other stages.
 //!
 //! A joint is between two points A and B with frames. Axes are directions in both frames alike (any length but zero):
 //! where the joint's angle is zero, the frames' axes are parallel.
 //!
-//! To add a joint: its file here and its line in [`joints!`]. No other stage names a kind of joint: each asks for a
+//! To add a joint: its file here and its line in the registry below. No other stage names a kind of joint: each asks for a
 //! capability of the trait [`Joint`].
 
 mod capabilities;
+mod registry;
+mod rows;
 
-pub use capabilities::{Joint, Mobilizer, Orientation, Placement, Separation};
+pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, RowDocs, Separation};
+pub use motor::Profile;
+pub use rows::{Kinematics, Row, Rows};
 
-/// Declares the joints: their modules, the closed enum of them, and its dispatch to [`Joint`].
-macro_rules! joints {
-    ($($module:ident::$Kind:ident,)*) => {
-        $(mod $module; pub use $module::$Kind;)*
+pub use registry::JointDocs;
 
-        /// A joint with its details.
-        #[derive(Clone, Debug)]
-        pub enum JointKind {
-            $(#[doc = concat!("See [`", stringify!($Kind), "`].")] $Kind($Kind),)*
-        }
-
-        impl std::ops::Deref for JointKind {
-            type Target = dyn Joint;
-
-            fn deref(&self) -> &Self::Target {
-                match self { $(Self::$Kind(joint) => joint,)* }
-            }
-        }
-
-        impl std::ops::DerefMut for JointKind {
-            fn deref_mut(&mut self) -> &mut Self::Target {
-                match self { $(Self::$Kind(joint) => joint,)* }
-            }
-        }
-
-        $(impl From<$Kind> for JointKind {
-            fn from(joint: $Kind) -> Self {
-                Self::$Kind(joint)
-            }
-        })*
-    };
-}
+use registry::joints;
 
 joints! {
     revolute::Revolute,
@@ -61,5 +36,3 @@ joints! {
     motor::Motor,
     equation::Equation,
 }
-
-pub use motor::{Prescribed, Profile};

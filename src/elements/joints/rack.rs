@@ -1,29 +1,72 @@
 //! Rack and pinion: a displacement in a fixed ratio to an angle.
+//!
+//! ```text
+//! Φ = s − radius φ − offset = 0          1 row, m
+//! ```
+//!
+//! φ is the angle of the pinion's joint, s the displacement of the rack's. −Φ_qᵀ λ is the force −λ along the rack's axis on
+//! the second body of its joint and the torque +radius λ about the pinion's axis on the second body of its; the opposites
+//! act on the first bodies. The reaction is the force on the rack.
 
+use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::{JointCoordinate, OnJoint};
+use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, TurningJoint};
+use crate::multibody::Vector;
 
-use super::Joint;
+use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 
-/// displacement of the rack's joint = radius · angle of the pinion's joint + offset.
-#[derive(Clone, Debug)]
+/// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "rack",
+    what = "a rack",
+    equation = "s − radius φ − offset = 0",
+    source = "Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4",
+    example = "{ pinion: axle, rack: guide, radius: 20 mm }"
+)]
 pub struct Rack {
-    /// Joint index.
-    pub pinion: usize,
-    /// Joint index.
-    pub rack: usize,
-    /// m a radian
+    /// The joint about which the pinion turns.
+    pub pinion: TurningJoint,
+    /// The joint along which the rack slides.
+    pub rack: SlidingJoint,
+    /// Displacement a radian; negative where the rack goes against the angle.
+    #[quantity(unit = "m", nonzero, constant)]
     pub radius: Formula,
-    /// m
+    /// Displacement where the angle is zero.
+    #[quantity(unit = "m", default = 0, constant)]
     pub offset: Formula,
 }
 
+impl JointElement for Rack {
+    const COUPLES: bool = true;
+    const ROWS: &'static [RowDocs] = &[RowDocs {
+        name: "",
+        unit: "m",
+        multiplier: "N: −λ is the force along the rack, +radius λ the torque about the pinion's axis",
+    }];
+}
+
 impl Joint for Rack {
-    fn coordinates(&self, _: usize) -> Vec<OnJoint> {
-        vec![
-            OnJoint { joint: self.pinion, coordinate: JointCoordinate::Angle },
-            OnJoint { joint: self.rack, coordinate: JointCoordinate::Displacement },
+    fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
+        self.pinion_and_rack().to_vec()
+    }
+
+    fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
+        let (radius, offset) = (k.number(&self.radius)?, k.number(&self.offset)?);
+        let [pinion, rack] = self.pinion_and_rack();
+        let (angle, moved) = (k.coordinate(pinion), k.coordinate(rack));
+        let value = moved - radius * angle - offset;
+        let axis = k.axis(rack)?;
+        Ok(vec![Row { name: "", value, force: -axis, torque: Vector::zero(k.graph()) }])
+    }
+}
+
+impl Rack {
+    fn pinion_and_rack(&self) -> [OnJoint; 2] {
+        [
+            OnJoint { joint: self.pinion.0, coordinate: JointCoordinate::Angle },
+            OnJoint { joint: self.rack.0, coordinate: JointCoordinate::Displacement },
         ]
     }
 }

@@ -19,7 +19,7 @@ const COLUMNS: [&str; 15] = [
     "points",
     "step",
     "tolerance",
-    "solves",
+    "simulations",
     "steps",
     "seconds",
     "over_width",
@@ -63,7 +63,7 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
         whole(point.points),
         step,
         tolerance,
-        point.solves.to_string(),
+        point.simulations.to_string(),
         point.steps.to_string(),
         number(point.seconds),
         over_width,
@@ -106,7 +106,7 @@ mod tests {
         let text = String::from_utf8(cost_csv(&study).unwrap()).unwrap();
         assert_eq!(
             text,
-            "of,method,order,points,step,tolerance,solves,steps,seconds,over_width,under_coverage,error,below_reference,front,failure\n\
+            "of,method,order,points,step,tolerance,simulations,steps,seconds,over_width,under_coverage,error,below_reference,front,failure\n\
              bounds,chebyshev.interval,5,,0.001,,36,2000,0.01,0.4,0,0.4,false,true,\n\
              bounds,scan,,5,0.01,,0,0,inf,inf,inf,inf,false,false,\"a, b\"\n\
              trajectory,hht(-0.1),,,,1e-6,0,0,0.002,,,0.0005,false,false,\n\

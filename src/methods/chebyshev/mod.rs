@@ -13,10 +13,11 @@ use rayon::prelude::*;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
-use super::registry::{About, BoundingMethod, CostCurve, Problem, Refusal, Registered, Varied};
-use super::request::MOST_SIMULATIONS;
+use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
+use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
+use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SparseWork, Surrogate, SurrogateWork, largest};
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
@@ -26,6 +27,46 @@ use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
 const LEAST_SHARE: f64 = 0.25;
+
+/// Highest degree, and most nodes along an axis.
+const MOST_ORDER: usize = 200;
+const MOST_NODES: usize = 1000;
+
+const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("output", Expand::Output)];
+
+/// Keys of the file.
+pub(crate) mod keys {
+    #![allow(dead_code)] // the fields are there for their names and types
+
+    use schemars::JsonSchema;
+
+    use crate::grammar::mapping::grammar;
+    use crate::methods::request::keys::{PerParameter, Range};
+
+    #[derive(JsonSchema)]
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum Expand {
+        /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
+        Coordinates,
+        /// Each output, as in the paper.
+        Output,
+    }
+
+    grammar! {
+        /// Chebyshev bounds.
+        Chebyshev is "`chebyshev`" {
+            /// Degree, for all parameters or by parameter; by default 5, or as the tolerance asks for where there is one, or more
+            /// than three parameters.
+            order: Option<PerParameter>,
+            /// Nodes, more than the degree; by default one more.
+            nodes: Option<PerParameter>,
+            /// What is expanded; by default the coordinates, or the output where a `range` is asked for.
+            expand: Option<Expand>,
+            /// How the range of an output's polynomial is found; by default tight. Coordinates need none.
+            range: Option<Range>,
+        }
+    }
+}
 
 /// What a Chebyshev surrogate expands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +116,50 @@ impl Chebyshev {
     /// parameters.
     pub fn unspecified(k: usize, tolerance: Option<f64>) -> Self {
         if tolerance.is_some() || k > Self::FEW { Self::ADAPTIVE } else { Self::of_order(Self::ORDER, k) }
+    }
+
+    /// Reads its keys.
+    pub(super) fn read<S: SymbolTable>(
+        reader: &mut Reader<'_, S>,
+        fields: &Fields,
+        uncertain: &[String],
+        tolerance: Option<f64>,
+    ) -> Option<Self> {
+        let order = request::per_parameter(reader, fields, "order", uncertain, 1..=MOST_ORDER, Self::ORDER);
+        let nodes = match fields.get("nodes") {
+            Some(_) => request::per_parameter(reader, fields, "nodes", uncertain, 2..=MOST_NODES, Self::ORDER + 1),
+            None => order.as_ref().map(|order| order.iter().map(|order| order + 1).collect()),
+        };
+        let expand = match fields.get("expand") {
+            Some(node) => reader.choice(node, &EXPAND),
+            // A range is asked for of outputs only.
+            None if fields.get("range").is_some() => Some(Expand::Output),
+            None => Some(Expand::Coordinates),
+        };
+        let unspecified = Self::unspecified(uncertain.len(), tolerance);
+        if fields.get("order").is_none() && fields.get("nodes").is_none() && unspecified.degree == Degree::Adaptive {
+            let of_output =
+                if expand == Some(Expand::Output) { fields.get("range").or(fields.get("expand")) } else { None };
+            if let Some(node) = of_output {
+                let message = "an output is expanded to an order that is given, not to a tolerance".to_owned();
+                reader.error(node.span.clone(), message, "give an `order`, or leave this out".to_owned());
+            }
+            return Some(unspecified);
+        }
+        if let (Some(Expand::Coordinates), Some(node)) = (expand, fields.get("range")) {
+            let help = "leave it out, or expand the output".to_owned();
+            reader.error(node.span.clone(), "`range` is about an expanded output".to_owned(), help);
+        }
+        let range = request::range(reader, fields);
+        let (order, nodes) = (order?, nodes?);
+        let few = order.iter().zip(&nodes).position(|(order, nodes)| nodes <= order);
+        if let (Some(few), Some(node)) = (few, fields.get("nodes")) {
+            let message = format!("{} nodes are too few for order {}", nodes[few], order[few]);
+            reader.error(node.span.clone(), message, format!("at least {} are needed", order[few] + 1));
+        }
+        let key = if fields.get("nodes").is_some() { "nodes" } else { "order" };
+        request::check_simulations(reader, fields, key, &nodes);
+        Some(Self { degree: Degree::Fixed { order, nodes }, expand: expand?, range: range? })
     }
 
     /// One degree for each of k parameters, one node more than the degree.
@@ -145,8 +230,8 @@ impl BoundingMethod for Chebyshev {
 
     fn narrow(&mut self, kept: &[usize]) {
         if let Degree::Fixed { order, nodes } = &mut self.degree {
-            super::request::pick(order, kept);
-            super::request::pick(nodes, kept);
+            request::pick(order, kept);
+            request::pick(nodes, kept);
         }
     }
 

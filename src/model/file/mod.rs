@@ -8,19 +8,17 @@ use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
 mod bodies;
-mod joints;
 mod model;
 mod run;
 mod values;
 
 pub use bodies::*;
-pub use joints::*;
 pub use model::*;
 pub use run::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
-use crate::grammar::values::{Components, Direction, Number, Rotation};
+use crate::grammar::values::{Components, Number, Rotation};
 
 /// What the schema is called by those that refer to it.
 const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
@@ -86,13 +84,8 @@ mod tests {
         same_keys::<Parameter>();
         same_keys::<Body>();
         same_keys::<Held>();
-        same_keys::<Joint>();
-        same_keys::<Prismatic>();
-        same_keys::<Screw>();
         same_keys::<Rotation>();
         same_keys::<Simulation>();
-        same_keys::<Bounds>();
-        same_keys::<Budget>();
-        same_keys::<Chebyshev>();
+        same_keys::<crate::methods::keys::Bounds>();
     }
 }

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
+use crate::elements::JointKind;
 use crate::elements::effects::{EffectKind, Impact};
 
 grammar! {
@@ -25,8 +26,8 @@ grammar! {
         tables: Option<IndexMap<String, Table>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
-        /// What holds the bodies together.
-        joints: Option<IndexMap<String, Joint>>,
+        /// What constrains the bodies.
+        joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
@@ -38,7 +39,7 @@ grammar! {
         /// How long, and in which steps.
         simulation: Simulation,
         /// Which bounds to compute; without this, Chebyshev of order 5.
-        bounds: Option<Bounds>,
+        bounds: Option<crate::methods::keys::Bounds>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
         limits: Option<Limits>,
         /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
@@ -60,7 +61,7 @@ grammar! {
         /// New values of the model's parameters, in the model's units.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Instead of the model's of the same name, or on top.
-        joints: Option<IndexMap<String, Joint>>,
+        joints: Option<IndexMap<String, JointKind>>,
         /// Instead of the model's of the same name, or on top.
         effects: Option<IndexMap<String, EffectKind>>,
         /// Instead of the model's of the same name, or on top.
@@ -72,7 +73,7 @@ grammar! {
         /// Keys that are not as in the model.
         simulation: Option<SceneSimulation>,
         /// Instead of the model's.
-        bounds: Option<Bounds>,
+        bounds: Option<crate::methods::keys::Bounds>,
         /// Instead of the model's.
         limits: Option<Limits>,
     }

@@ -1,6 +1,5 @@
 //! What stands behind a key: numbers, names of things, and short forms.
 
-use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
@@ -22,7 +21,7 @@ pub enum CoordinateName {
 pub enum SpaceName {
     /// z = 0, and rotations about z only.
     Planar,
-    /// Bodies that say nothing else have six freedoms.
+    /// Bodies have six degrees of freedom unless they declare their coordinates.
     Spatial,
 }
 
@@ -92,59 +91,12 @@ pub enum Column {
 }
 
 #[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum JointCoordinateName {
-    /// About the joint's axis.
-    Angle,
-    /// Along it.
-    Displacement,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum ProfileName {
-    /// Its acceleration is a sine.
-    Cycloidal,
-    /// A polynomial that begins and ends without rate and acceleration.
-    Quintic,
-    /// A constant rate between constant accelerations.
-    Trapezoidal,
-}
-
-#[derive(JsonSchema)]
 #[schemars(rename_all = "snake_case", inline)]
 pub enum RestitutionLawName {
     /// 3 (1 - e)/(2 v)
     HuntCrossley,
     /// 3 (1 - e^2)/(4 v)
     LankaraniNikravesh,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Range {
-    /// The polynomial's own range.
-    Tight,
-    /// Interval arithmetic term by term, as in the paper: wider.
-    Interval,
-}
-
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Expand {
-    /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
-    Coordinates,
-    /// Each output, as in the paper.
-    Output,
-}
-
-/// Either the mapping or, where it needs nothing else, the list of what it is between.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum OrBetween<T> {
-    /// Short for `{ between: [a, b] }`.
-    Short([String; 2]),
-    Full(T),
 }
 
 #[derive(JsonSchema)]
@@ -159,14 +111,6 @@ pub enum AllEffects {
 pub enum Without {
     All(AllEffects),
     Names(Vec<String>),
-}
-
-/// A whole number for all parameters, or one for each uncertain parameter.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PerParameter {
-    All(u32),
-    Each(IndexMap<String, u32>),
 }
 
 #[derive(JsonSchema)]

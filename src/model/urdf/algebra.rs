@@ -1,6 +1,8 @@
 //! Numbers of the file as they go into a body: plain ones are computed at once, those that are parameters become
 //! formulas. Vectors and rotations of them.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use symdiff::Formula;
 
 /// A number, or the text of a formula of parameters, in parentheses where it has an operator.
@@ -131,6 +133,18 @@ pub fn roll_pitch_yaw(angles: &Vector) -> Quaternion {
     product(&about(2), &product(&about(1), &about(0)))
 }
 
+/// Roll, pitch and yaw, −π to π, of Euler parameters (cosine of half the angle first) of any length but zero.
+///
+/// Sums of halves of the angles come from p₁ ± p₃ and p₀ ± p₂ (Bernardes & Viollet, PLoS ONE 17 (2022) e0276302): exact
+/// at a pitch of ±90° too, where only the sum or the difference of roll and yaw is determined.
+pub fn angles_of([w, x, y, z]: [f64; 4]) -> [f64; 3] {
+    let half_sum = (x + z).atan2(w - y);
+    let half_difference = (x - z).atan2(w + y);
+    let pitch = 2.0 * (w + y).hypot(x - z).atan2((w - y).hypot(x + z)) - FRAC_PI_2;
+    let wrapped = |angle: f64| angle - TAU * (angle / TAU).round();
+    [wrapped(half_sum + half_difference), pitch, wrapped(half_sum - half_difference)]
+}
+
 /// The rotation matrix of unit Euler parameters.
 pub fn matrix(q: &Quaternion) -> [Vector; 3] {
     let two = |a: usize, b: usize| mul(&number(2.0), &mul(&q[a], &q[b]));
@@ -146,8 +160,8 @@ pub fn rotate(q: &Quaternion, v: &Vector) -> Vector {
     matrix(q).map(|row| sum(&[0, 1, 2].map(|i| mul(&row[i], &v[i]))))
 }
 
-/// A symmetric tensor turned into the frame around it: R J Rᵀ.
-pub fn turn_tensor(q: &Quaternion, tensor: &[Vector; 3]) -> [Vector; 3] {
+/// A symmetric tensor in the frame around its own: R J Rᵀ.
+pub fn rotate_tensor(q: &Quaternion, tensor: &[Vector; 3]) -> [Vector; 3] {
     let r = matrix(q);
     let half: [Vector; 3] =
         std::array::from_fn(|i| std::array::from_fn(|k| sum(&[0, 1, 2].map(|j| mul(&r[i][j], &tensor[j][k])))));

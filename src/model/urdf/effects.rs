@@ -7,14 +7,16 @@
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
 
-use super::build::{Built, Source, coordinate, formula};
 use super::robot::{Joint, Kind, Limits, Number};
+use super::source::{Built, Source, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
+
 use crate::model::description::Effect;
 use crate::model::file;
 use crate::model::names::Reader;
 use crate::model::scenes::{self, LeftOut};
+use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
@@ -49,17 +51,23 @@ pub fn read<'r>(
         let impact = impacts
             .as_ref()
             .and_then(|[turning, sliding]| if joint.kind.turns() { turning.clone() } else { sliding.clone() });
-        if let (Some(impact), Some(limits), true) = (impact, &joint.limits, is_limited(joint)) {
-            let on = OnJoint { joint: number, coordinate };
-            found.push(stop(reader, source, joint, limits, on, impact));
+        let on = OnJoint { joint: number, coordinate };
+        if let Some(impact) = impact {
+            if let (Some(limits), true) = (&joint.limits, is_limited(joint)) {
+                found.push(stop(reader, source, joint, limits, on, impact));
+            } else if joint.kind != Kind::Continuous {
+                let message = format!("joint `{}` has no limits: no stop acts in it", joint.name);
+                reader.diagnostics.push(Diagnostic::warning(joint.span.clone(), message));
+            }
         }
     }
     found
 }
 
-/// Whether the joint's way has ends.
+/// Whether the joint's position has a smallest or a largest value.
 fn is_limited(joint: &Joint) -> bool {
-    matches!(joint.kind, Kind::Revolute | Kind::Prismatic) && joint.limits.is_some()
+    matches!(joint.kind, Kind::Revolute | Kind::Prismatic)
+        && joint.limits.as_ref().is_some_and(|limits| limits.lower.is_some() || limits.upper.is_some())
 }
 
 /// Damping and friction, where the file has them.
@@ -108,9 +116,10 @@ fn stop<'r>(
     on: OnJoint,
     impact: Impact,
 ) -> RobotEffect<'r> {
-    let [lower, upper] = [&limits.lower, &limits.upper].map(|number| Some(formula(reader, &source.value(number))));
+    let ends = [&limits.lower, &limits.upper].map(Option::as_ref);
+    let [lower, upper] = ends.map(|number| Some(formula(reader, &source.value(number?))));
     let effect = Effect { name: format!("{}.limit", joint.name), kind: Stop { on, lower, upper, impact }.into() };
-    RobotEffect { effect, numbers: vec![&limits.lower, &limits.upper] }
+    RobotEffect { effect, numbers: ends.into_iter().flatten().collect() }
 }
 
 /// Adds to the model what is not left out.
@@ -130,7 +139,7 @@ pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left
             continue;
         }
         if let EffectKind::Stop(Stop { lower: Some(lower), upper: Some(upper), .. }) = &effect.kind {
-            leaves_a_way(reader, &effect.name, numbers[0].span.clone(), lower, upper);
+            check_range(reader, &effect.name, numbers[0].span.clone(), lower, upper);
         }
         acting.extend(numbers.iter().map(|number| number.name.as_str()));
         reader.model.effects.push(effect);
@@ -146,12 +155,12 @@ pub fn add(reader: &mut Reader, source: &Source, effects: Vec<RobotEffect>, left
 }
 
 /// Reports limits between which a joint cannot move, at any corner.
-fn leaves_a_way(reader: &mut Reader, name: &str, span: Span, lower: &Formula, upper: &Formula) {
+fn check_range(reader: &mut Reader, name: &str, span: Span, lower: &Formula, upper: &Formula) {
     for corner in 0..reader.corners.len() {
         let values = reader.evaluate(lower, corner).zip(reader.evaluate(upper, corner));
         if let Some((lower, upper)) = values.filter(|(lower, upper)| lower >= upper) {
             let label = reader.corners[corner].label.clone();
-            let message = format!("a stop at {lower} and one at {upper} leave this joint no way{label}");
+            let message = format!("a stop at {lower} and one at {upper} leave this joint no room to move{label}");
             reader.error(span, message, format!("correct the limits, or leave the stops out: `without: [{name}]`"));
             return;
         }

@@ -1,22 +1,32 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
-//! XML (`read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`uncertain`) → bodies, joints and effects
-//! (`build`, `effects`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
+//! XML (`xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`uncertain`) → bodies, joints and effects
+//! (`build`, `effects`, `start`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
 //! all others stay numbers.
 
 mod algebra;
+mod bodies;
+mod budget;
 mod build;
+mod check;
 mod effects;
+mod format;
+mod joints;
 mod read;
 mod robot;
+mod source;
+mod start;
+#[cfg(test)]
+mod tests;
 mod tree;
 mod uncertain;
+mod xml;
 
 use std::collections::HashSet;
 use std::path::Path;
 
-use self::build::{Built, Source};
 use self::robot::Robot;
+use self::source::{Built, Source};
 pub use self::uncertain::is_number;
 use super::load;
 use super::overrides::Override;
@@ -131,7 +141,7 @@ impl Declared {
         let source = Source { robot, floating: *floating, words, named: &self.named };
         let effects = effects::read(reader, &source, &self.built, limits);
         effects::add(reader, &source, effects, left_out);
-        build::start(reader, &source, &self.built);
+        start::start(reader, &source, &self.built);
         for number in robot.numbers().filter(|number| self.named.contains(&number.name)) {
             let last = number.name.rsplit('.').next().unwrap_or_default();
             let (holds, requirement): (fn(f64) -> bool, &str) = match last {
@@ -145,7 +155,7 @@ impl Declared {
             reader.require(&node, &formula, holds, requirement);
         }
         if observe {
-            build::outputs(reader, &source, &self.built);
+            start::outputs(reader, &source, &self.built);
             if reader.model.outputs.is_empty() {
                 let help = "with `base: floating` in a model that names the file, the whole moves".to_owned();
                 reader.error(self.at.clone(), "nothing of this robot can move", help);

@@ -39,6 +39,7 @@ pub struct Link {
     pub inertial: Option<Inertial>,
 }
 
+/// In the order of [`WORDS`](Kind::WORDS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Revolute,
@@ -50,27 +51,25 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [(&str, Self); 6] = [
-        ("revolute", Self::Revolute),
-        ("continuous", Self::Continuous),
-        ("prismatic", Self::Prismatic),
-        ("fixed", Self::Fixed),
-        ("planar", Self::Planar),
-        ("floating", Self::Floating),
-    ];
+    pub const WORDS: [&str; 6] = ["revolute", "continuous", "prismatic", "fixed", "planar", "floating"];
+
+    /// The format's word for it.
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
 
     pub fn turns(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous)
     }
 }
 
-/// Positions in m or rad, effort in N or N m, velocity in m/s or rad/s.
+/// Positions in m or rad, effort in N or N m, velocity in m/s or rad/s; absent where there is none.
 #[derive(Clone, Debug)]
 pub struct Limits {
-    pub lower: Number,
-    pub upper: Number,
-    pub effort: Number,
-    pub velocity: Number,
+    pub lower: Option<Number>,
+    pub upper: Option<Number>,
+    pub effort: Option<Number>,
+    pub velocity: Option<Number>,
 }
 
 /// position = multiplier · position of `joint` + offset.
@@ -125,7 +124,7 @@ impl Robot {
             std::iter::once(&inertial.mass).chain(&inertial.inertia).chain(origin)
         });
         let joints = self.joints.iter().flat_map(|joint| {
-            let limits = joint.limits.iter().flat_map(|l| [&l.lower, &l.upper, &l.effort, &l.velocity]);
+            let limits = joint.limits.iter().flat_map(|l| [&l.lower, &l.upper, &l.effort, &l.velocity]).flatten();
             joint.origin.xyz.iter().chain(&joint.origin.rpy).chain([&joint.damping, &joint.friction]).chain(limits)
         });
         links.chain(joints)

@@ -88,7 +88,7 @@ pub struct CostPoint {
     /// Step size, s, or the tolerance of step-size control.
     pub step: Stepping,
     /// Simulations.
-    pub solves: usize,
+    pub simulations: usize,
     /// Steps of each.
     pub steps: usize,
     /// The best of a few runs, s; compiling the model is not in it.
@@ -145,7 +145,7 @@ impl CostPoint {
             order: None,
             points: None,
             step,
-            solves: 0,
+            simulations: 0,
             steps: 0,
             seconds: f64::INFINITY,
             deviation,
@@ -228,7 +228,7 @@ pub(crate) mod tests {
     pub fn point(method: CostMethod, seconds: f64, over_width: f64, under_coverage: f64) -> CostPoint {
         let deviation = Deviation::Bounds { over_width, under_coverage };
         let point = CostPoint::without_result(method, Stepping::Fixed(1e-3));
-        CostPoint { order: Some(5), solves: 36, steps: 2000, seconds, deviation, ..point }
+        CostPoint { order: Some(5), simulations: 36, steps: 2000, seconds, deviation, ..point }
     }
 
     pub fn study(bounds: Vec<CostPoint>) -> CostStudy {

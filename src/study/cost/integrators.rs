@@ -36,7 +36,7 @@ pub(super) fn trajectories(
             let (run, seconds) = best_of(|| Course::run(&simulator, &model.simulation, stepping), |_, seconds| seconds)
                 .map_err(RunError::from)?;
             points.push(CostPoint {
-                solves: 1,
+                simulations: 1,
                 steps: run.steps,
                 seconds,
                 deviation: known.of_courses(run.outputs.iter().map(Vec::as_slice)),

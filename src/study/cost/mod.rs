@@ -45,8 +45,8 @@ pub enum CostError {
     Run(#[from] RunError),
     #[error("the reference did not come to its end: {0}")]
     Reference(String),
-    #[error("{parameters} uncertain parameters: even a coarse reference takes {solves:.1e} simulations")]
-    TooMany { parameters: usize, solves: f64 },
+    #[error("{parameters} uncertain parameters: even a coarse reference takes {simulations:.1e} simulations")]
+    TooMany { parameters: usize, simulations: f64 },
 }
 
 /// Shares of the progress bar: the reference is done, the bounds are done.
@@ -173,9 +173,9 @@ fn point(
     match timed(model, setting, options, progress) {
         Ok(((bounds, summary), seconds)) => {
             let spent = method(&summary, setting);
-            let (solves, steps) = (spent.solves, spent.steps);
+            let (simulations, steps) = (spent.simulations, spent.steps);
             let deviation = reference.known.of_bounds(&bounds.outputs);
-            CostPoint { solves, steps, seconds, deviation, failure: summary.failure, ..point }
+            CostPoint { simulations, steps, seconds, deviation, failure: summary.failure, ..point }
         }
         Err(error) => CostPoint { failure: Some(error.to_string()), ..point },
     }

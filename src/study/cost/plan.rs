@@ -7,7 +7,7 @@ use crate::model::Description;
 use crate::results::CostMethod;
 use crate::study::scheme;
 
-/// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that the solves allow.
+/// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that this many simulations allow.
 const ORDERS: [usize; 3] = [24, 16, 10];
 const FEW: usize = 7;
 
@@ -15,7 +15,7 @@ const FEW: usize = 7;
 const LEAST_ORDER: usize = 4;
 
 /// Simulations of one run of the reference.
-const MOST_SOLVES: f64 = 1e4;
+const MOST_SIMULATIONS: f64 = 1e4;
 
 /// How much finer the reference's finest steps may be than the model's.
 const FINEST: [f64; 3] = [16.0, 8.0, 4.0];
@@ -59,12 +59,12 @@ impl Plan {
         }
         let method = smoothest(composable);
         let setting = |count, parts| Setting { method, count, stepping: finer(simulation, parts) };
-        let solves = |order| setting(order, 1.0).simulations(k);
+        let simulations = |order| setting(order, 1.0).simulations(k);
         let highest = ORDERS.get(k - 1).copied();
-        let highest =
-            highest.unwrap_or_else(|| (2..=FEW).rev().find(|&order| solves(order) <= MOST_SOLVES).unwrap_or(2));
-        if solves(highest) > MOST_SOLVES {
-            return Err(CostError::TooMany { parameters: k, solves: solves(highest) });
+        let highest = highest
+            .unwrap_or_else(|| (2..=FEW).rev().find(|&order| simulations(order) <= MOST_SIMULATIONS).unwrap_or(2));
+        if simulations(highest) > MOST_SIMULATIONS {
+            return Err(CostError::TooMany { parameters: k, simulations: simulations(highest) });
         }
 
         // Seconds are a constant, which is the composition's, and a rate times the work.

@@ -1,0 +1,277 @@
+//! Intervals that enclose: every operation's result contains the exact result for all members of its operands.
+//!
+//! IEEE operations are correct to half a unit in the last place, so that the neighbours of a computed number enclose the
+//! exact one; no rounding mode is switched. What has no bound (a quotient by an interval with zero in it, the root of a
+//! negative number) is [`Interval::ENTIRE`]: nothing is known, and nothing wrong is said. Sine and cosine are summed here
+//! from their series, because the errors of a library's are measured rather than proven.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// [lower, upper]; infinite where there is no bound, never not a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    lower: f64,
+    upper: f64,
+}
+
+/// From here on the multiple of π/2 has more bits than the reduction's exact products leave for it.
+const LARGE: f64 = 1e5;
+
+/// π/2 = the sum of three, the last between its neighbours (see [`sincos`](crate::eval::sincos)).
+const QUADRANTS: [u64; 3] = [0x3FF9_21FB_5440_0000, 0x3DD0_B461_1A60_0000, 0x3BA3_198A_2E03_7073];
+
+/// Terms of the series for |x| < 0.8; what is left out is below 0.8²¹/21! < 2e-22.
+const TERMS: i32 = 10;
+const SERIES_TAIL: f64 = 2e-22;
+
+impl Interval {
+    /// All numbers.
+    pub const ENTIRE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+
+    /// One number; all, where it is not a number.
+    pub fn point(value: f64) -> Self {
+        Self::new(value, value)
+    }
+
+    /// Between two numbers, the smaller first; all, where either is not a number.
+    pub fn new(lower: f64, upper: f64) -> Self {
+        if lower <= upper { Self { lower, upper } } else { Self::ENTIRE }
+    }
+
+    /// Computed ends, moved outward by one place.
+    fn outward(lower: f64, upper: f64) -> Self {
+        Self::new(lower.next_down(), upper.next_up())
+    }
+
+    /// Lower end.
+    pub fn lower(self) -> f64 {
+        self.lower
+    }
+
+    /// Upper end.
+    pub fn upper(self) -> f64 {
+        self.upper
+    }
+
+    /// Whether a number lies within.
+    pub fn contains(self, value: f64) -> bool {
+        self.lower <= value && value <= self.upper
+    }
+
+    /// Largest absolute value.
+    pub fn magnitude(self) -> f64 {
+        self.lower.abs().max(self.upper.abs())
+    }
+
+    /// A number within, as central as can be told; 0 for [`ENTIRE`](Self::ENTIRE).
+    pub fn middle(self) -> f64 {
+        let middle = 0.5 * self.lower + 0.5 * self.upper;
+        if middle.is_finite() { middle.clamp(self.lower, self.upper) } else { 0.0 }
+    }
+
+    /// Largest distance of a member from `value`, rounded up.
+    pub fn radius_about(self, value: f64) -> f64 {
+        (self - Self::point(value)).magnitude()
+    }
+
+    /// a²: never negative.
+    pub fn square(self) -> Self {
+        let product = self * self;
+        Self::new(product.lower.max(0.0), product.upper.max(0.0))
+    }
+
+    /// √a; all numbers where a member is negative.
+    pub fn sqrt(self) -> Self {
+        if self.lower < 0.0 {
+            return Self::ENTIRE;
+        }
+        let root = Self::outward(self.lower.sqrt(), self.upper.sqrt());
+        Self::new(root.lower.max(0.0), root.upper)
+    }
+
+    /// (sin a, cos a).
+    pub fn sin_cos(self) -> (Self, Self) {
+        let whole = Self::new(-1.0, 1.0);
+        let middle = self.middle();
+        if !(self.lower.is_finite() && self.upper.is_finite()) || middle.abs() >= LARGE {
+            return (whole, whole);
+        }
+        // Neither changes faster than its argument.
+        let radius = self.radius_about(middle);
+        let spread = Self::new(-radius, radius);
+        let (sine, cosine) = sin_cos_of(middle);
+        let within = |value: Self| {
+            let value = value + spread;
+            Self::new(value.lower.max(-1.0), value.upper.min(1.0))
+        };
+        (within(sine), within(cosine))
+    }
+}
+
+/// Enclosures of (sin x, cos x), |x| < [`LARGE`].
+fn sin_cos_of(x: f64) -> (Interval, Interval) {
+    let n = (x * std::f64::consts::FRAC_2_PI).round();
+    let [first, second, third] = QUADRANTS.map(f64::from_bits);
+    // Exact, as there: n times the first 33 bits, what is left of x, and n times the next 33 bits.
+    let (left, second) = (x - n * first, n * second);
+    let third = if n == 0.0 { Interval::point(0.0) } else { Interval::outward(third, third) };
+    let rest = Interval::point(left) - Interval::point(second) - Interval::point(n) * third;
+    // |rest| < 0.8, and alternating series whose terms fall: less than the first term is left out.
+    let square = rest.square();
+    let tail = Interval::new(-SERIES_TAIL, SERIES_TAIL);
+    let one = Interval::point(1.0);
+    let (mut sine, mut cosine) = (one, one);
+    for term in (1..TERMS).rev() {
+        let even = f64::from(2 * term);
+        sine = one - square * sine / Interval::point(even * (even + 1.0));
+        cosine = one - square * cosine / Interval::point(even * (even - 1.0));
+    }
+    let (sine, cosine) = (rest * sine + tail, cosine + tail);
+    match n.rem_euclid(4.0) as u8 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::outward(self.lower + other.lower, self.upper + other.upper)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self::outward(self.lower - other.upper, self.upper - other.lower)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::new(-self.upper, -self.lower)
+    }
+}
+
+/// Least and largest of four candidates; all numbers where one is not a number.
+fn hull(candidates: [f64; 4]) -> Interval {
+    if candidates.iter().any(|candidate| candidate.is_nan()) {
+        return Interval::ENTIRE;
+    }
+    let lower = candidates.into_iter().fold(f64::INFINITY, f64::min);
+    let upper = candidates.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    Interval::outward(lower, upper)
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let Self { lower: a, upper: b } = self;
+        let Self { lower: c, upper: d } = other;
+        hull([a * c, a * d, b * c, b * d])
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        if other.contains(0.0) {
+            return Self::ENTIRE;
+        }
+        let Self { lower: a, upper: b } = self;
+        let Self { lower: c, upper: d } = other;
+        hull([a / c, a / d, b / c, b / d])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// An interval and a number in it.
+    fn member() -> impl Strategy<Value = (Interval, f64)> {
+        (-1e3..1e3_f64, prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..10.0_f64], 0.0..=1.0_f64).prop_map(
+            |(a, width, at)| {
+                let interval = Interval::new(a, a + width);
+                (interval, (a + at * width).clamp(interval.lower(), interval.upper()))
+            },
+        )
+    }
+
+    /// a + b − rounded sum, exactly (Knuth).
+    fn lost_in_sum(a: f64, b: f64) -> f64 {
+        let sum = a + b;
+        let share = sum - a;
+        (a - (sum - share)) + (b - share)
+    }
+
+    proptest! {
+        #[test]
+        fn operations_enclose(((x, a), (y, b)) in (member(), member())) {
+            prop_assert!((x + y).contains(a + b) && (x - y).contains(a - b) && (x * y).contains(a * b));
+            prop_assert!((x / y).contains(a / b));
+            prop_assert!(x.square().contains(a * a) && x.square().lower() >= 0.0);
+            let root = a.max(0.0).sqrt();
+            prop_assert!(x.sqrt().contains(root));
+            let (sine, cosine) = x.sin_cos();
+            // libm is within a unit of the last place.
+            let near = |interval: Interval, value: f64| interval.contains(value.next_up()) || interval.contains(value.next_down()) || interval.contains(value);
+            prop_assert!(near(sine, libm::sin(a)) && near(cosine, libm::cos(a)));
+        }
+
+        #[test]
+        fn exact_results_lie_strictly_within(a in -1e3..1e3_f64, b in -1e3..1e3_f64) {
+            // What rounding loses is inside too, told by the exact remainder's sign.
+            let sum = Interval::point(a) + Interval::point(b);
+            let lost = lost_in_sum(a, b);
+            prop_assert!(sum.lower() < a + b && a + b < sum.upper());
+            prop_assert!(lost.abs() <= (sum.upper() - (a + b)).min((a + b) - sum.lower()));
+        }
+
+        #[test]
+        fn sines_of_points_are_thin(x in -9e4..9e4_f64) {
+            let (sine, cosine) = Interval::point(x).sin_cos();
+            prop_assert!(sine.upper() - sine.lower() < 3e-15 && cosine.upper() - cosine.lower() < 3e-15);
+            // sin² + cos² = 1, whatever the library says.
+            prop_assert!((sine.square() + cosine.square()).contains(1.0));
+        }
+
+        #[test]
+        fn sine_of_a_sum(a in -50.0..50.0_f64, b in -50.0..50.0_f64) {
+            let (sin_a, cos_a) = Interval::point(a).sin_cos();
+            let (sin_b, cos_b) = Interval::point(b).sin_cos();
+            let (direct, _) = (Interval::point(a) + Interval::point(b)).sin_cos();
+            let composed = sin_a * cos_b + cos_a * sin_b;
+            prop_assert!(direct.lower() <= composed.upper() && composed.lower() <= direct.upper());
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_bounded_is_everything() {
+        let around_zero = Interval::new(-1.0, 2.0);
+        assert_eq!(Interval::point(1.0) / around_zero, Interval::ENTIRE);
+        assert_eq!(around_zero.sqrt(), Interval::ENTIRE);
+        assert_eq!(Interval::point(f64::NAN), Interval::ENTIRE);
+        assert_eq!(Interval::ENTIRE - Interval::ENTIRE, Interval::ENTIRE);
+        assert_eq!(Interval::ENTIRE * Interval::point(0.0), Interval::ENTIRE);
+        assert_eq!(Interval::ENTIRE.sin_cos().0, Interval::new(-1.0, 1.0));
+    }
+
+    #[test]
+    fn multiples_of_the_right_angle() {
+        // sin(355) = -3.0144353359488449214...e-5, to 18 digits; cos of the f64 nearest to π/2 is 6.123233995736766e-17.
+        let (sine, _) = Interval::point(355.0).sin_cos();
+        assert!(sine.contains(-3.014_435_335_948_845e-5) && sine.upper() - sine.lower() < 1e-15);
+        let (_, cosine) = Interval::point(std::f64::consts::FRAC_PI_2).sin_cos();
+        assert!(cosine.contains(6.123_233_995_736_766e-17) && cosine.upper() - cosine.lower() < 1e-15);
+    }
+}

@@ -1,0 +1,394 @@
+//! Jets: polynomials of several variables, cut off after a total degree, as numbers to calculate with.
+//!
+//! A jet a(ξ) = Σ aᵣ ξ^r is the slice of its coefficients in the order of [`Monomials`]; `a[0]` is its value at ξ = 0 and is
+//! computed by the same scalar functions as anywhere else, to the bit. Functions follow from their differential
+//! equations. Let E = Σ ξᵢ ∂/∂ξᵢ, which multiplies the coefficient of a monomial of degree d by d. Then h = f(a) has
+//! E h = f'(a) E a: one sum over products for each coefficient, as in univariate automatic differentiation with the degree
+//! in place of the index. Each function's equation stands beside its code.
+//!
+//! Where a function has a kink the branch is that of the constant term, and at the kink itself the mean of both sides,
+//! as in [`Graph::derivative`](crate::Graph::derivative). Where it has a singularity (√0, log 0, asin 1, …) the
+//! coefficients are infinite or not a number, unless the argument is a constant.
+
+mod memory;
+mod monomials;
+
+use rustc_hash::FxHashMap;
+
+use crate::eval::functions;
+use crate::expr::{Binary, Unary};
+
+pub use memory::JetMemory;
+pub use monomials::Monomials;
+
+/// Which products of two monomials make which, for jets of one shape. Immutable: one serves all threads.
+#[derive(Clone, Debug)]
+pub struct JetSpace {
+    monomials: Monomials,
+    /// Total degree of each monomial.
+    degrees: Vec<f64>,
+    /// All (i, j) with ξ^i ξ^j = ξ^r, for each r in turn; i ascends, so (0, r) is first and (r, 0) last.
+    products: Vec<[u32; 2]>,
+    /// Where those of r begin, and after the last, the end.
+    starts: Vec<usize>,
+}
+
+/// Room for intermediate jets, so that no operation allocates.
+#[derive(Clone, Debug)]
+pub struct JetScratch {
+    slots: [Vec<f64>; 4],
+}
+
+impl JetScratch {
+    /// For jets of this shape.
+    pub fn new(space: &JetSpace) -> Self {
+        Self { slots: std::array::from_fn(|_| vec![0.0; space.len()]) }
+    }
+}
+
+/// Σ xᵢ yⱼ.
+#[inline]
+fn sum(pairs: &[[u32; 2]], x: &[f64], y: &[f64]) -> f64 {
+    pairs.iter().map(|&[i, j]| x[i as usize] * y[j as usize]).sum()
+}
+
+fn is_constant(a: &[f64]) -> bool {
+    a[1..].iter().all(|&c| c == 0.0)
+}
+
+/// Every slice that an operation takes has [`len`](JetSpace::len) coefficients; a shorter one panics.
+impl JetSpace {
+    /// Jets of `variables` variables up to the total degree `order`.
+    pub fn new(variables: usize, order: usize) -> Self {
+        let monomials = Monomials::new(variables, order);
+        let count = monomials.len();
+        let place: FxHashMap<&[usize], usize> = (0..count).map(|r| (monomials.exponents(r), r)).collect();
+        let mut by_result = vec![Vec::new(); count];
+        let mut exponents = vec![0; variables];
+        for i in 0..count {
+            for j in (0..count).take_while(|&j| monomials.degree(i) + monomials.degree(j) <= order) {
+                for (power, (a, b)) in
+                    exponents.iter_mut().zip(monomials.exponents(i).iter().zip(monomials.exponents(j)))
+                {
+                    *power = a + b;
+                }
+                by_result[place[exponents.as_slice()]].push([i as u32, j as u32]);
+            }
+        }
+        let mut starts = vec![0];
+        for pairs in &by_result {
+            starts.push(starts[starts.len() - 1] + pairs.len());
+        }
+        let degrees = (0..count).map(|r| monomials.degree(r) as f64).collect();
+        Self { degrees, products: by_result.concat(), starts, monomials }
+    }
+
+    /// Number of coefficients.
+    #[allow(clippy::len_without_is_empty)] // the constant is always there
+    pub fn len(&self) -> usize {
+        self.degrees.len()
+    }
+
+    /// What the coefficients stand before.
+    pub fn monomials(&self) -> &Monomials {
+        &self.monomials
+    }
+
+    /// All (i, j) with ξ^i ξ^j = ξ^r.
+    #[inline]
+    fn pairs(&self, r: usize) -> &[[u32; 2]] {
+        &self.products[self.starts[r]..self.starts[r + 1]]
+    }
+
+    /// Those without i = 0.
+    #[inline]
+    fn upper(&self, r: usize) -> &[[u32; 2]] {
+        &self.products[self.starts[r] + 1..self.starts[r + 1]]
+    }
+
+    /// Those without i = 0 and j = 0; r > 0.
+    #[inline]
+    fn inner(&self, r: usize) -> &[[u32; 2]] {
+        &self.products[self.starts[r] + 1..self.starts[r + 1] - 1]
+    }
+
+    /// `out = value`.
+    pub fn constant(&self, value: f64, out: &mut [f64]) {
+        out.fill(0.0);
+        out[0] = value;
+    }
+
+    /// `out = value + slope ξ_variable`; with order 0, `value`.
+    pub fn variable(&self, variable: usize, value: f64, slope: f64, out: &mut [f64]) {
+        self.constant(value, out);
+        if self.monomials.order() > 0 {
+            out[1 + variable] = slope;
+        }
+    }
+
+    /// `out = factor · a`.
+    pub fn scale(&self, factor: f64, a: &[f64], out: &mut [f64]) {
+        out.iter_mut().zip(a).for_each(|(h, a)| *h = factor * a);
+    }
+
+    /// `out = a b`.
+    pub fn mul(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        self.mul_with(a, b, |r, product| out[r] = product);
+    }
+
+    /// `out += a b`.
+    pub fn accumulate(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        if self.monomials.variables() == 1 {
+            // Powers of one variable: a product is a convolution.
+            for (i, &factor) in a.iter().enumerate() {
+                out[i..].iter_mut().zip(b).for_each(|(h, b)| *h += factor * b);
+            }
+            return;
+        }
+        for (r, h) in out.iter_mut().enumerate() {
+            *h += sum(self.pairs(r), a, b);
+        }
+    }
+
+    /// `out = a b + c`.
+    pub fn mul_add(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
+        self.mul_with(a, b, |r, product| out[r] = product + c[r]);
+    }
+
+    /// `out = a b - c`.
+    pub fn mul_sub(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
+        self.mul_with(a, b, |r, product| out[r] = product - c[r]);
+    }
+
+    /// `out = c - a b`.
+    pub fn sub_mul(&self, a: &[f64], b: &[f64], c: &[f64], out: &mut [f64]) {
+        self.mul_with(a, b, |r, product| out[r] = c[r] - product);
+    }
+
+    /// Hands each coefficient of `a b` to `put`.
+    #[inline]
+    fn mul_with(&self, a: &[f64], b: &[f64], mut put: impl FnMut(usize, f64)) {
+        if is_constant(a) {
+            return (0..self.len()).for_each(|r| put(r, a[0] * b[r]));
+        }
+        if is_constant(b) {
+            return (0..self.len()).for_each(|r| put(r, a[r] * b[0]));
+        }
+        put(0, a[0] * b[0]);
+        for r in 1..self.len() {
+            put(r, sum(self.pairs(r), a, b));
+        }
+    }
+
+    /// `out = a / b`: h b = a.
+    pub fn div(&self, a: &[f64], b: &[f64], out: &mut [f64]) {
+        if is_constant(b) {
+            return out.iter_mut().zip(a).for_each(|(h, a)| *h = a / b[0]);
+        }
+        out[0] = a[0] / b[0];
+        for r in 1..self.len() {
+            out[r] = (a[r] - sum(self.upper(r), b, out)) / b[0];
+        }
+    }
+
+    /// `sine = sin a`, `cosine = cos a`: E s = c E a, E c = -s E a.
+    pub fn sin_cos(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], scratch: &mut JetScratch) {
+        self.sin_cos_with(a, sine, cosine, &mut scratch.slots[0]);
+    }
+
+    fn sin_cos_with(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], slope: &mut [f64]) {
+        self.euler(a, slope);
+        sine[0] = functions::unary(Unary::Sin, a[0]);
+        cosine[0] = functions::unary(Unary::Cos, a[0]);
+        for r in 1..self.len() {
+            let (s, c) = (sum(self.upper(r), slope, cosine), sum(self.upper(r), slope, sine));
+            sine[r] = s / self.degrees[r];
+            cosine[r] = -c / self.degrees[r];
+        }
+    }
+
+    /// `out = function(a)`.
+    pub fn unary(&self, function: Unary, a: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
+        let value = functions::unary(function, a[0]);
+        // A constant stays one, whatever the function does there.
+        if is_constant(a) {
+            return self.constant(value, out);
+        }
+        let [first, second, third, _] = &mut scratch.slots;
+        match function {
+            Unary::Neg => out.iter_mut().zip(a).for_each(|(h, a)| *h = -a),
+            Unary::Sin => self.sin_cos_with(a, out, first, second),
+            Unary::Cos => self.sin_cos_with(a, first, out, second),
+            // E h = (1 ± h²) E a
+            Unary::Tan => self.tangent(a, 1.0, value, out, first, second),
+            Unary::Tanh => self.tangent(a, -1.0, value, out, first, second),
+            // √(1 - a²) E h = ± E a
+            Unary::Asin | Unary::Acos => {
+                self.euler(a, first);
+                self.mul(a, a, second);
+                second.iter_mut().for_each(|c| *c = -*c);
+                second[0] = (1.0 - a[0]) * (1.0 + a[0]);
+                self.root(second, third);
+                if function == Unary::Acos {
+                    first.iter_mut().for_each(|c| *c = -*c);
+                }
+                self.integrate(first, third, value, out, second);
+            }
+            // (1 + a²) E h = E a
+            Unary::Atan => {
+                self.euler(a, first);
+                self.mul(a, a, second);
+                second[0] += 1.0;
+                self.integrate(first, second, value, out, third);
+            }
+            Unary::Sqrt => self.root(a, out),
+            Unary::Exp => self.exponential(a, value, out, first),
+            // a E h = E a
+            Unary::Log => {
+                self.euler(a, first);
+                self.integrate(first, a, value, out, second);
+            }
+            Unary::Abs => {
+                self.scale(functions::sign(a[0]), a, out);
+                out[0] = value;
+            }
+            Unary::Sign => self.constant(value, out),
+            // A polynomial in a − a₀, by Horner.
+            Unary::Spline(spline, order) => {
+                let [constant, linear, square, cube] = spline.taylor(order, a[0]);
+                first.copy_from_slice(a);
+                first[0] = 0.0;
+                self.constant(cube, out);
+                for coefficient in [square, linear, constant] {
+                    self.mul(first, out, second);
+                    out.copy_from_slice(second);
+                    out[0] = coefficient;
+                }
+            }
+        }
+    }
+
+    /// `out = function(a, b)`.
+    pub fn binary(&self, function: Binary, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
+        match function {
+            Binary::Add => out.iter_mut().zip(a.iter().zip(b)).for_each(|(h, (a, b))| *h = a + b),
+            Binary::Sub => out.iter_mut().zip(a.iter().zip(b)).for_each(|(h, (a, b))| *h = a - b),
+            Binary::Mul => self.mul(a, b, out),
+            Binary::Div => self.div(a, b, out),
+            Binary::Pow => self.power(a, b, out, scratch),
+            Binary::Atan2 => self.atan2(a, b, out, scratch),
+            Binary::Min | Binary::Max => {
+                let first_wins = if function == Binary::Min { a[0] < b[0] } else { a[0] > b[0] };
+                if first_wins {
+                    out.copy_from_slice(a);
+                } else if a[0] == b[0] {
+                    out.iter_mut().zip(a.iter().zip(b)).for_each(|(h, (a, b))| *h = 0.5 * (a + b));
+                } else {
+                    out.copy_from_slice(b);
+                }
+                out[0] = functions::binary(function, a[0], b[0]);
+            }
+            Binary::Where | Binary::Elsewhere if (a[0] <= 0.0) == (function == Binary::Elsewhere) => {
+                out.copy_from_slice(b);
+            }
+            Binary::Where | Binary::Elsewhere => out.fill(0.0),
+        }
+    }
+
+    /// `out = E a`.
+    fn euler(&self, a: &[f64], out: &mut [f64]) {
+        out.iter_mut().zip(a.iter().zip(&self.degrees)).for_each(|(h, (a, degree))| *h = degree * a);
+    }
+
+    /// The h with h(0) = `value` and w E h = `right`: both sides' coefficients at r, the one with w₀ (E h)ᵣ solved for.
+    fn integrate(&self, right: &[f64], w: &[f64], value: f64, out: &mut [f64], slope: &mut [f64]) {
+        out[0] = value;
+        slope[0] = 0.0;
+        for r in 1..self.len() {
+            slope[r] = (right[r] - sum(self.inner(r), slope, w)) / w[0];
+            out[r] = slope[r] / self.degrees[r];
+        }
+    }
+
+    /// `out = √a`: h h = a.
+    fn root(&self, a: &[f64], out: &mut [f64]) {
+        out[0] = functions::unary(Unary::Sqrt, a[0]);
+        for r in 1..self.len() {
+            out[r] = (a[r] - sum(self.inner(r), out, out)) / (2.0 * out[0]);
+        }
+    }
+
+    /// The h with h(0) = `value` and E h = h E a.
+    fn exponential(&self, a: &[f64], value: f64, out: &mut [f64], slope: &mut [f64]) {
+        self.euler(a, slope);
+        out[0] = value;
+        for r in 1..self.len() {
+            out[r] = sum(self.upper(r), slope, out) / self.degrees[r];
+        }
+    }
+
+    /// The h with h(0) = `value` and E h = (1 + sign h²) E a.
+    fn tangent(&self, a: &[f64], sign: f64, value: f64, out: &mut [f64], slope: &mut [f64], outer: &mut [f64]) {
+        self.euler(a, slope);
+        out[0] = value;
+        outer[0] = 1.0 + sign * (value * value);
+        for r in 1..self.len() {
+            out[r] = sum(self.upper(r), slope, outer) / self.degrees[r];
+            outer[r] = sign * sum(self.pairs(r), out, out);
+        }
+    }
+
+    /// `out = a^b`. For a constant b = p: a E h = p h E a. Otherwise h = exp(b log a): E h = h E(b log a).
+    fn power(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
+        let value = functions::binary(Binary::Pow, a[0], b[0]);
+        let [first, second, third, fourth] = &mut scratch.slots;
+        if !is_constant(b) {
+            self.euler(a, first);
+            self.integrate(first, a, functions::unary(Unary::Log, a[0]), second, third);
+            self.mul(b, second, fourth);
+            return self.exponential(fourth, value, out, first);
+        }
+        let p = b[0];
+        if is_constant(a) {
+            self.constant(value, out);
+        } else if a[0] == 0.0 && p >= 0.0 && p.fract() == 0.0 {
+            // Whole powers are polynomials; each factor without a constant term raises the least degree by one.
+            self.constant(1.0, out);
+            if p > self.monomials.order() as f64 {
+                out.fill(0.0);
+            } else {
+                for _ in 0..p as usize {
+                    self.mul(a, out, first);
+                    out.copy_from_slice(first);
+                }
+            }
+            out[0] = value;
+        } else {
+            out[0] = value;
+            for r in 1..self.len() {
+                let term = |&[i, j]: &[u32; 2]| {
+                    let (i, j) = (i as usize, j as usize);
+                    (p * self.degrees[i] - self.degrees[j]) * a[i] * out[j]
+                };
+                out[r] = self.upper(r).iter().map(term).sum::<f64>() / (self.degrees[r] * a[0]);
+            }
+        }
+    }
+
+    /// `out = atan2(a, b)`: (a² + b²) E h = b E a - a E b.
+    fn atan2(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
+        let value = functions::binary(Binary::Atan2, a[0], b[0]);
+        if is_constant(a) && is_constant(b) {
+            return self.constant(value, out);
+        }
+        let [first, second, third, right] = &mut scratch.slots;
+        self.euler(a, first);
+        self.euler(b, second);
+        self.mul(b, first, third);
+        self.mul(a, second, right);
+        right.iter_mut().zip(third.iter()).for_each(|(right, third)| *right = third - *right);
+        self.mul(a, a, first);
+        self.mul_add(b, b, first, second);
+        self.integrate(right, second, value, out, third);
+    }
+}

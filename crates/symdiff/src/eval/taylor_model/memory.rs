@@ -1,0 +1,94 @@
+//! The evaluator over Taylor models: the same tapes, with a polynomial and its radius in every slot.
+
+use crate::eval::interval::Interval;
+use crate::eval::taylor_model::{ModelScratch, ModelSpace};
+use crate::expr::{Binary, Unary};
+use crate::lower::tape::{Op, Operands, Part, Tape};
+
+/// Memory of a program whose values are enclosed over a whole box of parameters.
+#[derive(Clone, Debug)]
+pub struct ModelMemory<'s> {
+    space: &'s ModelSpace,
+    scratch: ModelScratch,
+    values: Vec<f64>,
+    /// Results before they are stored: a result may replace an operand.
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl<'s> ModelMemory<'s> {
+    /// Zeros, with `constants` set.
+    pub fn new(space: &'s ModelSpace, slots: usize, constants: &[(u32, f64)]) -> Self {
+        let size = space.size();
+        let (first, second) = (vec![0.0; size], vec![0.0; size]);
+        let mut memory =
+            Self { space, scratch: ModelScratch::new(space), values: vec![0.0; slots * size], first, second };
+        for &(slot, value) in constants {
+            space.constant(Interval::point(value), memory.model_mut(slot as usize));
+        }
+        memory
+    }
+
+    /// The model in a slot.
+    pub fn model(&self, slot: usize) -> &[f64] {
+        &self.values[slot * self.space.size()..][..self.space.size()]
+    }
+
+    /// The model in a slot.
+    pub fn model_mut(&mut self, slot: usize) -> &mut [f64] {
+        let size = self.space.size();
+        &mut self.values[slot * size..][..size]
+    }
+
+    /// Runs a tape.
+    ///
+    /// # Panics
+    /// If the tape names a slot that the memory does not have.
+    pub fn run(&mut self, tape: &Tape) {
+        let size = self.space.size();
+        let Self { space, scratch, values, first, second } = self;
+        let mut place = 0;
+        while let Some(part) = tape.part(&mut place) {
+            let (op, operands) = match part {
+                Part::Run(op, operands) => (op, operands),
+                Part::Region(region) => {
+                    // Undecided is neither.
+                    let sign = space.sign(&values[region.condition as usize * size..][..size]);
+                    region.skip_unless(sign.is_none_or(|sign| region.wants(sign)), &mut place);
+                    continue;
+                }
+            };
+            for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
+                let model = |slot: u32| &values[slot as usize * size..][..size];
+                let (a, b, c) = (model(operand.a), model(operand.b), model(operand.c));
+                match op {
+                    Op::Copy => first.copy_from_slice(a),
+                    Op::MulAdd | Op::MulSub | Op::NegMulAdd => {
+                        space.mul(a, b, second);
+                        match op {
+                            Op::MulAdd => space.add(second, c, first),
+                            Op::MulSub => space.sub(second, c, first),
+                            _ => space.sub(c, second, first),
+                        }
+                    }
+                    Op::Select => match space.sign(a) {
+                        Some(sign) => first.copy_from_slice(if sign <= 0.0 { c } else { b }),
+                        None => space.unknown(first),
+                    },
+                    Op::Unary(Unary::Tan) => {
+                        let mut cosine = vec![0.0; size];
+                        space.sin_cos(a, second, &mut cosine, scratch);
+                        space.binary(Binary::Div, second, &cosine, first, scratch);
+                    }
+                    Op::Unary(function) => space.unary(function, a, first, scratch),
+                    Op::Binary(function) => space.binary(function, a, b, first, scratch),
+                    Op::SinCos => {
+                        space.sin_cos(a, first, second, scratch);
+                        values[operand.b as usize * size..][..size].copy_from_slice(second);
+                    }
+                }
+                values[operand.d as usize * size..][..size].copy_from_slice(first);
+            }
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Enclosures of functions, against their values at points.
+
+use super::*;
+use proptest::prelude::*;
+
+/// Σ aᵣ ξ^r.
+fn value(space: &ModelSpace, a: &[f64], xi: &[f64]) -> f64 {
+    let monomials = space.jets().monomials();
+    (0..monomials.len())
+        .map(|r| a[r] * xi.iter().zip(monomials.exponents(r)).map(|(x, &p)| x.powi(p as i32)).product::<f64>())
+        .sum()
+}
+
+proptest! {
+    #[test]
+    fn models_enclose_what_they_are_computed_from(
+        order in 1..8_usize,
+        (a, b) in (prop::array::uniform3(-0.6..0.6_f64), prop::array::uniform3(-0.6..0.6_f64)),
+        (e, f) in (prop_oneof![Just(0.0), 0.0..0.1_f64], prop_oneof![Just(0.0), 0.0..0.1_f64]),
+        xi in prop::array::uniform2(-1.0..=1.0_f64),
+        (at, bt) in (-1.0..=1.0_f64, -1.0..=1.0_f64),
+    ) {
+        let space = ModelSpace::new(2, order);
+        let mut scratch = ModelScratch::new(&space);
+        let model = |c: &[f64; 3], offset: f64, e: f64| {
+            let mut model = vec![0.0; space.size()];
+            model[..3].copy_from_slice(c);
+            model[0] += offset;
+            model[space.size() - 1] = e;
+            model
+        };
+        let (a, b) = (model(&a, 0.0, e), model(&b, 2.0, f));
+        // Members of the models at ξ.
+        let (x, y) = (value(&space, &a, &xi) + at * e, value(&space, &b, &xi) + bt * f);
+        let mut out = vec![0.0; space.size()];
+        let mut second = out.clone();
+        let inside = |out: &[f64], exact: f64| {
+            let radius = out[space.size() - 1];
+            // The test's own rounding.
+            let close = (value(&space, out, &xi) - exact).abs() <= radius + 1e-14 * (1.0 + exact.abs());
+            prop_assert!(close, "{exact} is not within {radius:e} of {}", value(&space, out, &xi));
+            Ok(())
+        };
+        space.add(&a, &b, &mut out);
+        inside(&out, x + y)?;
+        space.sub(&a, &b, &mut out);
+        inside(&out, x - y)?;
+        space.mul(&a, &b, &mut out);
+        inside(&out, x * y)?;
+        space.div(&a, &b, &mut out, &mut scratch);
+        inside(&out, x / y)?;
+        space.unary(Unary::Sqrt, &b, &mut out, &mut scratch);
+        inside(&out, y.sqrt())?;
+        space.sin_cos(&b, &mut out, &mut second, &mut scratch);
+        inside(&out, y.sin())?;
+        inside(&second, y.cos())?;
+        space.scale(Interval::new(-0.3, -0.1), &a, &mut out);
+        inside(&out, -0.2 * x)?;
+    }
+}
+
+#[test]
+fn radii_fall_with_the_order() {
+    let radius = |order: usize| {
+        let space = ModelSpace::new(1, order);
+        let mut scratch = ModelScratch::new(&space);
+        let (mut a, mut out, mut second) = (vec![0.0; space.size()], vec![0.0; space.size()], vec![0.0; space.size()]);
+        space.variable(0, 0.9, 1.1, &mut a);
+        space.sin_cos(&a, &mut out, &mut second, &mut scratch);
+        second.copy_from_slice(&out);
+        space.div(&second, &a, &mut out, &mut scratch);
+        out[space.size() - 1]
+    };
+    // sin x / x is an entire function: its Taylor series falls faster than any power.
+    for order in 1..10 {
+        let (this, next) = (radius(order), radius(order + 1));
+        assert!(next < 0.2 * this + 5e-15, "{order}: {this:e}, then {next:e}");
+    }
+    assert!(radius(12) < 5e-15, "{:e}", radius(12));
+}
+
+#[test]
+fn what_cannot_be_bounded_is_unknown() {
+    let space = ModelSpace::new(1, 3);
+    let mut scratch = ModelScratch::new(&space);
+    let (mut a, mut out) = (vec![0.0; space.size()], vec![0.0; space.size()]);
+    space.variable(0, -0.1, 1.0, &mut a);
+    let one = [1.0, 0.0, 0.0, 0.0, 0.0];
+    space.div(&one, &a, &mut out, &mut scratch);
+    assert_eq!(out[4], f64::INFINITY);
+    for function in [Unary::Sqrt, Unary::Abs, Unary::Log] {
+        space.unary(function, &a, &mut out, &mut scratch);
+        assert_eq!(out[4], f64::INFINITY, "{function:?}");
+    }
+}

@@ -1,0 +1,208 @@
+//! Symbolic derivatives, memoised, with their sparsity.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node, Unary};
+
+/// A matrix of expressions of which most are zero: its nonzero entries by row, columns ascending.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SparseMatrix {
+    /// Number of columns.
+    pub columns: usize,
+    /// For each row, its entries (column, value).
+    pub rows: Vec<Vec<(usize, Expr)>>,
+}
+
+impl SparseMatrix {
+    /// A matrix without entries.
+    pub fn zero(rows: usize, columns: usize) -> Self {
+        Self { columns, rows: vec![Vec::new(); rows] }
+    }
+
+    /// Number of nonzero entries.
+    pub fn nonzeros(&self) -> usize {
+        self.rows.iter().map(Vec::len).sum()
+    }
+
+    /// All entries (row, column, value), row by row.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, Expr)> {
+        self.rows
+            .iter()
+            .enumerate()
+            .flat_map(|(row, entries)| entries.iter().map(move |&(column, value)| (row, column, value)))
+    }
+
+    /// Adds `value` to an entry.
+    pub fn add(&mut self, graph: &mut Graph, row: usize, column: usize, value: Expr) {
+        if graph.is_zero(value) {
+            return;
+        }
+        let entries = &mut self.rows[row];
+        match entries.binary_search_by_key(&column, |entry| entry.0) {
+            Ok(place) => {
+                entries[place].1 = graph.add(entries[place].1, value);
+                if graph.is_zero(entries[place].1) {
+                    entries.remove(place);
+                }
+            }
+            Err(place) => entries.insert(place, (column, value)),
+        }
+    }
+}
+
+impl Graph {
+    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken;
+    /// a guarded value is taken to be continuous where its condition changes sign.
+    pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
+        let order = self.reachable(&[of]);
+        self.derivative_along(&order, of, by)
+    }
+
+    /// `∂rows/∂by` with its sparsity: only what a row depends on is looked at, so the work grows with the nonzeros.
+    pub fn jacobian(&mut self, rows: &[Expr], by: &[Expr]) -> SparseMatrix {
+        let column_of: FxHashMap<Expr, usize> =
+            by.iter().enumerate().map(|(column, &symbol)| (symbol, column)).collect();
+        let mut matrix = SparseMatrix::zero(rows.len(), by.len());
+        for (row, &of) in rows.iter().enumerate() {
+            let order = self.reachable(&[of]);
+            let mut columns: Vec<usize> = order.iter().filter_map(|symbol| column_of.get(symbol).copied()).collect();
+            columns.sort_unstable();
+            for column in columns {
+                let value = self.derivative_along(&order, of, by[column]);
+                if !self.is_zero(value) {
+                    matrix.rows[row].push((column, value));
+                }
+            }
+        }
+        matrix
+    }
+
+    /// `order` holds all that `of` needs, children first.
+    fn derivative_along(&mut self, order: &[Expr], of: Expr, by: Expr) -> Expr {
+        let zero = self.constant(0.0);
+        let one = self.constant(1.0);
+        let mut dependent = FxHashSet::default();
+        for &expr in order {
+            let node = self.node(expr);
+            if expr != by && !node.children().any(|child| dependent.contains(&child)) {
+                continue;
+            }
+            dependent.insert(expr);
+            if !self.derivatives.contains_key(&(expr, by)) {
+                let derivative = if expr == by { one } else { self.apply_rule(expr, node, by, zero) };
+                self.derivatives.insert((expr, by), derivative);
+            }
+        }
+        self.derivatives.get(&(of, by)).copied().unwrap_or(zero)
+    }
+
+    /// The chain rule at one node; the children's derivatives are known, and zero where none is.
+    fn apply_rule(&mut self, expr: Expr, node: Node, by: Expr, zero: Expr) -> Expr {
+        let known = |graph: &Graph, child: Expr| graph.derivatives.get(&(child, by)).copied().unwrap_or(zero);
+        match node {
+            Node::Constant(_) | Node::Symbol(_) => zero,
+            Node::Unary(function, a) => {
+                let da = known(self, a);
+                let outer = self.unary_rule(function, expr, a);
+                self.mul(outer, da)
+            }
+            Node::Binary(function, a, b) => {
+                let (da, db) = (known(self, a), known(self, b));
+                self.binary_rule(function, expr, (a, da), (b, db))
+            }
+        }
+    }
+
+    /// `f'(a)`, where `value = f(a)`.
+    fn unary_rule(&mut self, function: Unary, value: Expr, a: Expr) -> Expr {
+        let one = self.constant(1.0);
+        match function {
+            Unary::Neg => self.constant(-1.0),
+            Unary::Sin => self.cos(a),
+            Unary::Cos => {
+                let sine = self.sin(a);
+                self.neg(sine)
+            }
+            Unary::Tan => {
+                let square = self.mul(value, value);
+                self.add(one, square)
+            }
+            Unary::Asin | Unary::Acos => {
+                let square = self.mul(a, a);
+                let rest = self.sub(one, square);
+                let root = self.sqrt(rest);
+                let slope = self.div(one, root);
+                if function == Unary::Asin { slope } else { self.neg(slope) }
+            }
+            Unary::Atan => {
+                let square = self.mul(a, a);
+                let sum = self.add(one, square);
+                self.div(one, sum)
+            }
+            Unary::Sqrt => {
+                let half = self.constant(0.5);
+                self.div(half, value)
+            }
+            Unary::Exp => value,
+            Unary::Log => self.div(one, a),
+            Unary::Abs => self.unary(Unary::Sign, a),
+            Unary::Tanh => {
+                let square = self.mul(value, value);
+                self.sub(one, square)
+            }
+            Unary::Sign => self.constant(0.0),
+            Unary::Spline(spline, order) => self.unary(Unary::Spline(spline, order + 1), a),
+        }
+    }
+
+    fn binary_rule(&mut self, function: Binary, value: Expr, (a, da): (Expr, Expr), (b, db): (Expr, Expr)) -> Expr {
+        match function {
+            Binary::Add => self.add(da, db),
+            Binary::Sub => self.sub(da, db),
+            Binary::Mul => {
+                let (left, right) = (self.mul(da, b), self.mul(a, db));
+                self.add(left, right)
+            }
+            // (a/b)' = (a' - (a/b) b') / b
+            Binary::Div => {
+                let product = self.mul(value, db);
+                let numerator = self.sub(da, product);
+                self.div(numerator, b)
+            }
+            // (a^b)' = b a^(b-1) a' + a^b log(a) b'
+            Binary::Pow => {
+                let one = self.constant(1.0);
+                let less = self.sub(b, one);
+                let power = self.binary(Binary::Pow, a, less);
+                let slope = self.mul(b, power);
+                let base_part = self.mul(slope, da);
+                if self.is_zero(db) {
+                    return base_part;
+                }
+                let log = self.unary(Unary::Log, a);
+                let growth = self.mul(value, log);
+                let exponent_part = self.mul(growth, db);
+                self.add(base_part, exponent_part)
+            }
+            // atan2(a, b)' = (b a' - a b') / (a² + b²)
+            Binary::Atan2 => {
+                let (left, right) = (self.mul(b, da), self.mul(a, db));
+                let numerator = self.sub(left, right);
+                let (aa, bb) = (self.mul(a, a), self.mul(b, b));
+                let square = self.add(aa, bb);
+                self.div(numerator, square)
+            }
+            Binary::Where | Binary::Elsewhere => self.binary(function, a, db),
+            // max = (a + b + |a - b|)/2 and min = (a + b - |a - b|)/2, differentiated.
+            Binary::Min | Binary::Max => {
+                let gap = self.sub(a, b);
+                let side = self.unary(Unary::Sign, gap);
+                let (total, spread) = (self.add(da, db), self.sub(da, db));
+                let shift = self.mul(side, spread);
+                let doubled = if function == Binary::Max { self.add(total, shift) } else { self.sub(total, shift) };
+                self.scale(0.5, doubled)
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! The expression graph: an arena of hash-consed nodes.
+//!
+//! Equal subexpressions are one node, so common subexpressions cost nothing to find. Children always come before
+//! their parents in the arena, so every pass over a graph is a loop over ascending indices and none recurses.
+
+use rustc_hash::FxHashMap;
+
+use super::node::{Binary, Expr, Node, Unary};
+
+/// An arena of expressions. Constant folding and the algebraic identities are applied as nodes are made.
+///
+/// The identities are those of real algebra (`0 x = 0` also where x could be infinite); none changes the order of
+/// floating-point operations otherwise.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    known: FxHashMap<Node, Expr>,
+    names: Vec<String>,
+    symbols: FxHashMap<String, Expr>,
+    most: Option<usize>,
+    pub(crate) derivatives: FxHashMap<(Expr, Expr), Expr>,
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether the graph has no nodes.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// From now on the graph is full where it has more nodes; it goes on growing, but who fills it may look and give up.
+    pub fn limit(&mut self, most: Option<usize>) {
+        self.most = most;
+    }
+
+    /// Whether there are more nodes than the limit, if there is one.
+    pub fn is_full(&self) -> bool {
+        self.most.is_some_and(|most| self.nodes.len() > most)
+    }
+
+    /// Every node but the first `known`, children before parents.
+    pub fn exprs_after(&self, known: usize) -> impl Iterator<Item = Expr> + use<> {
+        (known as u32..self.nodes.len() as u32).map(Expr)
+    }
+
+    /// The node behind a handle.
+    pub fn node(&self, expr: Expr) -> Node {
+        self.nodes[expr.index()]
+    }
+
+    /// The symbol of this name; made if it does not exist.
+    pub fn symbol(&mut self, name: &str) -> Expr {
+        if let Some(&known) = self.symbols.get(name) {
+            return known;
+        }
+        let position = self.names.len() as u32;
+        self.names.push(name.to_owned());
+        let expr = self.intern(Node::Symbol(position));
+        self.symbols.insert(name.to_owned(), expr);
+        expr
+    }
+
+    /// Name of a symbol; `None` for any other node.
+    pub fn symbol_name(&self, expr: Expr) -> Option<&str> {
+        match self.node(expr) {
+            Node::Symbol(position) => Some(&self.names[position as usize]),
+            _ => None,
+        }
+    }
+
+    /// A number. Negative zero becomes zero, so that there is one of it.
+    pub fn constant(&mut self, value: f64) -> Expr {
+        let value = if value == 0.0 { 0.0 } else { value };
+        self.intern(Node::Constant(value.to_bits()))
+    }
+
+    /// The number a node stands for, if it is one.
+    pub fn as_constant(&self, expr: Expr) -> Option<f64> {
+        match self.node(expr) {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    /// Whether the node is the number zero.
+    pub fn is_zero(&self, expr: Expr) -> bool {
+        self.as_constant(expr) == Some(0.0)
+    }
+
+    pub(super) fn intern(&mut self, node: Node) -> Expr {
+        if let Some(&known) = self.known.get(&node) {
+            return known;
+        }
+        let expr = Expr(u32::try_from(self.nodes.len()).expect("a graph has fewer than 2^32 nodes: memory ends first"));
+        self.nodes.push(node);
+        self.known.insert(node, expr);
+        expr
+    }
+
+    /// `a + b`.
+    pub fn add(&mut self, a: Expr, b: Expr) -> Expr {
+        self.binary(Binary::Add, a, b)
+    }
+
+    /// `a - b`.
+    pub fn sub(&mut self, a: Expr, b: Expr) -> Expr {
+        self.binary(Binary::Sub, a, b)
+    }
+
+    /// `a b`.
+    pub fn mul(&mut self, a: Expr, b: Expr) -> Expr {
+        self.binary(Binary::Mul, a, b)
+    }
+
+    /// `a / b`.
+    pub fn div(&mut self, a: Expr, b: Expr) -> Expr {
+        self.binary(Binary::Div, a, b)
+    }
+
+    /// `-a`.
+    pub fn neg(&mut self, a: Expr) -> Expr {
+        self.unary(Unary::Neg, a)
+    }
+
+    /// `sin a`.
+    pub fn sin(&mut self, a: Expr) -> Expr {
+        self.unary(Unary::Sin, a)
+    }
+
+    /// `cos a`.
+    pub fn cos(&mut self, a: Expr) -> Expr {
+        self.unary(Unary::Cos, a)
+    }
+
+    /// `√a`.
+    pub fn sqrt(&mut self, a: Expr) -> Expr {
+        self.unary(Unary::Sqrt, a)
+    }
+
+    /// `factor · a`.
+    pub fn scale(&mut self, factor: f64, a: Expr) -> Expr {
+        let factor = self.constant(factor);
+        self.mul(factor, a)
+    }
+
+    /// The sum of all terms; zero if there are none.
+    pub fn sum(&mut self, terms: impl IntoIterator<Item = Expr>) -> Expr {
+        let mut total = self.constant(0.0);
+        for term in terms {
+            total = self.add(total, term);
+        }
+        total
+    }
+
+    /// `Σ aᵢ bᵢ`; both of one length.
+    pub fn dot(&mut self, a: &[Expr], b: &[Expr]) -> Expr {
+        assert_eq!(a.len(), b.len(), "a dot product is of two vectors of one length");
+        let mut total = self.constant(0.0);
+        for (&x, &y) in a.iter().zip(b) {
+            let product = self.mul(x, y);
+            total = self.add(total, product);
+        }
+        total
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_subexpressions_are_one_node() {
+        let mut g = Graph::new();
+        let (x, y) = (g.symbol("x"), g.symbol("y"));
+        assert_eq!(g.add(x, y), g.add(y, x));
+        let (p, q) = (g.mul(x, y), g.mul(y, x));
+        assert_eq!(p, q);
+        assert_eq!(g.sub(p, q), g.constant(0.0));
+    }
+}

@@ -1,0 +1,17 @@
+//! Expressions: a graph of nodes, built with operators, differentiated and integrated.
+
+mod derivative;
+mod folding;
+mod graph;
+mod integral;
+mod node;
+mod passes;
+mod scalar;
+mod spline;
+
+pub use derivative::SparseMatrix;
+pub use graph::Graph;
+pub use node::{Binary, Expr, Node, Unary};
+pub(crate) use passes::Choice;
+pub use scalar::{Builder, Scalar};
+pub use spline::{Spline, SplineError};

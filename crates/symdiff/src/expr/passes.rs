@@ -1,0 +1,124 @@
+//! Passes over whole expressions: what they reach, substitution, evaluation.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node};
+use crate::eval::functions;
+
+/// A sum of something under a condition and something elsewhere.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    pub condition: Expr,
+    /// Both summands, and what they guard: wanted where the condition is positive, and elsewhere.
+    pub halves: [(Expr, Expr); 2],
+}
+
+impl Graph {
+    /// What `x + y` is where it is a [choice](Self::select).
+    pub(crate) fn choice(&self, x: Expr, y: Expr) -> Option<Choice> {
+        let half = |wanted: Binary, expr: Expr| match self.node(expr) {
+            Node::Binary(function, condition, value) if function == wanted => Some((condition, value)),
+            _ => None,
+        };
+        [(x, y), (y, x)].into_iter().find_map(|(x, y)| {
+            let ((condition, a), (same, b)) = (half(Binary::Where, x)?, half(Binary::Elsewhere, y)?);
+            (condition == same).then_some(Choice { condition, halves: [(x, a), (y, b)] })
+        })
+    }
+
+    /// `roots` as they are where `condition` is positive (`holds`), or where it is not.
+    pub fn assume(&mut self, roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr> {
+        let zero = self.constant(0.0);
+        self.rebuild(roots, |_, node, image| match node {
+            Node::Binary(function @ (Binary::Where | Binary::Elsewhere), given, value) if given == condition => {
+                Some(if holds == (function == Binary::Where) { image[&value] } else { zero })
+            }
+            _ => None,
+        })
+    }
+
+    /// All nodes that `roots` need, themselves included, children before parents.
+    pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
+        let mut seen = FxHashSet::default();
+        let mut stack = roots.to_vec();
+        let mut found = Vec::new();
+        while let Some(expr) = stack.pop() {
+            if seen.insert(expr) {
+                found.push(expr);
+                stack.extend(self.node(expr).children());
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// The symbols that `roots` depend on, in the order they were made.
+    pub fn symbols_of(&self, roots: &[Expr]) -> Vec<Expr> {
+        let mut found = self.reachable(roots);
+        found.retain(|&expr| matches!(self.node(expr), Node::Symbol(_)));
+        found
+    }
+
+    /// `roots` with every key of `replacements` replaced by its value.
+    pub fn substitute(&mut self, roots: &[Expr], replacements: &FxHashMap<Expr, Expr>) -> Vec<Expr> {
+        self.rebuild(roots, |expr, _, _| replacements.get(&expr).copied())
+    }
+
+    /// `roots` anew, with those nodes replaced for which there is something else, by the images of what is below them.
+    fn rebuild(
+        &mut self,
+        roots: &[Expr],
+        replaced: impl Fn(Expr, Node, &FxHashMap<Expr, Expr>) -> Option<Expr>,
+    ) -> Vec<Expr> {
+        let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+        for expr in self.reachable(roots) {
+            let node = self.node(expr);
+            let new = match (replaced(expr, node, &image), node) {
+                (Some(replacement), _) => replacement,
+                (None, Node::Constant(_) | Node::Symbol(_)) => expr,
+                (None, Node::Unary(function, a)) => self.unary(function, image[&a]),
+                (None, Node::Binary(function, a, b)) => self.binary(function, image[&a], image[&b]),
+            };
+            image.insert(expr, new);
+        }
+        roots.iter().map(|root| image[root]).collect()
+    }
+
+    /// Values of `roots` where each symbol has the value that `value_of` gives it: one pass, in index order, with the
+    /// same arithmetic as the tapes.
+    pub fn evaluate(&self, roots: &[Expr], mut value_of: impl FnMut(Expr) -> f64) -> Vec<f64> {
+        let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
+        for expr in self.reachable(roots) {
+            let value = match self.node(expr) {
+                Node::Constant(bits) => f64::from_bits(bits),
+                Node::Symbol(_) => value_of(expr),
+                Node::Unary(function, a) => functions::unary(function, values[&a]),
+                // A sum would lose the sign of zero, which instructions keep.
+                Node::Binary(Binary::Add, x, y) if let Some(choice) = self.choice(x, y) => {
+                    let [(_, a), (_, b)] = choice.halves;
+                    functions::select(values[&choice.condition], values[&a], values[&b])
+                }
+                Node::Binary(function, a, b) => functions::binary(function, values[&a], values[&b]),
+            };
+            values.insert(expr, value);
+        }
+        roots.iter().map(|root| values[root]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn substitution_rebuilds_and_folds() {
+        let mut g = Graph::new();
+        let (x, y) = (g.symbol("x"), g.symbol("y"));
+        let product = g.mul(x, y);
+        let sum = g.add(product, y);
+        let zero = g.constant(0.0);
+        let replaced = g.substitute(&[sum], &FxHashMap::from_iter([(x, zero)]));
+        assert_eq!(replaced, [y]);
+    }
+}

@@ -1,0 +1,341 @@
+//! Expressions with operators: a [`Scalar`] is a node together with its graph.
+//!
+//! Each operator is the [`Graph`] method of the same meaning, applied to its operands from left to right.
+
+use std::cell::{Ref, RefCell};
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use super::derivative::SparseMatrix;
+use super::graph::Graph;
+use super::node::{Binary, Expr, Node, Unary};
+
+/// A graph under construction, which any number of [`Scalar`]s add nodes to.
+#[derive(Debug, Default)]
+pub struct Builder {
+    graph: RefCell<Graph>,
+}
+
+impl Builder {
+    /// With an empty graph.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The finished graph.
+    pub fn finish(self) -> Graph {
+        self.graph.into_inner()
+    }
+
+    /// The graph as it is now.
+    ///
+    /// # Panics
+    /// Operators panic while the reference is held: drop it before the next one.
+    pub fn graph(&self) -> Ref<'_, Graph> {
+        self.graph.borrow()
+    }
+
+    /// Hands the graph to a pass that works on nodes.
+    ///
+    /// # Panics
+    /// Where `pass` itself uses the builder.
+    pub fn with<R>(&self, pass: impl FnOnce(&mut Graph) -> R) -> R {
+        pass(&mut self.graph.borrow_mut())
+    }
+
+    /// A node, to compute with.
+    pub fn scalar(&self, expr: Expr) -> Scalar<'_> {
+        Scalar { builder: self, expr }
+    }
+
+    /// A number.
+    pub fn number(&self, value: f64) -> Scalar<'_> {
+        self.scalar(self.with(|graph| graph.constant(value)))
+    }
+
+    /// The symbol of this name; made if it does not exist.
+    pub fn variable(&self, name: &str) -> Scalar<'_> {
+        self.scalar(self.with(|graph| graph.symbol(name)))
+    }
+}
+
+/// A node of a graph that is being built, with operators.
+///
+/// ```
+/// use symdiff::Builder;
+///
+/// let builder = Builder::new();
+/// let x = builder.variable("x");
+/// let y = (2.0 * x).sin() / (1.0 + x.powi(2));
+/// assert_eq!(builder.graph().evaluate(&[y.expr()], |_| 0.5), [1.0_f64.sin() / 1.25]);
+/// ```
+#[derive(Clone, Copy)]
+pub struct Scalar<'g> {
+    builder: &'g Builder,
+    expr: Expr,
+}
+
+impl<'g> Scalar<'g> {
+    /// The node.
+    pub fn expr(self) -> Expr {
+        self.expr
+    }
+
+    /// What it belongs to.
+    pub fn builder(self) -> &'g Builder {
+        self.builder
+    }
+
+    /// The number it stands for, if it is one.
+    pub fn as_constant(self) -> Option<f64> {
+        self.builder.graph().as_constant(self.expr)
+    }
+
+    /// Whether it is the number zero.
+    pub fn is_zero(self) -> bool {
+        self.builder.graph().is_zero(self.expr)
+    }
+
+    fn unary(self, function: Unary) -> Self {
+        self.builder.scalar(self.builder.with(|graph| graph.unary(function, self.expr)))
+    }
+
+    fn binary(self, function: Binary, other: Self) -> Self {
+        debug_assert!(std::ptr::eq(self.builder, other.builder), "both operands are nodes of one graph");
+        self.builder.scalar(self.builder.with(|graph| graph.binary(function, self.expr, other.expr)))
+    }
+
+    /// `√self`
+    pub fn sqrt(self) -> Self {
+        self.unary(Unary::Sqrt)
+    }
+
+    /// `sin self`
+    pub fn sin(self) -> Self {
+        self.unary(Unary::Sin)
+    }
+
+    /// `cos self`
+    pub fn cos(self) -> Self {
+        self.unary(Unary::Cos)
+    }
+
+    /// `tanh self`
+    pub fn tanh(self) -> Self {
+        self.unary(Unary::Tanh)
+    }
+
+    /// `exp self`
+    pub fn exp(self) -> Self {
+        self.unary(Unary::Exp)
+    }
+
+    /// The natural logarithm.
+    pub fn ln(self) -> Self {
+        self.unary(Unary::Log)
+    }
+
+    /// `|self|`
+    pub fn abs(self) -> Self {
+        self.unary(Unary::Abs)
+    }
+
+    /// −1, 0 or 1.
+    pub fn sign(self) -> Self {
+        self.unary(Unary::Sign)
+    }
+
+    /// A whole power, by repeated squaring.
+    pub fn powi(self, exponent: i32) -> Self {
+        self.builder.scalar(self.builder.with(|graph| graph.powi(self.expr, exponent)))
+    }
+
+    /// A power.
+    pub fn pow(self, exponent: Self) -> Self {
+        self.binary(Binary::Pow, exponent)
+    }
+
+    /// The angle of (`x`, `self`) to the x axis, between −π and π.
+    pub fn atan2(self, x: Self) -> Self {
+        self.binary(Binary::Atan2, x)
+    }
+
+    /// The smaller of two.
+    pub fn min(self, other: Self) -> Self {
+        self.binary(Binary::Min, other)
+    }
+
+    /// The larger of two.
+    pub fn max(self, other: Self) -> Self {
+        self.binary(Binary::Max, other)
+    }
+
+    /// Itself where `condition` is positive, exactly 0 elsewhere: [`Graph::only_where`].
+    pub fn only_where(self, condition: Self) -> Self {
+        condition.binary(Binary::Where, self)
+    }
+
+    /// `a` where it is positive, `b` elsewhere.
+    pub fn select(self, a: Self, b: Self) -> Self {
+        self.builder.scalar(self.builder.with(|graph| graph.select(self.expr, a.expr, b.expr)))
+    }
+
+    /// `∂self/∂by`, where `by` is a symbol: [`Graph::derivative`].
+    pub fn derivative(self, by: Self) -> Self {
+        self.builder.scalar(self.builder.with(|graph| graph.derivative(self.expr, by.expr)))
+    }
+
+    /// ∫ `self` d`by` from 0, where `by` is a symbol; `None` where there is no formula for it: [`Graph::integral`].
+    pub fn integral(self, by: Self) -> Option<Self> {
+        let integral = self.builder.with(|graph| graph.integral(self.expr, by.expr));
+        integral.map(|expr| self.builder.scalar(expr))
+    }
+}
+
+impl fmt::Debug for Scalar<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.expr.fmt(f)
+    }
+}
+
+/// Whether both are the same node.
+impl PartialEq for Scalar<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.expr == other.expr && std::ptr::eq(self.builder, other.builder)
+    }
+}
+
+impl Neg for Scalar<'_> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self.unary(Unary::Neg)
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $method:ident, $assign:ident $method_assign:ident;)*) => {$(
+        impl $operator for Scalar<'_> {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                self.binary(Binary::$operator, other)
+            }
+        }
+
+        impl $operator<f64> for Scalar<'_> {
+            type Output = Self;
+
+            fn $method(self, other: f64) -> Self {
+                self.$method(self.builder.number(other))
+            }
+        }
+
+        impl<'g> $operator<Scalar<'g>> for f64 {
+            type Output = Scalar<'g>;
+
+            fn $method(self, other: Scalar<'g>) -> Scalar<'g> {
+                other.builder.number(self).$method(other)
+            }
+        }
+
+        impl $assign for Scalar<'_> {
+            fn $method_assign(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add, AddAssign add_assign;
+    Sub sub, SubAssign sub_assign;
+    Mul mul, MulAssign mul_assign;
+    Div div, DivAssign div_assign;
+}
+
+// What the mechanics calls on nodes without operators yet.
+macro_rules! delegated {
+    ($borrow:ident: $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+        impl Builder {
+            $(
+                #[doc = concat!("[`Graph::", stringify!($name), "`].")]
+                pub fn $name(&self, $($argument: $kind),*) -> $result {
+                    self.graph.$borrow().$name($($argument),*)
+                }
+            )*
+        }
+    };
+}
+
+delegated! {
+    borrow_mut:
+    add(a: Expr, b: Expr) -> Expr;
+    assume(roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr>;
+    binary(function: Binary, a: Expr, b: Expr) -> Expr;
+    constant(value: f64) -> Expr;
+    cos(a: Expr) -> Expr;
+    derivative(of: Expr, by: Expr) -> Expr;
+    div(a: Expr, b: Expr) -> Expr;
+    dot(a: &[Expr], b: &[Expr]) -> Expr;
+    integral(of: Expr, by: Expr) -> Option<Expr>;
+    jacobian(rows: &[Expr], by: &[Expr]) -> SparseMatrix;
+    mul(a: Expr, b: Expr) -> Expr;
+    neg(a: Expr) -> Expr;
+    only_where(condition: Expr, value: Expr) -> Expr;
+    powi(a: Expr, exponent: i32) -> Expr;
+    scale(factor: f64, a: Expr) -> Expr;
+    select(condition: Expr, a: Expr, b: Expr) -> Expr;
+    sin(a: Expr) -> Expr;
+    sqrt(a: Expr) -> Expr;
+    sub(a: Expr, b: Expr) -> Expr;
+    symbol(name: &str) -> Expr;
+    unary(function: Unary, a: Expr) -> Expr;
+}
+
+delegated! {
+    borrow:
+    as_constant(a: Expr) -> Option<f64>;
+    evaluate(roots: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64>;
+    is_empty() -> bool;
+    is_zero(a: Expr) -> bool;
+    len() -> usize;
+    node(a: Expr) -> Node;
+    symbols_of(roots: &[Expr]) -> Vec<Expr>;
+}
+
+impl Builder {
+    /// [`Graph::sum`].
+    pub fn sum(&self, terms: impl IntoIterator<Item = Expr>) -> Expr {
+        let terms: Vec<Expr> = terms.into_iter().collect();
+        self.with(|graph| graph.sum(terms))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operators_make_the_nodes_of_the_methods() {
+        let (builder, mut graph) = (Builder::new(), Graph::new());
+        let [x, y] = ["x", "y"].map(|name| builder.variable(name));
+        let (a, b) = (graph.symbol("x"), graph.symbol("y"));
+        let mut sum = x;
+        sum += y;
+        let found = [x + y * x, -x / y - 1.0, 0.5 * x, x.only_where(y), y.select(x, y), (x * y).derivative(x), sum - y];
+        let product = graph.mul(b, a);
+        let first = graph.add(a, product);
+        let negative = graph.neg(a);
+        let (quotient, one) = (graph.div(negative, b), graph.constant(1.0));
+        let second = graph.sub(quotient, one);
+        let (third, fourth, fifth) = (graph.scale(0.5, a), graph.only_where(b, a), graph.select(b, a, b));
+        let sixth = graph.derivative(product, a);
+        let sum = graph.add(a, b);
+        let wanted = [first, second, third, fourth, fifth, sixth, graph.sub(sum, b)];
+        assert_eq!(found.map(Scalar::expr), wanted);
+        let graphs = [builder.finish(), graph].map(|graph| graph.exprs_after(0).map(|expr| graph.node(expr)).collect());
+        let [found, wanted]: [Vec<Node>; 2] = graphs;
+        assert_eq!(found, wanted);
+    }
+}

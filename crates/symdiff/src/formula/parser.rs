@@ -1,0 +1,274 @@
+//! Text → terms, by recursive descent.
+
+use std::ops::Range;
+
+use super::{FUNCTIONS, Function, SyntaxError, Term};
+use crate::expr::{Binary, Spline, Unary};
+
+/// How deep parentheses, signs and powers may nest.
+const MAX_DEPTH: usize = 100;
+
+/// The terms of a formula with their places.
+///
+/// # Errors
+/// The first syntax error.
+pub(super) fn terms(text: &str, tables: &[(&str, Spline)]) -> Result<Vec<(Term, Range<usize>)>, SyntaxError> {
+    let mut parser = Parser { text, tables, position: 0, depth: 0, terms: Vec::new() };
+    parser.sum()?;
+    parser.skip_space();
+    if parser.position < text.len() {
+        return Err(parser.unexpected("an operator or the end of the formula"));
+    }
+    Ok(parser.terms)
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    tables: &'t [(&'t str, Spline)],
+    position: usize,
+    depth: usize,
+    terms: Vec<(Term, Range<usize>)>,
+}
+
+impl Parser<'_> {
+    fn skip_space(&mut self) {
+        self.position = self.text.len() - self.text[self.position..].trim_start().len();
+    }
+
+    /// The next character that is not a space.
+    fn peek(&mut self) -> Option<char> {
+        self.skip_space();
+        self.text[self.position..].chars().next()
+    }
+
+    fn take(&mut self, wanted: char) -> bool {
+        let found = self.peek() == Some(wanted);
+        if found {
+            self.position += wanted.len_utf8();
+        }
+        found
+    }
+
+    fn push(&mut self, term: Term, span: Range<usize>) -> usize {
+        self.terms.push((term, span));
+        self.terms.len() - 1
+    }
+
+    fn start_of(&self, term: usize) -> usize {
+        self.terms[term].1.start
+    }
+
+    fn binary(&mut self, function: Binary, left: usize, right: usize) -> usize {
+        let span = self.start_of(left)..self.position;
+        self.push(Term::Binary(function, left, right), span)
+    }
+
+    fn unexpected(&mut self, expected: &str) -> SyntaxError {
+        match self.peek() {
+            Some(found) => SyntaxError {
+                message: format!("unexpected `{found}` in formula"),
+                span: self.position..self.position + found.len_utf8(),
+                help: Some(match found {
+                    '=' => "comparisons are not part of formulas".to_owned(),
+                    '*' => "a power is written `^`".to_owned(),
+                    _ => format!("expected {expected}"),
+                }),
+            },
+            None => SyntaxError {
+                message: "the formula ends too early".to_owned(),
+                span: self.text.len()..self.text.len(),
+                help: Some(format!("expected {expected}")),
+            },
+        }
+    }
+
+    /// Runs `inner` one level deeper.
+    fn nested(&mut self, inner: impl FnOnce(&mut Self) -> Result<usize, SyntaxError>) -> Result<usize, SyntaxError> {
+        if self.depth == MAX_DEPTH {
+            return Err(SyntaxError {
+                message: format!("the formula nests deeper than {MAX_DEPTH} levels"),
+                span: self.position..self.text.len().min(self.position + 1),
+                help: Some("split it into parameters".to_owned()),
+            });
+        }
+        self.depth += 1;
+        let result = inner(self);
+        self.depth -= 1;
+        result
+    }
+
+    fn sum(&mut self) -> Result<usize, SyntaxError> {
+        let mut left = self.product()?;
+        loop {
+            let function = if self.take('+') {
+                Binary::Add
+            } else if self.take('-') {
+                Binary::Sub
+            } else {
+                return Ok(left);
+            };
+            let right = self.product()?;
+            left = self.binary(function, left, right);
+        }
+    }
+
+    fn product(&mut self) -> Result<usize, SyntaxError> {
+        let mut left = self.signed()?;
+        loop {
+            let function = if self.take('*') {
+                Binary::Mul
+            } else if self.take('/') {
+                Binary::Div
+            } else {
+                return Ok(left);
+            };
+            let right = self.signed()?;
+            left = self.binary(function, left, right);
+        }
+    }
+
+    fn signed(&mut self) -> Result<usize, SyntaxError> {
+        self.nested(|parser| {
+            parser.skip_space();
+            let start = parser.position;
+            if parser.take('-') {
+                let inner = parser.signed()?;
+                Ok(parser.push(Term::Unary(Unary::Neg, inner), start..parser.position))
+            } else if parser.take('+') {
+                parser.signed()
+            } else {
+                parser.power()
+            }
+        })
+    }
+
+    fn power(&mut self) -> Result<usize, SyntaxError> {
+        let base = self.atom()?;
+        if self.take('^') {
+            let exponent = self.signed()?;
+            return Ok(self.binary(Binary::Pow, base, exponent));
+        }
+        Ok(base)
+    }
+
+    fn atom(&mut self) -> Result<usize, SyntaxError> {
+        match self.peek() {
+            Some('(') => self.nested(|parser| {
+                parser.take('(');
+                let inner = parser.sum()?;
+                parser.close()?;
+                Ok(inner)
+            }),
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() || c == '_' => self.name_or_call(),
+            _ => Err(self.unexpected("a number, a name or `(`")),
+        }
+    }
+
+    fn close(&mut self) -> Result<(), SyntaxError> {
+        if self.take(')') { Ok(()) } else { Err(self.unexpected("`)`")) }
+    }
+
+    fn number(&mut self) -> Result<usize, SyntaxError> {
+        let start = self.position;
+        let rest = &self.text.as_bytes()[start..];
+        let digits = |from: usize| from + rest[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let mut end = digits(0);
+        if rest.get(end) == Some(&b'.') {
+            end = digits(end + 1);
+        }
+        if matches!(rest.get(end), Some(b'e' | b'E')) {
+            let sign = usize::from(matches!(rest.get(end + 1), Some(b'+' | b'-')));
+            let after = digits(end + 1 + sign);
+            if after > end + 1 + sign {
+                end = after;
+            }
+        }
+        self.position = start + end;
+        let span = start..self.position;
+        match self.text[span.clone()].parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(self.push(Term::Number(value), span)),
+            _ => Err(SyntaxError {
+                message: format!("`{}` is not a finite number", &self.text[span.clone()]),
+                span,
+                help: None,
+            }),
+        }
+    }
+
+    fn name_or_call(&mut self) -> Result<usize, SyntaxError> {
+        let start = self.position;
+        let rest = &self.text[start..];
+        let mut length = 0;
+        loop {
+            let part = &rest[length..];
+            let end = part.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(part.len());
+            length += end;
+            // A dot belongs to the name only if a name goes on behind it.
+            let mut after = rest[length..].chars();
+            match (after.next(), after.next()) {
+                (Some('.'), Some(c)) if c.is_alphabetic() || c == '_' => length += 1,
+                _ => break,
+            }
+        }
+        self.position = start + length;
+        let name = &rest[..length];
+        let span = start..self.position;
+        if self.peek() == Some('(') {
+            return self.call(name, span);
+        }
+        if name == "pi" {
+            return Ok(self.push(Term::Number(std::f64::consts::PI), span));
+        }
+        if FUNCTIONS.iter().any(|known| known.name == name) || self.tables.iter().any(|(table, _)| *table == name) {
+            return Err(SyntaxError {
+                message: format!("`{name}` is a function"),
+                span,
+                help: Some(format!("give it its argument: `{name}(…)`")),
+            });
+        }
+        Ok(self.push(Term::Name(name.to_owned()), span))
+    }
+
+    fn call(&mut self, name: &str, span: Range<usize>) -> Result<usize, SyntaxError> {
+        let table = self.tables.iter().find(|(known, _)| *known == name);
+        let function = match table {
+            Some((_, spline)) => Some(Function::Unary(Unary::Spline(*spline, 0))),
+            None => FUNCTIONS.iter().find(|known| known.name == name).map(|known| known.function),
+        };
+        let Some(function) = function else {
+            let known: Vec<&str> =
+                FUNCTIONS.iter().map(|known| known.name).chain(self.tables.iter().map(|(known, _)| *known)).collect();
+            return Err(SyntaxError {
+                message: format!("unknown function `{name}`"),
+                span,
+                help: Some(format!("the functions are {}; a product needs its `*`", known.join(", "))),
+            });
+        };
+        self.nested(|parser| {
+            parser.take('(');
+            let first = parser.sum()?;
+            let second = if parser.take(',') { Some(parser.sum()?) } else { None };
+            if second.is_some() && parser.peek() == Some(',') {
+                return Err(wrong_count(name, span.start..parser.position + 1, function));
+            }
+            parser.close()?;
+            let span = span.start..parser.position;
+            match (function, second) {
+                (Function::Unary(function), None) => Ok(parser.push(Term::Unary(function, first), span)),
+                (Function::Binary(function), Some(second)) => {
+                    Ok(parser.push(Term::Binary(function, first, second), span))
+                }
+                _ => Err(wrong_count(name, span, function)),
+            }
+        })
+    }
+}
+
+fn wrong_count(name: &str, span: Range<usize>, function: Function) -> SyntaxError {
+    let expected = match function {
+        Function::Unary(_) => format!("one argument: `{name}(x)`"),
+        Function::Binary(_) => format!("two arguments: `{name}(x, y)`"),
+    };
+    SyntaxError { message: format!("`{name}` takes {expected}"), span, help: None }
+}

@@ -1,0 +1,235 @@
+//! Regions: what is needed only under a condition, found in a tape's nodes and brought together.
+//!
+//! A node belongs to the innermost region that all its uses have in common. The value of a `Where` (`Elsewhere`) node is used
+//! in a region of that condition, everything else where the node that uses it stands.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use rustc_hash::FxHashMap;
+
+use super::tape::Guard;
+use crate::expr::{Binary, Expr, Graph, Node, Unary};
+
+/// Regions of fewer nodes than this are not worth the question.
+const LEAST: usize = 4;
+
+/// A region's place among the regions; 0 is no region at all.
+pub(crate) type RegionId = usize;
+pub(crate) const OUTSIDE: RegionId = 0;
+
+#[derive(Clone, Copy, Debug)]
+struct Nested {
+    within: RegionId,
+    /// None outside.
+    guard: Option<Guard>,
+    depth: usize,
+}
+
+/// The regions of one tape, and which node belongs to which.
+#[derive(Debug)]
+pub(crate) struct Regions {
+    nested: Vec<Nested>,
+    of: FxHashMap<Expr, RegionId>,
+}
+
+impl Regions {
+    /// Of the nodes of `body`, children first, of which `wanted` are used from outside, some only under a guard.
+    pub(crate) fn new(graph: &Graph, body: &[Expr], wanted: impl Iterator<Item = (Expr, Option<Guard>)>) -> Self {
+        let mut regions =
+            Self { nested: vec![Nested { within: OUTSIDE, guard: None, depth: 0 }], of: FxHashMap::default() };
+        let mut known = FxHashMap::default();
+        let guarded = |expr: &Expr| matches!(graph.node(*expr), Node::Binary(Binary::Where | Binary::Elsewhere, ..));
+        for (expr, guard) in wanted {
+            let region = guard.map_or(OUTSIDE, |guard| regions.enter(&mut known, OUTSIDE, guard));
+            if let Some(guard) = guard {
+                regions.use_in(guard.condition, OUTSIDE);
+            }
+            regions.use_in(expr, region);
+        }
+        if known.is_empty() && !body.iter().any(guarded) {
+            regions.of.clear();
+            return regions;
+        }
+        let mut circular: FxHashMap<Expr, Vec<Expr>> = FxHashMap::default();
+        for &expr in body {
+            if let Node::Unary(Unary::Sin | Unary::Cos, argument) = graph.node(expr) {
+                circular.entry(argument).or_default().push(expr);
+            }
+        }
+        // Uses may move a node out of a region, never into one; so this ends.
+        let mut settled = false;
+        while !settled {
+            settled = true;
+            for &expr in body.iter().rev() {
+                let region = regions.of(expr);
+                let mut note = |regions: &mut Self, child: Expr, region: RegionId| {
+                    settled &= !regions.use_in(child, region);
+                };
+                match graph.node(expr) {
+                    Node::Binary(function @ (Binary::Where | Binary::Elsewhere), condition, value) => {
+                        let guard = Guard { condition, elsewhere: function == Binary::Elsewhere };
+                        let inner = regions.enter(&mut known, region, guard);
+                        note(&mut regions, condition, region);
+                        note(&mut regions, value, inner);
+                    }
+                    // Sine and cosine of one argument are one instruction.
+                    Node::Unary(Unary::Sin | Unary::Cos, argument) => {
+                        note(&mut regions, argument, region);
+                        circular[&argument].iter().for_each(|&other| note(&mut regions, other, region));
+                    }
+                    node => node.children().for_each(|child| note(&mut regions, child, region)),
+                }
+            }
+        }
+        regions.dissolve_small(body);
+        regions
+    }
+
+    /// The region that a node belongs to.
+    pub(crate) fn of(&self, expr: Expr) -> RegionId {
+        self.of.get(&expr).copied().unwrap_or(OUTSIDE)
+    }
+
+    /// The region of a guard within a region, if there is one.
+    pub(crate) fn inner(&self, within: RegionId, guard: Guard) -> Option<RegionId> {
+        (0..self.nested.len())
+            .find(|&region| self.nested[region].within == within && self.nested[region].guard == Some(guard))
+    }
+
+    /// Whether there are any.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.nested.iter().all(|region| region.guard.is_none())
+    }
+
+    /// What opens a region; nothing does outside.
+    pub(crate) fn guard(&self, region: RegionId) -> Option<Guard> {
+        self.nested[region].guard
+    }
+
+    /// The conditions of a region and of those around it.
+    pub(crate) fn conditions(&self, region: RegionId) -> impl Iterator<Item = Expr> {
+        self.outward(region).filter_map(|region| self.nested[region].guard).map(|guard| guard.condition)
+    }
+
+    /// The regions to be left, and those to be entered, from one to another.
+    pub(crate) fn way(&self, from: RegionId, to: RegionId) -> (usize, Vec<RegionId>) {
+        let common = self.common(from, to);
+        let mut entered: Vec<RegionId> = self.outward(to).take_while(|&region| region != common).collect();
+        entered.reverse();
+        (self.nested[from].depth - self.nested[common].depth, entered)
+    }
+
+    /// A region, the one around it, and so on, but not the outside.
+    fn outward(&self, region: RegionId) -> impl Iterator<Item = RegionId> {
+        std::iter::successors(Some(region), |&region| Some(self.nested[region].within))
+            .take_while(|&region| region != OUTSIDE)
+    }
+
+    /// The innermost region around both.
+    fn common(&self, mut a: RegionId, mut b: RegionId) -> RegionId {
+        while a != b {
+            if self.nested[a].depth >= self.nested[b].depth {
+                a = self.nested[a].within;
+            } else {
+                b = self.nested[b].within;
+            }
+        }
+        a
+    }
+
+    fn enter(
+        &mut self,
+        known: &mut FxHashMap<(RegionId, Guard), RegionId>,
+        within: RegionId,
+        guard: Guard,
+    ) -> RegionId {
+        if self.outward(within).any(|region| self.nested[region].guard == Some(guard)) {
+            return within;
+        }
+        *known.entry((within, guard)).or_insert_with(|| {
+            self.nested.push(Nested { within, guard: Some(guard), depth: self.nested[within].depth + 1 });
+            self.nested.len() - 1
+        })
+    }
+
+    /// Notes a use; whether that moved the node.
+    fn use_in(&mut self, expr: Expr, region: RegionId) -> bool {
+        let Some(&before) = self.of.get(&expr) else {
+            self.of.insert(expr, region);
+            return false;
+        };
+        let common = self.common(before, region);
+        self.of.insert(expr, common);
+        common != before
+    }
+
+    /// Hands the nodes of small regions to the regions around them.
+    fn dissolve_small(&mut self, body: &[Expr]) {
+        let mut sizes = vec![0; self.nested.len()];
+        for &expr in body {
+            self.outward(self.of(expr)).for_each(|region| sizes[region] += 1);
+        }
+        // Regions stand behind those that they are in.
+        let mut kept: Vec<RegionId> = vec![OUTSIDE];
+        for (region, &size) in sizes.iter().enumerate().skip(1) {
+            let Nested { within, .. } = self.nested[region];
+            let outer = kept[within];
+            self.nested[region].within = outer;
+            self.nested[region].depth = self.nested[outer].depth + 1;
+            if size < LEAST {
+                self.nested[region].guard = None;
+                kept.push(outer);
+            } else {
+                kept.push(region);
+            }
+        }
+        self.of.values_mut().for_each(|region| *region = kept[*region]);
+    }
+}
+
+/// An order of `count` things, none before what it needs, that stays within a region as long as there is something to do in
+/// it; otherwise as they stand. `block_of` tells each one's region, `needs` what it needs.
+pub(crate) fn order(
+    regions: &Regions,
+    count: usize,
+    block_of: impl Fn(usize) -> RegionId,
+    needs: impl Fn(usize) -> Vec<usize>,
+) -> Vec<usize> {
+    let mut missing = vec![0_usize; count];
+    let mut users: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for (place, missing) in missing.iter_mut().enumerate() {
+        for needed in needs(place) {
+            *missing += 1;
+            users[needed].push(place);
+        }
+    }
+    let mut ready: BTreeMap<RegionId, BinaryHeap<Reverse<usize>>> = BTreeMap::new();
+    for place in (0..count).filter(|&place| missing[place] == 0) {
+        ready.entry(block_of(place)).or_default().push(Reverse(place));
+    }
+    let mut ordered = Vec::with_capacity(count);
+    let mut current = OUTSIDE;
+    loop {
+        if let Some(Reverse(place)) = ready.get_mut(&current).and_then(BinaryHeap::pop) {
+            ordered.push(place);
+            for &user in &users[place] {
+                missing[user] -= 1;
+                if missing[user] == 0 {
+                    ready.entry(block_of(user)).or_default().push(Reverse(user));
+                }
+            }
+            continue;
+        }
+        // Into the region whose first instruction stands first, or out of this one.
+        ready.retain(|_, places| !places.is_empty());
+        let inner = ready.iter().filter(|&(&region, _)| regions.common(region, current) == current);
+        match inner.min_by_key(|(_, places)| places.peek().map(|first| first.0)) {
+            Some((&region, _)) => current = region,
+            None if current == OUTSIDE => break,
+            None => current = regions.nested[current].within,
+        }
+    }
+    debug_assert_eq!(ordered.len(), count, "nothing needs itself");
+    ordered
+}

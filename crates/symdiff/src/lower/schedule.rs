@@ -1,0 +1,131 @@
+//! A tape's instructions before they have slots, and their order: region by region, equal operations together.
+
+use rustc_hash::FxHashMap;
+
+use super::regions::{OUTSIDE, RegionId, Regions, order};
+use super::tape::{Guard, Op};
+use crate::expr::Expr;
+
+/// Instructions are grouped by operation within stretches of this many: grouping saves dispatches, a limit keeps what
+/// is alive within the first-level cache.
+const WINDOW: usize = 256;
+
+/// An instruction before it has slots.
+#[derive(Clone, Debug)]
+pub(crate) struct Pending {
+    pub op: Op,
+    /// Operands; the first `count` count.
+    pub reads: [Expr; 3],
+    pub count: usize,
+    /// Result, and for `SinCos` the sine and the cosine, of which one may not be wanted.
+    pub writes: [Option<Expr>; 2],
+    pub region: RegionId,
+}
+
+impl Pending {
+    pub fn new(op: Op, reads: [Expr; 3], count: usize, write: Expr) -> Self {
+        Self { op, reads, count, writes: [Some(write), None], region: OUTSIDE }
+    }
+
+    pub fn within(self, region: RegionId) -> Self {
+        Self { region, ..self }
+    }
+
+    pub fn read(&self) -> impl Iterator<Item = Expr> {
+        self.reads.into_iter().take(self.count)
+    }
+
+    pub fn written(&self) -> impl Iterator<Item = Expr> + use<> {
+        self.writes.into_iter().flatten()
+    }
+}
+
+/// A tape before it has slots.
+pub(crate) enum Step {
+    Do(Pending),
+    Enter(Guard),
+    Leave,
+}
+
+impl Step {
+    pub fn read(&self) -> impl Iterator<Item = Expr> {
+        let (instruction, condition) = match self {
+            Self::Do(instruction) => (Some(instruction), None),
+            Self::Enter(guard) => (None, Some(guard.condition)),
+            Self::Leave => (None, None),
+        };
+        instruction.into_iter().flat_map(Pending::read).chain(condition)
+    }
+}
+
+/// Brings together what belongs to one region, and equal operations within it.
+pub(crate) fn in_regions(pending: Vec<Pending>, regions: &Regions) -> Vec<Step> {
+    if regions.is_empty() {
+        return group(pending).into_iter().map(Step::Do).collect();
+    }
+    let writers = pending.iter().enumerate();
+    let writer: FxHashMap<Expr, usize> =
+        writers.flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
+    let needs = |place: usize| {
+        let one: &Pending = &pending[place];
+        let needed = one.read().chain(regions.conditions(one.region));
+        needed.filter_map(|expr| writer.get(&expr).copied()).collect()
+    };
+    let order = order(regions, pending.len(), |place| pending[place].region, needs);
+    let mut steps = Vec::with_capacity(pending.len());
+    let mut current = OUTSIDE;
+    let mut go_to = |steps: &mut Vec<Step>, region: RegionId| {
+        let (left, entered) = regions.way(current, region);
+        steps.extend((0..left).map(|_| Step::Leave));
+        steps.extend(entered.into_iter().filter_map(|region| regions.guard(region)).map(Step::Enter));
+        current = region;
+    };
+    for together in order.chunk_by(|&a, &b| pending[a].region == pending[b].region) {
+        go_to(&mut steps, pending[together[0]].region);
+        steps.extend(group(together.iter().map(|&place| pending[place].clone()).collect()).into_iter().map(Step::Do));
+    }
+    go_to(&mut steps, OUTSIDE);
+    steps
+}
+
+/// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always all of
+/// the operation that has most.
+fn group(pending: Vec<Pending>) -> Vec<Pending> {
+    let mut grouped = Vec::with_capacity(pending.len());
+    for window in pending.chunks(WINDOW) {
+        let writer: FxHashMap<Expr, usize> =
+            window.iter().enumerate().flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
+        let mut missing = vec![0_usize; window.len()];
+        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
+        for (place, instruction) in window.iter().enumerate() {
+            for producer in instruction.read().filter_map(|read| writer.get(&read)) {
+                missing[place] += 1;
+                readers[*producer].push(place);
+            }
+        }
+        let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
+        let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, place: usize| {
+            let op = window[place].op;
+            match ready.iter_mut().find(|(known, _)| *known == op) {
+                Some((_, places)) => places.push(place),
+                None => ready.push((op, vec![place])),
+            }
+        };
+        (0..window.len()).filter(|&place| missing[place] == 0).for_each(|place| enqueue(&mut ready, place));
+        while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
+            if ready[most].1.is_empty() {
+                break;
+            }
+            for place in std::mem::take(&mut ready[most].1) {
+                grouped.push(window[place].clone());
+                for &reader in &readers[place] {
+                    missing[reader] -= 1;
+                    if missing[reader] == 0 {
+                        enqueue(&mut ready, reader);
+                    }
+                }
+            }
+        }
+    }
+    grouped
+}

@@ -1,0 +1,213 @@
+//! Tapes: programs of three-address instructions over slots, in one line but for regions that may be skipped.
+//!
+//! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped where no
+//! sample of the memory wants it. That changes no result: what is read outside a region is chosen, sample by sample, by
+//! [`Op::Select`] and its kin, which take nothing of a region from a sample that does not want it.
+
+use crate::expr::{Binary, Expr, Unary};
+
+/// What an instruction does with the slots a, b, c.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Op {
+    /// d = a
+    Copy,
+    /// d = f(a); never `Sin` or `Cos`, which are `SinCos`.
+    Unary(Unary),
+    /// d = f(a, b)
+    Binary(Binary),
+    /// d = a·b + c, rounded twice.
+    MulAdd,
+    /// d = a·b − c, rounded twice.
+    MulSub,
+    /// d = c − a·b, rounded twice.
+    NegMulAdd,
+    /// d = b where a is positive or not a number, c elsewhere.
+    Select,
+    /// d = sin a, b = cos a: `b` is written.
+    SinCos,
+}
+
+impl Op {
+    /// Slots that an instruction of this operation names: d, then what it reads (and, for `SinCos`, also writes).
+    pub(crate) const fn arity(self) -> usize {
+        match self {
+            Self::Copy | Self::Unary(_) => 2,
+            Self::Binary(_) | Self::SinCos => 3,
+            Self::MulAdd | Self::MulSub | Self::NegMulAdd | Self::Select => 4,
+        }
+    }
+}
+
+/// Slots of one instruction; what an operation does not use repeats `a`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub struct Operands {
+    pub a: u32,
+    pub b: u32,
+    pub c: u32,
+    pub d: u32,
+}
+
+impl Operands {
+    /// From what a tape holds of them: d, a, and then as many as the operation has.
+    #[inline(always)]
+    pub(crate) fn of(slots: &[u32]) -> Self {
+        let a = slots[1];
+        let or_a = |place: usize| slots.get(place).copied().unwrap_or(a);
+        Self { a, b: or_a(2), c: or_a(3), d: slots[0] }
+    }
+}
+
+/// When a value is wanted: where the condition is positive, or else where it is not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Guard {
+    /// The condition.
+    pub condition: Expr,
+    /// Whether it is wanted where the condition is *not* positive.
+    pub elsewhere: bool,
+}
+
+/// A stretch of a tape that may be skipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Region {
+    /// Slot of the condition.
+    pub condition: u32,
+    elsewhere: bool,
+    /// Part of the tape that follows the region.
+    end: usize,
+}
+
+impl Region {
+    /// Whether a sample with this condition wants the region.
+    #[inline(always)]
+    pub fn wants(&self, condition: f64) -> bool {
+        (condition <= 0.0) == self.elsewhere
+    }
+
+    /// On to its end where nobody wants it.
+    #[inline(always)]
+    pub fn skip_unless(&self, wanted: bool, place: &mut usize) {
+        if !wanted {
+            *place = self.end;
+        }
+    }
+}
+
+/// Instructions of one operation that stand together (one dispatch serves them all), or the beginning of a region.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Piece {
+    Run {
+        op: Op,
+        /// Range of the tape's operands.
+        start: usize,
+        end: usize,
+    },
+    Region(Region),
+}
+
+/// What an evaluator meets: instructions of one operation, [`Op::arity`] slots each, or the beginning of a region.
+pub(crate) enum Part<'t> {
+    Run(Op, &'t [u32]),
+    Region(&'t Region),
+}
+
+/// What a tape is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Item {
+    Do(Op, Operands),
+    /// A region begins; its condition's slot, and whether it is wanted elsewhere.
+    Enter(u32, bool),
+    /// The innermost region ends.
+    Leave,
+}
+
+/// A program. Every slot it names is below [`Tape::slots`], which is what the evaluators rely on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tape {
+    pieces: Vec<Piece>,
+    /// Slots of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
+    operands: Vec<u32>,
+    instructions: usize,
+    slots: usize,
+}
+
+impl Tape {
+    /// A tape of these items in this order.
+    ///
+    /// # Panics
+    /// If a region ends that has not begun: a defect of the caller.
+    pub(crate) fn new(items: impl IntoIterator<Item = Item>) -> Self {
+        let mut tape = Self::default();
+        let mut open = Vec::new();
+        let mut joined = false;
+        for item in items {
+            match item {
+                Item::Do(op, Operands { a, b, c, d }) => {
+                    let start = tape.operands.len();
+                    tape.operands.extend_from_slice(&[d, a, b, c][..op.arity()]);
+                    tape.instructions += 1;
+                    let end = tape.operands.len();
+                    match tape.pieces.last_mut() {
+                        Some(Piece::Run { op: last, end: last_end, .. }) if *last == op && joined => *last_end = end,
+                        _ => tape.pieces.push(Piece::Run { op, start, end }),
+                    }
+                    joined = true;
+                    tape.slots =
+                        tape.operands[start..].iter().fold(tape.slots, |slots, &slot| slots.max(slot as usize + 1));
+                }
+                Item::Enter(condition, elsewhere) => {
+                    open.push(tape.pieces.len());
+                    tape.pieces.push(Piece::Region(Region { condition, elsewhere, end: 0 }));
+                    tape.slots = tape.slots.max(condition as usize + 1);
+                }
+                Item::Leave => {
+                    let end = tape.pieces.len();
+                    let start = open.pop().expect("what ends has begun");
+                    if let Piece::Region(region) = &mut tape.pieces[start] {
+                        region.end = end;
+                    }
+                    joined = false;
+                }
+            }
+        }
+        tape
+    }
+
+    /// Number of instructions.
+    pub fn len(&self) -> usize {
+        self.instructions
+    }
+
+    /// Number of instructions that are run where all conditions are positive, or where none is.
+    pub fn len_where(&self, positive: bool) -> usize {
+        let (mut place, mut count) = (0, 0);
+        while let Some(part) = self.part(&mut place) {
+            match part {
+                Part::Run(op, operands) => count += operands.len() / op.arity(),
+                Part::Region(region) => region.skip_unless(region.wants(if positive { 1.0 } else { 0.0 }), &mut place),
+            }
+        }
+        count
+    }
+
+    /// Whether there is nothing to do.
+    pub fn is_empty(&self) -> bool {
+        self.instructions == 0
+    }
+
+    /// One more than the highest slot named.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+
+    /// What stands at a place, which moves on to the next.
+    #[inline(always)]
+    pub(crate) fn part(&self, place: &mut usize) -> Option<Part<'_>> {
+        let piece = self.pieces.get(*place)?;
+        *place += 1;
+        Some(match piece {
+            Piece::Run { op, start, end } => Part::Run(*op, &self.operands[*start..*end]),
+            Piece::Region(region) => Part::Region(region),
+        })
+    }
+}

@@ -1,0 +1,30 @@
+//! What can go wrong between a file and its bounds.
+
+use crate::export::ExportError;
+use crate::model::UnknownScene;
+use crate::study::RunError;
+use crate::syntax::Diagnostics;
+
+/// Why there is no model, or nothing of it could be run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The model has errors: all of them, each with its place.
+    #[error("{0}")]
+    Model(#[source] Diagnostics),
+    /// The model does not have the scene.
+    #[error(transparent)]
+    Scene(#[from] UnknownScene),
+    /// The mechanism cannot be built, assembled or stepped.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The files could not be written.
+    #[error(transparent)]
+    Write(#[from] ExportError),
+}
+
+impl From<Diagnostics> for Error {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::Model(diagnostics)
+    }
+}

@@ -1,0 +1,15 @@
+//! The front door: a [`Model`], a [`Study`] of it, and what the study yields.
+
+mod builder;
+mod error;
+mod model;
+mod result;
+mod study;
+mod value;
+
+pub use builder::ModelBuilder;
+pub use error::Error;
+pub use model::Model;
+pub use result::{Band, Output, StudyResult};
+pub use study::Study;
+pub use value::Value;

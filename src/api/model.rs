@@ -1,0 +1,131 @@
+//! A model: read from a file or a text, or built in Rust.
+
+use std::path::{Path, PathBuf};
+
+use super::{Error, ModelBuilder, Study};
+use crate::model::{Description, Override, ParameterValue, Reading, read, read_str};
+use crate::syntax::Diagnostics;
+
+/// A mechanism with its uncertain parameters and outputs, free of errors.
+#[derive(Clone, Debug)]
+pub struct Model {
+    origin: Origin,
+    overrides: Vec<Override>,
+    /// Of the scenes, the one that was chosen.
+    scene: Option<String>,
+    description: Description,
+    scenes: Vec<String>,
+    warnings: Diagnostics,
+}
+
+/// Where a model came from; it is read again when a parameter is replaced.
+#[derive(Clone, Debug)]
+enum Origin {
+    File(PathBuf),
+    Text { name: String, text: String },
+}
+
+impl Model {
+    /// Reads a model (`.yaml`) or a robot (`.urdf`).
+    ///
+    /// # Errors
+    /// [`Error::Model`]: everything that is wrong with the file.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read(Origin::File(path.as_ref().to_owned()), Vec::new(), None)
+    }
+
+    /// Reads a model from a text. Error messages call it `name`; files that it names are looked for beside `name`.
+    ///
+    /// # Errors
+    /// [`Error::Model`]: everything that is wrong with the text.
+    pub fn from_yaml_str(name: &str, text: &str) -> Result<Self, Error> {
+        Self::read(Origin::Text { name: name.to_owned(), text: text.to_owned() }, Vec::new(), None)
+    }
+
+    /// Builds a model in Rust.
+    pub fn builder(name: &str) -> ModelBuilder {
+        ModelBuilder::new(name)
+    }
+
+    /// The same model with another value of a parameter, written as after `--set` on the command line: `"0.16 ± 2%"`,
+    /// `"[0.1, 0.2]"`, `"150 mm"`. A bare number is in the parameter's unit.
+    ///
+    /// # Errors
+    /// [`Error::Model`]: the model does not have the parameter, or the value does not fit it.
+    pub fn with(self, parameter: &str, value: impl std::fmt::Display) -> Result<Self, Error> {
+        let wanted = Override::parse(&format!("{parameter}={value}"))?;
+        let mut overrides = self.overrides;
+        overrides.retain(|known| known.name != wanted.name);
+        overrides.push(wanted);
+        Self::read(self.origin, overrides, self.scene)
+    }
+
+    /// One of the model's scenes.
+    ///
+    /// # Errors
+    /// [`Error::Scene`]: the model does not have it.
+    pub fn scene(self, name: &str) -> Result<Self, Error> {
+        Self::read(self.origin, self.overrides, Some(name.to_owned()))
+    }
+
+    fn read(origin: Origin, overrides: Vec<Override>, scene: Option<String>) -> Result<Self, Error> {
+        let reading = match &origin {
+            Origin::File(path) => read(path, &overrides),
+            Origin::Text { name, text } => read_str(name, text, &overrides),
+        };
+        let warnings = reading.diagnostics.clone();
+        let scenes = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
+        let Some(whole) = reading.description.clone() else { return Err(Error::Model(reading.diagnostics)) };
+        let description = match &scene {
+            None => whole,
+            Some(name) => chosen(reading, name)?,
+        };
+        Ok(Self { origin, overrides, scene, description, scenes, warnings })
+    }
+
+    /// Its name; of a scene, `MODEL/SCENE`.
+    pub fn name(&self) -> &str {
+        &self.description.name
+    }
+
+    /// Names of its scenes, in the order of the file.
+    pub fn scenes(&self) -> impl Iterator<Item = &str> {
+        self.scenes.iter().map(String::as_str)
+    }
+
+    /// Names of its outputs, each with its SI unit (empty where dimensionless or unknown).
+    pub fn outputs(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.description.outputs.iter().map(|output| (output.name.as_str(), output.unit.as_str()))
+    }
+
+    /// Its uncertain parameters with the smallest and the largest value of each, SI.
+    pub fn uncertain(&self) -> impl Iterator<Item = (&str, [f64; 2])> {
+        self.description.uncertain().filter_map(|(_, parameter)| match parameter.value {
+            ParameterValue::Interval { lower, upper, .. } => Some((parameter.name.as_str(), [lower, upper])),
+            ParameterValue::Formula(_) => None,
+        })
+    }
+
+    /// What is probably not meant, though the model can be used.
+    pub fn warnings(&self) -> &Diagnostics {
+        &self.warnings
+    }
+
+    /// A study of the model, with the methods that its `bounds:` ask for until others are chosen.
+    pub fn study(&self) -> Study<'static> {
+        Study::new(self.description.clone())
+    }
+
+    /// The checked model behind this one.
+    #[doc(hidden)]
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+}
+
+/// The scene of a name.
+fn chosen(reading: Reading, name: &str) -> Result<Description, Error> {
+    let mut scenes = reading.chosen(&[name.to_owned()])?;
+    // One name was asked for, and is known.
+    Ok(scenes.remove(0).1)
+}

@@ -1,0 +1,123 @@
+//! A study: which methods bound a model, and how they run.
+
+use super::{Error, StudyResult};
+use crate::methods::{BoundsRequest, Certified, Chebyshev, Scan, Taylor};
+use crate::model::{Description, Stepping};
+use crate::study::{Options, run};
+
+/// A run of a model in preparation. Methods add up; the first that is chosen replaces those of the model's `bounds:`.
+pub struct Study<'a> {
+    description: Description,
+    options: Options<'a>,
+    /// Whether the methods are no longer the model's.
+    chosen: bool,
+}
+
+impl<'a> Study<'a> {
+    pub(super) fn new(description: Description) -> Self {
+        Self { description, options: Options::default(), chosen: false }
+    }
+
+    fn choose(&mut self) -> &mut BoundsRequest {
+        let bounds = &mut self.description.bounds;
+        if !std::mem::replace(&mut self.chosen, true) {
+            *bounds = BoundsRequest { tolerance: bounds.tolerance, budget: bounds.budget, ..BoundsRequest::default() };
+        }
+        bounds
+    }
+
+    fn parameters(&self) -> usize {
+        self.description.uncertain().count()
+    }
+
+    /// Chebyshev bounds with polynomials of a degree in each parameter: (order + 1)^k simulations of k parameters.
+    #[must_use]
+    pub fn chebyshev(mut self, order: usize) -> Self {
+        let request = Chebyshev::of_order(order, self.parameters());
+        self.choose().chebyshev = Some(request);
+        self
+    }
+
+    /// Taylor bounds of a total degree: one simulation, in polynomials of the parameters.
+    #[must_use]
+    pub fn taylor(mut self, order: usize) -> Self {
+        self.choose().taylor = Some(Taylor { order, ..Taylor::default() });
+        self
+    }
+
+    /// The smallest and largest values on a grid with so many points a parameter: points^k simulations, always too narrow.
+    #[must_use]
+    pub fn scan(mut self, points: usize) -> Self {
+        let request = Scan::of_points(points, self.parameters());
+        self.choose().scan = Some(request);
+        self
+    }
+
+    /// Proven bounds of the discretised motion: one or two parameters, a fixed step.
+    #[must_use]
+    pub fn certified(mut self) -> Self {
+        self.choose().certified = Some(Certified);
+        self
+    }
+
+    /// Chebyshev bounds of whichever degrees meet an error, relative to how far each output ranges over the run.
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        let bounds = self.choose();
+        bounds.tolerance = Some(tolerance);
+        bounds.chebyshev = Some(Chebyshev::ADAPTIVE);
+        self
+    }
+
+    /// Another duration, s.
+    #[must_use]
+    pub fn duration(mut self, seconds: f64) -> Self {
+        self.description.simulation.duration = seconds;
+        self
+    }
+
+    /// Another fixed time step, s.
+    #[must_use]
+    pub fn step(mut self, seconds: f64) -> Self {
+        self.description.simulation.stepping = Stepping::Fixed(seconds);
+        self
+    }
+
+    /// Threads to run on; by default all cores. Results are the same for any number.
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.options.threads = Some(threads);
+        self
+    }
+
+    /// Bounds the rest where the mechanism cannot be assembled, or locks, in a part of the parameters' box.
+    #[must_use]
+    pub fn skip_infeasible(mut self) -> Self {
+        self.options.skip_infeasible = true;
+        self
+    }
+
+    /// Calls a function now and then with the fraction that is done.
+    #[must_use]
+    pub fn progress(mut self, progress: &'a (dyn Fn(f64) + Sync)) -> Self {
+        self.options.progress = progress;
+        self
+    }
+
+    /// Asks a function now and then whether to stop. What is finished by then is in the result.
+    #[must_use]
+    pub fn interrupted(mut self, interrupted: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        self.options.interrupted = interrupted;
+        self
+    }
+
+    /// Runs every method. A simulation that fails on its way ends the bounds that need it there:
+    /// see [`StudyResult::failure`].
+    ///
+    /// # Errors
+    /// [`Error::Run`]: the mechanism cannot be built, assembled or stepped at all, or a method would need too many simulations.
+    pub fn run(self) -> Result<StudyResult, Error> {
+        let (bounds, summary) = run(&self.description, self.options)?;
+        Ok(StudyResult::new(bounds, summary))
+    }
+}

@@ -1,0 +1,54 @@
+//! `mbint explain --joints`: every joint of the language, from its own file.
+
+use super::effects::element;
+use super::table::{Align, Table};
+use crate::elements::JointKind;
+
+/// All joints, for people.
+pub(super) fn text() -> String {
+    let mut text = String::new();
+    for joint in JointKind::docs() {
+        text += &element(&joint.element);
+        let mut rows = Table::new([("", Align::Left); 2]);
+        for row in joint.rows {
+            let name = if row.name.is_empty() { "its constraint" } else { row.name };
+            rows.row([format!("{name}, {}", row.unit), format!("λ: {}", row.multiplier)]);
+        }
+        text += &format!("  Constraints and their multipliers:\n{}\n", rows.render(4));
+    }
+    text + "Reactions, observed as `joint.force` and `joint.torque`, are those on the second body, in the ground's axes, the\n\
+            torque about the second point; the first body has the opposite at the same place. A = first, B = second point.\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_joint_says_all_that_there_is() {
+        let plain = anstream::adapter::strip_str(&text()).to_string();
+        for joint in JointKind::docs() {
+            let docs = &joint.element;
+            assert!(plain.contains(docs.description), "{}", docs.keyword);
+            assert!(!docs.formulas.is_empty() && !joint.rows.is_empty(), "{}", docs.keyword);
+            assert!(docs.keys.iter().all(|key| !key.description.is_empty()), "{}", docs.keyword);
+        }
+    }
+
+    #[test]
+    fn a_joint_reads_well() {
+        let plain = anstream::adapter::strip_str(&text()).to_string();
+        let gear = plain.split("\n\n").find(|part| part.starts_with("gear ")).unwrap();
+        insta::assert_snapshot!(gear, @r"
+        gear  Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
+          φ₂ − ratio φ₁ − offset = 0
+          Source: Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4.
+          Example: { between: [pinion, wheel], ratio: -0.5 }
+            between *  Two bodies (their angles about z) or two joints.
+            ratio *    Angle of the second per angle of the first; negative for external gears.
+            offset     Angle of the second where that of the first is zero, rad; by default 0.
+          Constraints and their multipliers:
+            its constraint, rad  λ: N m: −λ is the torque on the second, +ratio λ that on the first
+        ");
+    }
+}

@@ -1,0 +1,48 @@
+//! The links and joints of a URDF, as the file has them.
+
+use crate::grammar::PointRef;
+
+/// The links and joints of a URDF, which the bodies and joints of the model were made of.
+#[derive(Clone, Debug)]
+pub struct RobotTree {
+    /// As the file calls it.
+    pub name: String,
+    /// Each behind its parent.
+    pub links: Vec<TreeLink>,
+}
+
+/// A link of a URDF.
+#[derive(Clone, Debug)]
+pub struct TreeLink {
+    /// Its name in formulas.
+    pub name: String,
+    /// Joints between it and the root.
+    pub depth: usize,
+    /// kg, where the file has one.
+    pub mass: Option<f64>,
+    /// Its frame; absent where the link is left out.
+    pub place: Option<PointRef>,
+    /// The joint that leads to it; absent for the root.
+    pub joint: Option<TreeJoint>,
+}
+
+/// A joint of a URDF.
+#[derive(Clone, Debug)]
+pub struct TreeJoint {
+    /// Its name in formulas.
+    pub name: String,
+    /// The file's word for it.
+    pub kind: &'static str,
+    /// In the child's frame, where the joint has one coordinate.
+    pub axis: Option<[f64; 3]>,
+    /// Smallest and largest position, where there is one.
+    pub limits: [Option<f64>; 2],
+    /// rad or m, of its position.
+    pub unit: &'static str,
+    /// N m s/rad or N s/m
+    pub damping: f64,
+    /// N m or N
+    pub friction: f64,
+    /// The joint that it follows.
+    pub mimics: Option<String>,
+}

@@ -1,0 +1,38 @@
+//! How time is stepped.
+
+/// How time is stepped.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// s
+    pub duration: f64,
+    /// Fixed, or controlled.
+    pub stepping: Stepping,
+    /// HHT parameter α ∈ [−1/3, 0).
+    pub alpha: f64,
+    /// s between rows of output.
+    pub output_step: f64,
+    /// By which coordinates the motion is described.
+    pub formulation: Formulation,
+}
+
+/// By which coordinates a motion is described; the motion is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Formulation {
+    /// Whichever takes fewer instructions.
+    #[default]
+    Auto,
+    /// Each body has its own, and joints constrain them.
+    Absolute,
+    /// Those of the joints, of which each carries a body; joints that close loops constrain them.
+    Joint,
+}
+
+/// How steps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stepping {
+    /// Every step this long, s.
+    Fixed(f64),
+    /// Steps' local position errors add up to no more than this over the run, relative to |q|, or to the model's size where that
+    /// is larger.
+    Tolerance(f64),
+}

@@ -1,0 +1,122 @@
+//! The corners of the parameters' intervals, at which every formula is checked.
+
+use std::collections::HashMap;
+
+use crate::grammar::reader::{Corner, evaluate};
+use crate::model::description::{Parameter, ParameterValue};
+use crate::model::names::Reader;
+use crate::syntax::source::Span;
+
+/// Uncertain parameters up to which every corner is checked; beyond, one parameter at a time.
+const MOST_FOR_CORNERS: usize = 5;
+
+/// Most uncertain ones: every formula is checked at the ends of each.
+const MOST_UNCERTAIN: usize = 1000;
+
+/// Parameters with the values that they take at a corner.
+type Choice = Vec<(usize, f64)>;
+
+/// Evaluates all parameters at the nominal values and at the corners of the intervals.
+pub fn read(reader: &mut Reader, name_spans: &[Span]) {
+    let parameters = &reader.model.parameters;
+    let uncertain: Vec<(usize, f64, f64)> = parameters
+        .iter()
+        .enumerate()
+        .filter_map(|(index, parameter)| match parameter.value {
+            ParameterValue::Interval { lower, upper, .. } => Some((index, lower, upper)),
+            ParameterValue::Formula(_) => None,
+        })
+        .collect();
+    let beyond = uncertain.get(MOST_UNCERTAIN).map(|&(index, ..)| index);
+    // Too many are an error: nothing else has to be found at so many corners.
+    let choices = if beyond.is_some() { vec![Choice::new()] } else { choices(&uncertain) };
+    let positions: HashMap<&str, usize> =
+        parameters.iter().enumerate().map(|(index, parameter)| (parameter.name.as_str(), index)).collect();
+    let varies = varies(parameters, &positions);
+    let corners = evaluated(parameters, &positions, &varies, choices);
+    let infinite: Vec<(usize, String)> = (0..parameters.len())
+        .filter_map(|index| {
+            let corner = corners.iter().find(|corner| !corner.values[index].is_finite())?;
+            // A parameter that uses one without a value has none either: only the first is reported.
+            let follows_another = match &parameters[index].value {
+                ParameterValue::Formula(formula) if formula.as_number().is_some_and(f64::is_nan) => true,
+                ParameterValue::Formula(formula) => formula.names().any(|(name, _)| {
+                    positions.get(name).is_none_or(|&used| used >= index || !corner.values[used].is_finite())
+                }),
+                ParameterValue::Interval { .. } => true,
+            };
+            (!follows_another).then(|| (index, corner.label.clone()))
+        })
+        .collect();
+    if let Some(index) = beyond {
+        let message = format!("the model has more than {MOST_UNCERTAIN} uncertain parameters");
+        reader.error(name_spans[index].clone(), message, None);
+    }
+    for (index, label) in infinite {
+        let message = format!("`{}` is not a finite number{label}", reader.model.parameters[index].name);
+        reader.error(name_spans[index].clone(), message, None);
+    }
+    reader.broken = corners.iter().any(|corner| corner.values.iter().any(|value| !value.is_finite()));
+    reader.corners = corners;
+    reader.varies = varies;
+}
+
+/// The nominal values first; then all corners, or the ends of each interval.
+fn choices(uncertain: &[(usize, f64, f64)]) -> Vec<Choice> {
+    let mut choices = vec![Choice::new()];
+    if uncertain.len() <= MOST_FOR_CORNERS {
+        choices.extend((0..1_usize << uncertain.len()).filter(|_| !uncertain.is_empty()).map(|corner| {
+            let end = |(bit, &(index, lower, upper)): (usize, &(usize, f64, f64))| {
+                (index, if corner >> bit & 1 == 0 { lower } else { upper })
+            };
+            uncertain.iter().enumerate().map(end).collect()
+        }));
+    } else {
+        choices
+            .extend(uncertain.iter().flat_map(|&(index, lower, upper)| [vec![(index, lower)], vec![(index, upper)]]));
+    }
+    choices
+}
+
+/// Of each parameter, whether it is uncertain or depends on one that is.
+fn varies(parameters: &[Parameter], positions: &HashMap<&str, usize>) -> Vec<bool> {
+    parameters.iter().fold(Vec::new(), |mut varies: Vec<bool>, parameter| {
+        varies.push(match &parameter.value {
+            ParameterValue::Interval { .. } => true,
+            ParameterValue::Formula(formula) => formula
+                .names()
+                .any(|(name, _)| positions.get(name).is_some_and(|&index| varies.get(index).copied().unwrap_or(false))),
+        });
+        varies
+    })
+}
+
+fn evaluated(
+    parameters: &[Parameter],
+    positions: &HashMap<&str, usize>,
+    varies: &[bool],
+    choices: Vec<Choice>,
+) -> Vec<Corner> {
+    let mut corners: Vec<Corner> = Vec::new();
+    for chosen in choices {
+        let mut values: Vec<f64> = Vec::with_capacity(parameters.len());
+        for (index, parameter) in parameters.iter().enumerate() {
+            let value = match &parameter.value {
+                ParameterValue::Interval { nominal, .. } => {
+                    chosen.iter().find(|(chosen, _)| *chosen == index).map_or(*nominal, |(_, value)| *value)
+                }
+                ParameterValue::Formula(_) if !varies[index] && !corners.is_empty() => corners[0].values[index],
+                ParameterValue::Formula(formula) => {
+                    evaluate(formula, |name| positions.get(name).and_then(|&used| values.get(used).copied()))
+                        .unwrap_or(f64::NAN)
+                }
+            };
+            values.push(value);
+        }
+        let place: Vec<String> =
+            chosen.iter().map(|(index, value)| format!("{} = {value}", parameters[*index].name)).collect();
+        let label = if place.is_empty() { String::new() } else { format!(" at {}", place.join(", ")) };
+        corners.push(Corner { values, label });
+    }
+    corners
+}

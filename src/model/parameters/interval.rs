@@ -1,0 +1,144 @@
+//! How far a parameter may deviate: `tolerance`, `interval`, `plus` and `minus`.
+
+use super::{Draft, Spec};
+use crate::grammar::Referent;
+use crate::grammar::dimension::Kind;
+use crate::grammar::names::Context;
+use crate::grammar::quantity::number_and_unit;
+use crate::grammar::reader::{Written, evaluate};
+use crate::model::description::ParameterValue;
+use crate::model::names::Reader;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest;
+use crate::syntax::yaml::Node;
+
+pub fn depends_on_uncertain(reader: &Reader, draft: &Draft) -> bool {
+    // Whether a formula of others varies is known only in order: follow what they use.
+    let mut open: Vec<usize> = draft.uses.clone();
+    let mut seen = vec![false; reader.model.parameters.len()];
+    while let Some(index) = open.pop() {
+        if std::mem::replace(&mut seen[index], true) {
+            continue;
+        }
+        match &reader.model.parameters[index].value {
+            ParameterValue::Interval { .. } => return true,
+            ParameterValue::Formula(formula) => {
+                open.extend(formula.names().filter_map(|(name, _)| match reader.model.referent(name) {
+                    Some(Referent::Parameter(used)) => Some(used),
+                    _ => None,
+                }));
+            }
+        }
+    }
+    false
+}
+
+/// Nominal, lower and upper value.
+pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<[f64; 3]> {
+    let Spec { value, tolerance, interval, plus, minus, .. } = &draft.spec;
+    let ways = [*tolerance, *interval, plus.or(*minus)];
+    if let Some(second) = ways.iter().flatten().nth(1) {
+        let help = "give one of them".to_owned();
+        let message = "`tolerance`, `interval` and `plus`/`minus` say the same thing";
+        reader.error(second.span.clone(), message, help);
+        return None;
+    }
+    if let Some(node) = interval {
+        let [first, second] = reader.two(node, "a list of the smallest and the largest value")?;
+        let lower = bare_number(reader, draft, first, kind);
+        let upper = bare_number(reader, draft, second, kind);
+        let (lower, upper) = (lower?, upper?);
+        if lower > upper {
+            let help = format!("the smaller one stands first: `[{}, {}]`", text(second), text(first));
+            reader.error(node.span.clone(), "the interval is reversed", help);
+            return None;
+        }
+        let nominal = match (value, nominal) {
+            (None, _) => lower + (upper - lower) / 2.0,
+            (Some(_), nominal) => nominal?,
+        };
+        if !(lower..=upper).contains(&nominal) {
+            let place = value.map_or_else(|| node.span.clone(), |value| value.span.clone());
+            let diagnostic = Diagnostic::error(place, "the value lies outside its interval");
+            reader.diagnostics.push(diagnostic.also(node.span.clone(), "the interval"));
+            return None;
+        }
+        return Some([nominal, lower, upper]);
+    }
+    // Without a value there is nothing to deviate from; that was reported.
+    value.as_ref()?;
+    let (above, below) = match tolerance {
+        Some(node) => {
+            let either = deviation(reader, draft, Some(node), nominal, kind);
+            (either, either)
+        }
+        None => (deviation(reader, draft, *plus, nominal, kind), deviation(reader, draft, *minus, nominal, kind)),
+    };
+    let (nominal, above, below) = (nominal?, above?, below?);
+    Some([nominal, nominal - below, nominal + above])
+}
+
+/// How far a value may deviate: `1%` of it, or a quantity.
+fn deviation(
+    reader: &mut Reader,
+    draft: &Draft,
+    node: Option<&Node>,
+    nominal: Option<f64>,
+    kind: &mut Kind,
+) -> Option<f64> {
+    let Some(node) = node else { return Some(0.0) };
+    let percent = node.scalar().and_then(|scalar| number_and_unit(&scalar.text)).filter(|(_, unit, _)| *unit == "%");
+    let deviation = match percent {
+        Some((percent, ..)) => {
+            // The sign of the percentage, not of the value, says whether it is negative.
+            percent / 100.0 * nominal?.abs()
+        }
+        None => bare_number(reader, draft, node, kind)?,
+    };
+    let negative = percent.map_or(deviation, |(percent, ..)| percent) < 0.0;
+    if negative {
+        reader.error(node.span.clone(), "a tolerance cannot be negative", None);
+        return None;
+    }
+    Some(deviation)
+}
+
+/// A number in the parameter's unit, or with its own.
+fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind) -> Option<f64> {
+    match reader.written(node)? {
+        Written::Quantity { value, unit } => {
+            match kind.dimension() {
+                Some(dimension) => {
+                    reader.check_fits(&node.span, unit.dimension, dimension).then_some(())?;
+                }
+                None => *kind = Kind::parameter(unit.dimension),
+            }
+            Some(unit.to_si(value))
+        }
+        Written::Formula(formula) => {
+            if !reader.check_names(node, &formula, 0, Context::Constant) {
+                return None;
+            }
+            if formula.names().next().is_some() {
+                reader.error(node.span.clone(), "the limits of a parameter are numbers, not formulas", None);
+                return None;
+            }
+            let own_unit = matches!(draft.value, Some(Written::Quantity { .. })) && draft.unit.is_none();
+            if own_unit {
+                let unit = draft.spec.value.and_then(Node::scalar).and_then(|scalar| number_and_unit(&scalar.text));
+                let help = format!("e.g. `{} {}`", text(node), unit.map_or("m", |(_, unit, _)| unit));
+                reader.error(node.span.clone(), "this number has no unit, but the value has", help);
+                return None;
+            }
+            let number = evaluate(&formula, |_| None).filter(|number| number.is_finite());
+            if number.is_none() {
+                reader.error(node.span.clone(), format!("`{}` is not a finite number", text(node)), None);
+            }
+            Some(draft.unit.map_or(number?, |unit| unit.to_si(number.unwrap_or(f64::NAN))))
+        }
+    }
+}
+
+fn text(node: &Node) -> String {
+    suggest::clip(node.scalar().map_or("", |scalar| scalar.text.trim()))
+}

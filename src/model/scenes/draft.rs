@@ -1,0 +1,255 @@
+//! The tree of a model while scenes are laid over it.
+
+use std::collections::HashSet;
+
+use super::{LeftOut, unknown};
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
+use crate::model::urdf;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
+
+/// Sections whose entries can be left out by name.
+const NAMED: [&str; 3] = ["effects", "joints", "outputs"];
+
+/// Sections of which a scene's entries replace the model's of the same name, or come on top.
+const BY_NAME: [(&str, &str); 5] = [
+    ("joints", "joints"),
+    ("effects", "effects"),
+    ("initial", "start values"),
+    ("guess", "start values"),
+    ("outputs", "outputs"),
+];
+
+/// Keys whose value in a scene stands instead of the model's.
+const WHOLE: [&str; 3] = ["description", "limits", "bounds"];
+
+/// What says how far a parameter may be off.
+const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];
+
+/// A tree in the making.
+#[derive(Clone, Default)]
+pub struct Draft {
+    pub entries: Vec<Entry>,
+    /// Section and name.
+    pub out: HashSet<(&'static str, String)>,
+    pub robot: LeftOut,
+}
+
+impl Draft {
+    /// Lays a scene's changes over the tree.
+    pub fn lay(&mut self, reader: &mut Reader, fields: &Fields) {
+        if let Some(node) = fields.get("without") {
+            self.without(reader, node);
+        }
+        for (section, what) in BY_NAME {
+            let Some(node) = fields.get(section) else { continue };
+            for entry in reader.entries(node, what) {
+                self.out.remove(&(section, entry.key.clone()));
+                if let Some(entries) = self.section(section, fields.key_span(section), node) {
+                    replace(entries, entry.clone());
+                }
+            }
+        }
+        if let Some(node) = fields.get("parameters") {
+            self.parameters(reader, node, fields.key_span("parameters"));
+        }
+        if let Some(node) = fields.get("simulation") {
+            self.simulation(node, fields.key_span("simulation"));
+        }
+        for key in WHOLE {
+            if let Some(node) = fields.get(key) {
+                let entry = Entry { key: key.to_owned(), key_span: fields.key_span(key), value: node.clone() };
+                replace(&mut self.entries, entry);
+            }
+        }
+        if let Some(node) = fields.get("with") {
+            self.with(reader, node);
+        }
+    }
+
+    /// The entries of a section, which is made if it is not there; nothing where it is no mapping, as is reported of the model.
+    fn section(&mut self, key: &str, key_span: Span, like: &Node) -> Option<&mut Vec<Entry>> {
+        let found = self.entries.iter().position(|entry| entry.key == key && !entry.value.is_null());
+        let place = found.unwrap_or_else(|| {
+            let value = Node { span: like.span.clone(), value: Value::Mapping(Vec::new()) };
+            self.entries.retain(|entry| entry.key != key);
+            self.entries.push(Entry { key: key.to_owned(), key_span, value });
+            self.entries.len() - 1
+        });
+        match &mut self.entries[place].value.value {
+            Value::Mapping(entries) => Some(entries),
+            _ => None,
+        }
+    }
+
+    /// The entries of a section that is there.
+    fn entries_of(&self, section: &str) -> &[Entry] {
+        let found = self.entries.iter().find(|entry| entry.key == section);
+        match found.map(|entry| &entry.value.value) {
+            Some(Value::Mapping(entries)) => entries,
+            _ => &[],
+        }
+    }
+
+    fn has_robot(&self) -> bool {
+        self.entries.iter().any(|entry| entry.key == "urdf")
+    }
+
+    /// `without`: names of effects, joints and outputs, or `all` effects.
+    pub fn without(&mut self, reader: &mut Reader, node: &Node) {
+        if node.scalar().is_some_and(|scalar| scalar.text == "all") {
+            let effects: Vec<_> =
+                self.entries_of("effects").iter().map(|entry| ("effects", entry.key.clone())).collect();
+            self.out.extend(effects);
+            self.robot = LeftOut { all: true, ..LeftOut::default() };
+            return;
+        }
+        for (name, span) in names(reader, node, "`all`, or a list of effects, joints and outputs,") {
+            let sections = self.sections_with(&name);
+            let robots = self.robot.names.iter().any(|(known, _)| *known == name);
+            if sections.iter().all(|section| self.out.contains(&(*section, name.clone()))) && !sections.is_empty()
+                || robots
+            {
+                reader.error(span, format!("`{}` is left out already", clip(&name)), None);
+            } else if sections.is_empty() && self.has_robot() {
+                // Perhaps one of the robot's, which are known when its file is read.
+                self.robot.kept.retain(|(kept, _)| *kept != name);
+                self.robot.names.push((name, span));
+            } else if sections.is_empty() {
+                self.unknown(reader, &name, span);
+            } else {
+                self.out.extend(sections.into_iter().map(|section| (section, name.clone())));
+            }
+        }
+    }
+
+    /// `with`: puts in again what is left out.
+    fn with(&mut self, reader: &mut Reader, node: &Node) {
+        for (name, span) in names(reader, node, "a list of effects, joints and outputs") {
+            let sections = self.sections_with(&name);
+            let before = self.out.len() + self.robot.names.len();
+            self.out.retain(|(_, known)| *known != name);
+            self.robot.names.retain(|(known, _)| *known != name);
+            if self.out.len() + self.robot.names.len() < before {
+                continue;
+            }
+            if sections.is_empty() && self.robot.all && self.has_robot() {
+                self.robot.kept.push((name, span));
+            } else if sections.is_empty() && !self.has_robot() {
+                self.unknown(reader, &name, span);
+            } else {
+                let help = "`with` puts in what the model, a scene that is extended or this one's `without` leaves out";
+                reader.error(span, format!("`{}` is not left out", clip(&name)), help.to_owned());
+            }
+        }
+    }
+
+    /// Sections that have an entry of this name.
+    fn sections_with(&self, name: &str) -> Vec<&'static str> {
+        let has = |section: &&str| self.entries_of(section).iter().any(|entry| entry.key == name);
+        NAMED.into_iter().filter(has).collect()
+    }
+
+    fn unknown(&self, reader: &mut Reader, name: &str, span: Span) {
+        let known = NAMED.iter().flat_map(|section| self.entries_of(section)).map(|entry| entry.key.as_str());
+        unknown(reader, name, span, known);
+    }
+
+    /// A parameter's new value; its unit and description stay, what is said of its deviation does not.
+    fn parameters(&mut self, reader: &mut Reader, node: &Node, key_span: Span) {
+        for entry in reader.entries(node, "parameters") {
+            let Some(parameters) = self.section("parameters", key_span.clone(), node) else { return };
+            let known = parameters.iter().position(|known| known.key == entry.key);
+            match known {
+                // A number of the URDF is there without being named.
+                _ if urdf::is_number(&entry.key) => replace(parameters, entry.clone()),
+                Some(place) => parameters[place] = overridden(&parameters[place], entry),
+                None => {
+                    let names = parameters.iter().map(|known| known.key.as_str());
+                    let help = suggest::help(&entry.key, "parameters", names);
+                    let message = format!("unknown parameter `{}`", clip(&entry.key));
+                    reader.error(entry.key_span.clone(), message, help);
+                }
+            }
+        }
+    }
+
+    /// Keys of a scene's `simulation` replace the model's; a step goes instead of a tolerance, and the other way round.
+    fn simulation(&mut self, node: &Node, key_span: Span) {
+        let Value::Mapping(changes) = &node.value else {
+            replace(&mut self.entries, Entry { key: "simulation".to_owned(), key_span, value: node.clone() });
+            return;
+        };
+        let Some(entries) = self.section("simulation", key_span, node) else { return };
+        for change in changes {
+            let other = match change.key.as_str() {
+                "step" => "tolerance",
+                "tolerance" => "step",
+                _ => "",
+            };
+            if !changes.iter().any(|change| change.key == other) {
+                entries.retain(|entry| entry.key != other);
+            }
+            replace(entries, change.clone());
+        }
+    }
+
+    /// The tree's entries, without what is left out.
+    pub fn finished(mut self) -> Vec<Entry> {
+        for section in NAMED {
+            let found = self.entries.iter_mut().find(|entry| entry.key == section);
+            if let Some(Value::Mapping(entries)) = found.map(|entry| &mut entry.value.value) {
+                entries.retain(|entry| !self.out.contains(&(section, entry.key.clone())));
+            }
+        }
+        self.entries
+    }
+}
+
+/// Puts an entry in the place of the one with its key, or behind the others.
+fn replace(entries: &mut Vec<Entry>, entry: Entry) {
+    match entries.iter_mut().find(|known| known.key == entry.key) {
+        Some(known) => *known = entry,
+        None => entries.push(entry),
+    }
+}
+
+/// The texts of a list, each with its place.
+fn names(reader: &mut Reader, node: &Node, wanted: &str) -> Vec<(String, Span)> {
+    let Value::Sequence(items) = &node.value else {
+        let help = "write `[name, name]`".to_owned();
+        reader.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), help);
+        return Vec::new();
+    };
+    let name = |item: &Node| Some((reader.scalar(item, "a name")?.text.clone(), item.span.clone()));
+    items.iter().filter_map(name).collect()
+}
+
+/// A model's parameter as a scene has it.
+fn overridden(model: &Entry, scene: &Entry) -> Entry {
+    let field =
+        |key: &str, value: &Node| Entry { key: key.to_owned(), key_span: value.span.clone(), value: value.clone() };
+    let mut fields = match &model.value.value {
+        Value::Mapping(fields) => fields.clone(),
+        _ => vec![field("value", &model.value)],
+    };
+    let changes = match &scene.value.value {
+        Value::Mapping(changes) => changes.clone(),
+        _ => vec![field("value", &scene.value)],
+    };
+    let says = |keys: &[&str]| changes.iter().any(|change| keys.contains(&change.key.as_str()));
+    if says(&["value"]) || says(&DEVIATION) {
+        fields.retain(|field| !DEVIATION.contains(&field.key.as_str()));
+    }
+    if says(&["interval"]) {
+        fields.retain(|field| field.key != "value");
+    }
+    changes.into_iter().for_each(|change| replace(&mut fields, change));
+    let value = match fields.as_slice() {
+        [only] if only.key == "value" => only.value.clone(),
+        _ => Node { span: scene.value.span.clone(), value: Value::Mapping(fields) },
+    };
+    Entry { key: scene.key.clone(), key_span: scene.key_span.clone(), value }
+}

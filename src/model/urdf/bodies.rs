@@ -1,0 +1,145 @@
+//! Links that are welded together → one body, whose frame is that of the link nearest to the root:
+//!
+//! ```text
+//! m = Σ mᵢ,   m c = Σ mᵢ cᵢ,   J = Σ Rᵢ Jᵢ Rᵢᵀ + mᵢ (dᵢ² 1 − dᵢ dᵢᵀ),   dᵢ = cᵢ − c
+//! ```
+//!
+//! The other links are frames at points of it, named after them.
+
+use super::algebra::{self, Value, Vector};
+use super::source::{Pose, Source, formula, formulas};
+use crate::grammar::Coordinate;
+use crate::model::description::{Body, Inertia};
+use crate::model::names::Reader;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
+const LEAST_MASS: f64 = 1e-3;
+const LEAST_INERTIA: f64 = 1e-6;
+const LEAST_RADIUS_SQUARED: f64 = 1e-8;
+
+/// Links that are welded together.
+pub struct Group {
+    /// The first is nearest to the root.
+    pub links: Vec<usize>,
+    /// Index into the model's bodies; absent where it is left out.
+    pub body: Option<usize>,
+}
+
+/// Mass, centre of mass and inertia about it of a link, in the frame of its body.
+struct Part {
+    mass: Value,
+    center: Vector,
+    inertia: [Vector; 3],
+}
+
+/// The body of links that are welded together.
+pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Body {
+    let root = &source.robot.links[group.links[0]];
+    let parts = parts(source, group, of_link);
+    let masses: Vec<Value> = parts.iter().map(|part| part.mass.clone()).collect();
+    let mut mass = algebra::sum(&masses);
+    let center = center(&parts, &mass);
+    let mut inertia = inertia(&parts, &center);
+    if mass.is_zero() {
+        let message =
+            format!("link `{}` moves, but has no mass: {LEAST_MASS} kg and {LEAST_INERTIA} kg m² are taken", root.name);
+        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
+        mass = algebra::number(LEAST_MASS);
+        (0..3).for_each(|i| inertia[i][i] = algebra::number(LEAST_INERTIA));
+    } else if let Some(least) = too_small(&mass, &inertia) {
+        let message = format!(
+            "link `{}` has next to no inertia about some axis: {least:.1e} kg m² are added about each",
+            root.name
+        );
+        reader.diagnostics.push(Diagnostic::warning(root.span.clone(), message));
+        (0..3).for_each(|i| inertia[i][i] = algebra::sum(&[inertia[i][i].clone(), algebra::number(least)]));
+    }
+    let coordinates = [Coordinate::X, Coordinate::Y, Coordinate::Z].into_iter().chain(Coordinate::ORIENTATION);
+    let mut element = |i: usize, k: usize| formula(reader, &inertia[i][k]);
+    let inertia = Inertia {
+        xx: element(0, 0),
+        yy: element(1, 1),
+        zz: element(2, 2),
+        xy: element(0, 1),
+        xz: element(0, 2),
+        yz: element(1, 2),
+    };
+    Body {
+        name: root.name.clone(),
+        mass: Some(formula(reader, &mass)),
+        inertia: Some(inertia),
+        center_of_mass: Some(formulas(reader, &center)),
+        coordinates: coordinates.collect(),
+        held: Vec::new(),
+        held_orientation: None,
+        points: Vec::new(),
+    }
+}
+
+/// The links that have mass, or whose mass is a parameter.
+fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part> {
+    let massive = group.links.iter().filter_map(|&link| {
+        let inertial = source.robot.links[link].inertial.as_ref()?;
+        let named = source.named.contains(&inertial.mass.name);
+        (inertial.mass.value > 0.0 || named).then_some((link, inertial))
+    });
+    let part = massive.map(|(link, inertial)| {
+        let rotation = algebra::roll_pitch_yaw(&source.vector(&inertial.origin.rpy));
+        let pose = of_link[link].1.then(&source.vector(&inertial.origin.xyz), &rotation);
+        let [xx, yy, zz, xy, xz, yz] = inertial.inertia.each_ref().map(|number| source.value(number));
+        let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
+        Part {
+            mass: source.value(&inertial.mass),
+            center: pose.position,
+            inertia: algebra::rotate_tensor(&pose.rotation, &tensor),
+        }
+    });
+    part.collect()
+}
+
+fn center(parts: &[Part], mass: &Value) -> Vector {
+    match parts {
+        [] => algebra::vector([0.0; 3]),
+        [part] => part.center.clone(),
+        parts => std::array::from_fn(|i| {
+            let moments: Vec<Value> = parts.iter().map(|part| algebra::mul(&part.mass, &part.center[i])).collect();
+            algebra::div(&algebra::sum(&moments), mass)
+        }),
+    }
+}
+
+/// Of all parts about their centre of mass.
+fn inertia(parts: &[Part], center: &Vector) -> [Vector; 3] {
+    let steiner = |part: &Part| {
+        let d: Vector = std::array::from_fn(|i| algebra::sub(&part.center[i], &center[i]));
+        algebra::steiner(&part.mass, &d)
+    };
+    let shifts: Vec<[Vector; 3]> = if parts.len() > 1 { parts.iter().map(steiner).collect() } else { Vec::new() };
+    std::array::from_fn(|i| {
+        std::array::from_fn(|k| {
+            let terms: Vec<Value> = parts
+                .iter()
+                .enumerate()
+                .flat_map(|(index, part)| {
+                    let shift = shifts.get(index).map_or_else(|| algebra::number(0.0), |shift| shift[i][k].clone());
+                    [part.inertia[i][k].clone(), shift]
+                })
+                .collect();
+            algebra::sum(&terms)
+        })
+    })
+}
+
+/// What has to be added to a tensor that turns the equations singular, or nearly; uncertain ones are as they are said to be.
+fn too_small(mass: &Value, inertia: &[Vector; 3]) -> Option<f64> {
+    let Value::Number(mass) = mass else { return None };
+    let mut numbers = [0.0; 9];
+    for (slot, value) in numbers.iter_mut().zip(inertia.iter().flatten()) {
+        let Value::Number(value) = value else { return None };
+        *slot = *value;
+    }
+    let moments = nalgebra::Matrix3::from_row_slice(&numbers).symmetric_eigenvalues();
+    let least = LEAST_RADIUS_SQUARED * mass;
+    (moments.min().abs() < least).then_some(least)
+}

@@ -1,0 +1,74 @@
+//! Joints of a [`Robot`](super::robot::Robot) → joints of the model.
+
+use symdiff::Formula;
+
+use super::algebra::{self, Value};
+use super::robot::Kind;
+use super::source::{Built, Source, coordinate, formula, point};
+use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
+use crate::grammar::{Axis, Direction, PointRef, Turning};
+use crate::model::description::Joint;
+use crate::model::names::Reader;
+
+/// Adds a joint that moves, with the frame it is at on its parent.
+pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {
+    let joint = &source.robot.joints[index];
+    let (parent, pose) = &built.places[joint.parent];
+    let (parent, child) = ((*parent)?, built.places[joint.child].0?);
+    if matches!(joint.kind, Kind::Fixed | Kind::Floating) {
+        return None;
+    }
+    let rotation = algebra::roll_pitch_yaw(&source.vector(&joint.origin.rpy));
+    let pose = pose.then(&source.vector(&joint.origin.xyz), &rotation);
+    let mut name = joint.name.clone();
+    while reader.model.bodies[parent].points.iter().any(|point| point.name == name) {
+        name.push_str("_joint");
+    }
+    let at = point(reader, name, &pose);
+    let points = &mut reader.model.bodies[parent].points;
+    points.push(at);
+    let between = [PointRef { body: parent, point: Some(points.len() - 1) }, PointRef { body: child, point: None }];
+    let axis = unit(joint.axis).map(Formula::number);
+    let kind: JointKind = match joint.kind {
+        Kind::Prismatic => Prismatic { between, axis: Direction(axis), angle: Formula::number(0.0) }.into(),
+        Kind::Planar => Planar { between, normal: Direction(axis) }.into(),
+        _ => Revolute { between, axis: Axis(axis) }.into(),
+    };
+    reader.model.joints.push(Joint::new(joint.name.clone(), kind));
+    Some(reader.model.joints.len() - 1)
+}
+
+/// Of length one.
+fn unit(axis: [f64; 3]) -> [f64; 3] {
+    let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+    axis.map(|part| part / length)
+}
+
+/// Adds the constraint of a joint that mimics another.
+pub fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) {
+    let joint = &source.robot.joints[index];
+    let Some(mimic) = &joint.mimic else { return };
+    let (Some(this), Some(other)) = (built.joints[index], built.joints[mimic.joint]) else { return };
+    let leader = &source.robot.joints[mimic.joint];
+    let (Some((_, position, _)), Some((_, followed, _))) = (coordinate(joint.kind), coordinate(leader.kind)) else {
+        return;
+    };
+    let kind = if joint.kind.turns() && leader.kind.turns() && mimic.multiplier != 0.0 {
+        JointKind::from(Gear {
+            between: [Turning::Joint(other), Turning::Joint(this)],
+            ratio: Formula::number(mimic.multiplier),
+            offset: Formula::number(mimic.offset),
+        })
+    } else {
+        let text = format!("({:e})*{}.{followed} + ({:e})", mimic.multiplier, leader.name, mimic.offset);
+        JointKind::from(Equation {
+            left: formula(reader, &Value::Text(format!("{}.{position}", joint.name))),
+            right: formula(reader, &Value::Text(text)),
+        })
+    };
+    let mut name = format!("{}_mimic", joint.name);
+    while reader.model.joints.iter().any(|joint| joint.name == name) {
+        name.push('_');
+    }
+    reader.model.joints.push(Joint::new(name, kind));
+}

@@ -1,0 +1,95 @@
+//! What the bodies, joints and start values of a robot are made from: its numbers, frames, and where its parts are in the model.
+
+use std::collections::HashSet;
+
+use symdiff::Formula;
+
+use super::algebra::{self, Quaternion, Value, Vector};
+use super::robot::{Kind, Number, Robot};
+use crate::grammar::{JointCoordinate, PointRef, Rotation};
+use crate::model::description::Point;
+use crate::model::names::Reader;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// What is read of a URDF, and how numbers are looked at.
+pub struct Source<'s> {
+    pub robot: &'s Robot,
+    pub floating: bool,
+    /// Words of the model that names the file.
+    pub words: &'s HashSet<String>,
+    /// Numbers that are parameters.
+    pub named: &'s HashSet<String>,
+}
+
+impl Source<'_> {
+    pub fn value(&self, number: &Number) -> Value {
+        if self.named.contains(&number.name) { Value::Text(number.name.clone()) } else { Value::Number(number.value) }
+    }
+
+    pub fn vector(&self, numbers: &[Number; 3]) -> Vector {
+        numbers.each_ref().map(|number| self.value(number))
+    }
+
+    /// Of some links, kg.
+    pub fn mass(&self, links: &[usize]) -> f64 {
+        links.iter().filter_map(|&link| Some(self.robot.links[link].inertial.as_ref()?.mass.value)).sum()
+    }
+}
+
+/// A frame in another: position, and rotation into the other.
+#[derive(Clone)]
+pub struct Pose {
+    pub position: Vector,
+    pub rotation: Quaternion,
+}
+
+impl Pose {
+    pub fn identity() -> Self {
+        Self { position: algebra::vector([0.0; 3]), rotation: algebra::identity() }
+    }
+
+    /// A frame in this one, in the frame around it.
+    pub fn then(&self, xyz: &Vector, rotation: &Quaternion) -> Self {
+        let position = algebra::add(&self.position, &algebra::rotate(&self.rotation, xyz));
+        Self { position, rotation: algebra::product(&self.rotation, rotation) }
+    }
+}
+
+/// Where everything of the robot is in the model.
+pub struct Built {
+    /// Of each of the robot's joints that moves and is not left out: the model's.
+    pub joints: Vec<Option<usize>>,
+    /// Of each link, its body and pose in it.
+    pub places: Vec<(Option<usize>, Pose)>,
+    /// Of each link, its frame as others can name it; absent where it is left out.
+    pub frames: Vec<Option<PointRef>>,
+}
+
+/// The formula of a value that is not too long.
+pub fn formula(reader: &mut Reader, value: &Value) -> Formula {
+    value.formula().unwrap_or_else(|| {
+        let message = "too many links are welded together with uncertain numbers";
+        reader.diagnostics.push(Diagnostic::of_file(message));
+        Formula::number(f64::NAN)
+    })
+}
+
+pub fn formulas<const N: usize>(reader: &mut Reader, values: &[Value; N]) -> [Formula; N] {
+    values.each_ref().map(|value| formula(reader, value))
+}
+
+/// A point at a pose, with its frame.
+pub fn point(reader: &mut Reader, name: String, pose: &Pose) -> Point {
+    let position = formulas(reader, &pose.position);
+    let rotation = Some(Rotation::Quaternion(formulas(reader, &pose.rotation)));
+    Point { name, position, rotation }
+}
+
+/// The coordinate of a joint that has one, and the names of it and its rate.
+pub fn coordinate(kind: Kind) -> Option<(JointCoordinate, &'static str, &'static str)> {
+    match kind {
+        Kind::Revolute | Kind::Continuous => Some((JointCoordinate::Angle, "angle", "angular_velocity")),
+        Kind::Prismatic => Some((JointCoordinate::Displacement, "displacement", "velocity")),
+        _ => None,
+    }
+}

@@ -1,0 +1,40 @@
+//! What can be wrong with a mechanism that only shows when its equations are written down.
+
+use super::context::Context;
+
+/// Why a description has no equations of motion.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// A constraint without a coordinate in it, and not zero.
+    #[error(
+        "joint `{joint}`: nothing in `{constraint}` can move, yet it is {residual} instead of 0{}",
+        match at { Some(sample) => format!(" ({sample})"), None => String::new() }
+    )]
+    Contradiction {
+        /// Name of the joint.
+        joint: String,
+        /// Name of the constraint, e.g. `pin.y`.
+        constraint: String,
+        /// Its value, m or rad.
+        residual: f64,
+        /// Where between the bounds of the parameters; `None` where it is so at the nominal values.
+        at: Option<&'static str>,
+    },
+    /// Joint coordinates are asked for where they are not possible.
+    #[error("`formulation: joint` does not do here: {why}")]
+    NotCarried {
+        /// What is in the way.
+        why: String,
+    },
+    /// The speed of a motor has no integral that is known. The reader of model files lets none through.
+    #[error("a motor's speed cannot be integrated")]
+    Speed,
+    /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
+    #[error("`{name}` cannot stand in a formula of {allowed}")]
+    Name {
+        /// The name.
+        name: String,
+        /// What the formula may depend on.
+        allowed: Context,
+    },
+}

@@ -1,0 +1,252 @@
+//! What the tests share: reading, running, and looking at curves.
+
+pub mod adams;
+pub mod closed_forms;
+pub mod dormand_prince;
+pub mod power;
+pub mod restitution;
+pub mod runge_kutta;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use mbint::methods::{Chebyshev, Expand, Scan};
+use mbint::model::{self, Description, Output, ParameterValue, Stepping};
+use mbint::numerics::RangeKind;
+use mbint::results::Summary;
+use mbint::results::{Band, Bounds, Method, OutputBounds};
+use mbint::study::{self, Options};
+
+/// The files of `models/`, in alphabetical order.
+pub fn model_files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "models/ holds no models");
+    paths
+}
+
+/// The model of this name in `models/`.
+#[track_caller]
+pub fn model(name: &str) -> Description {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("models").join(name).with_extension("yaml");
+    load(&path)
+}
+
+#[track_caller]
+pub fn load(path: &Path) -> Description {
+    model::load(path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+}
+
+/// What `mbint run` runs of a file: its scenes or, where it has none, the model itself.
+#[track_caller]
+pub fn load_all(path: &Path) -> Vec<Description> {
+    let reading = model::read(path, &[]);
+    let told = reading.diagnostics.clone();
+    let chosen = reading.chosen(&[]).unwrap();
+    assert!(!chosen.is_empty(), "{told}");
+    chosen.into_iter().map(|(_, description)| description).collect()
+}
+
+/// A model from text.
+#[track_caller]
+pub fn read(text: &str) -> Description {
+    model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+}
+
+/// Runs what the model asks for; nothing may fail.
+#[track_caller]
+pub fn run(description: &Description) -> Bounds {
+    run_methods(description, None).0
+}
+
+/// Runs the nominal sample only.
+#[track_caller]
+pub fn nominal(description: &Description) -> Bounds {
+    run_methods(description, Some(Vec::new())).0
+}
+
+#[track_caller]
+pub fn run_methods(description: &Description, methods: Option<Vec<Method>>) -> (Bounds, Summary) {
+    let options = Options { methods, threads: Some(2), ..Options::default() };
+    let (bounds, summary) =
+        study::run(description, options).unwrap_or_else(|error| panic!("{}: {error}", description.name));
+    assert_eq!(summary.failure, None, "{}", description.name);
+    (bounds, summary)
+}
+
+/// Changes to a description, for tests that vary one thing.
+pub trait Vary {
+    fn step(self, h: f64) -> Self;
+    fn duration(self, duration: f64) -> Self;
+    /// Its own duration, but at most this.
+    fn at_most(self, duration: f64) -> Self;
+    /// A row of output after every this many seconds.
+    fn rows_every(self, output_step: f64) -> Self;
+    fn tolerance(self, tolerance: f64) -> Self;
+    /// These outputs instead of the model's.
+    fn observing(self, formulas: &[&str]) -> Self;
+    /// An uncertain parameter's interval, relative to its nominal value.
+    fn uncertain(self, parameter: &str, relative: f64) -> Self;
+    /// Chebyshev bounds of the expanded outputs only, of this order in every parameter.
+    fn chebyshev(self, order: usize, range: RangeKind) -> Self;
+    /// A scan only.
+    fn scan(self, points: usize) -> Self;
+}
+
+impl Vary for Description {
+    fn step(mut self, h: f64) -> Self {
+        self.simulation.stepping = Stepping::Fixed(h);
+        self
+    }
+
+    fn duration(mut self, duration: f64) -> Self {
+        self.simulation.duration = duration;
+        self
+    }
+
+    fn at_most(mut self, duration: f64) -> Self {
+        self.simulation.duration = self.simulation.duration.min(duration);
+        self
+    }
+
+    fn rows_every(mut self, output_step: f64) -> Self {
+        self.simulation.output_step = output_step;
+        self
+    }
+
+    fn tolerance(mut self, tolerance: f64) -> Self {
+        self.simulation.stepping = Stepping::Tolerance(tolerance);
+        self
+    }
+
+    fn observing(mut self, formulas: &[&str]) -> Self {
+        let output = |formula: &&str| Output {
+            name: (*formula).to_owned(),
+            formula: symdiff::Formula::parse(formula).unwrap(),
+            unit: String::new(),
+        };
+        self.outputs = formulas.iter().map(output).collect();
+        self
+    }
+
+    fn uncertain(mut self, parameter: &str, relative: f64) -> Self {
+        let found = self.parameters.iter_mut().find(|known| known.name == parameter).unwrap();
+        let ParameterValue::Interval { nominal, .. } = found.value else { panic!("{parameter} is certain") };
+        let half = relative * nominal.abs();
+        found.value = ParameterValue::Interval { nominal, lower: nominal - half, upper: nominal + half };
+        self
+    }
+
+    fn chebyshev(mut self, order: usize, range: RangeKind) -> Self {
+        let order = Chebyshev::of_order(order, uncertain_count(&self));
+        let request = Chebyshev { expand: Expand::Output, range, ..order };
+        self.bounds = mbint::methods::BoundsRequest { chebyshev: Some(request), ..Default::default() };
+        self
+    }
+
+    fn scan(mut self, points: usize) -> Self {
+        let request = Scan::of_points(points, uncertain_count(&self));
+        self.bounds = mbint::methods::BoundsRequest { scan: Some(request), ..Default::default() };
+        self
+    }
+}
+
+pub fn uncertain_count(description: &Description) -> usize {
+    let uncertain = |parameter: &&model::Parameter| matches!(parameter.value, ParameterValue::Interval { .. });
+    description.parameters.iter().filter(uncertain).count()
+}
+
+/// An output by its name.
+#[track_caller]
+pub fn output<'b>(bounds: &'b Bounds, name: &str) -> &'b OutputBounds {
+    bounds.outputs.iter().find(|output| output.name == name).unwrap_or_else(|| panic!("no output {name}"))
+}
+
+/// An output's nominal course.
+#[track_caller]
+pub fn curve<'b>(bounds: &'b Bounds, name: &str) -> &'b [f64] {
+    &output(bounds, name).nominal
+}
+
+/// A method's band of an output.
+#[track_caller]
+pub fn band(output: &OutputBounds, method: Method) -> &Band {
+    output.bands.iter().find(|band| band.method == method).unwrap()
+}
+
+/// Largest absolute value; not a number where there is one.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
+}
+
+/// Largest difference of two curves.
+#[track_caller]
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    largest(a.iter().zip(b).map(|(a, b)| a - b))
+}
+
+/// Largest difference of a curve from a function of time.
+pub fn distance_from(times: &[f64], curve: &[f64], exact: impl Fn(f64) -> f64) -> f64 {
+    largest(times.iter().zip(curve).map(|(&t, value)| value - exact(t)))
+}
+
+/// The step that ends at a time.
+pub fn row(bounds: &Bounds, time: f64) -> usize {
+    let row = bounds.times.iter().position(|&t| (t - time).abs() < 1e-9);
+    row.unwrap_or_else(|| panic!("no row at {time} s"))
+}
+
+/// Observed order of convergence from the errors at h and h/2.
+pub fn order(coarse: f64, fine: f64) -> f64 {
+    (coarse / fine).log2()
+}
+
+/// Extrapolates two curves of a second-order scheme, at h and h/2, to h = 0.
+pub fn richardson(coarse: &[f64], fine: &[f64]) -> Vec<f64> {
+    coarse.iter().zip(fine).map(|(coarse, fine)| (4.0 * fine - coarse) / 3.0).collect()
+}
+
+/// Asserts on all cases at once, so that one failing run shows every number.
+#[derive(Default)]
+pub struct Findings(String);
+
+impl Findings {
+    pub fn check(&mut self, fine: bool, what: std::fmt::Arguments) {
+        if !fine {
+            writeln!(self.0, "{what}").unwrap();
+        }
+    }
+
+    #[track_caller]
+    pub fn none(self) {
+        assert!(self.0.is_empty(), "\n{}", self.0);
+    }
+}
+
+/// Rows of a committed file of reference results; `tests/reference/README.md` says how each was made.
+#[track_caller]
+pub fn reference(file: &str) -> Vec<Vec<f64>> {
+    rows(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(file))
+}
+
+/// The folder of results and robots that other projects published; tests that need it are ignored unless asked for.
+pub fn third_party() -> PathBuf {
+    std::env::var_os("MBINT_REFERENCE").expect("MBINT_REFERENCE names the folder of third-party results").into()
+}
+
+/// Rows of numbers below a line of names; `#` begins a comment.
+#[track_caller]
+pub fn rows(path: &Path) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let rows: Vec<_> =
+        lines.map(|line| line.split([',', '\t']).map(|field| field.parse().unwrap()).collect()).collect();
+    assert!(!rows.is_empty(), "{} has no rows", path.display());
+    rows
+}

@@ -1,0 +1,64 @@
+//! Prismatic joints: a slope, and MSC Adams.
+
+use crate::common::power::{assert_balance, pair, spatial_pair};
+use crate::common::adams::Case;
+use crate::common::closed_forms::{assert_exact, assert_exact_force};
+use crate::common::{nominal, read};
+
+#[test]
+fn a_body_slides_down_an_incline() {
+    // x = ½ g sin β t² along the slope; the slope carries m g cos β.
+    let bounds = nominal(&read(
+        "
+parameters: { slope: 30 deg, g: 9.81 }
+bodies: { box: { mass: 4, inertia: 0.2 } }
+joints:
+  slide: { prismatic: { between: [ground, box], axis: [cos(slope), -sin(slope)] } }
+effects: { weight: { gravity: { acceleration: [0, -g] } } }
+initial: { box.x: 0, box.vx: 0 }
+outputs:
+  along: box.x*cos(slope) - box.y*sin(slope)
+  off: box.x*sin(slope) + box.y*cos(slope)
+  angle: box.angle
+  up: slide.force.y
+  across: slide.force.x
+  torque: slide.torque
+simulation: { duration: 1, step: 0.01, output_step: 0.1 }
+",
+    ));
+    let beta = 30.0_f64.to_radians();
+    let normal = 4.0 * 9.81 * beta.cos();
+    assert_exact(&bounds, "along", |t| 0.5 * 9.81 * beta.sin() * t * t);
+    assert_exact(&bounds, "off", |_| 0.0);
+    assert_exact(&bounds, "angle", |_| 0.0);
+    assert_exact_force(&bounds, "up", |_| normal * beta.cos());
+    assert_exact_force(&bounds, "across", |_| normal * beta.sin());
+    assert_exact_force(&bounds, "torque", |_| 0.0);
+}
+
+const ADAMS: Case = Case {
+    name: "prismatic_joint/Prismatic",
+    velocities: "prismatic_joint/Prismatic",
+    text: "bodies:
+  a: { mass: 1, inertia: [0.04, 0.1, 0.1], points: { P: [-2, 0, 0] } }
+joints: { j: { prismatic: { between: [ground, a.P], axis: z } } }
+initial: { j.displacement: 0 }",
+    at_one: [2.0, 0.0, -4.90332, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+};
+
+#[test]
+fn after_a_second_it_is_where_adams_has_it() {
+    ADAMS.at_one_second();
+}
+
+#[test]
+#[ignore = "third-party results: MBINT_REFERENCE=folder"]
+fn it_moves_as_in_adams() {
+    ADAMS.over_five_seconds();
+}
+
+#[test]
+fn its_reactions_do_no_work() {
+    assert_balance(&pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
+    assert_balance(&spatial_pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2, -0.5], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
+}

@@ -1,0 +1,48 @@
+//! Servos: step response and limit.
+
+use crate::common::power::{assert_balance, pair};
+use crate::common::{Vary, curve, distance_from, nominal, read, richardson};
+
+/// J θ̈ + k_d θ̇ + k_p θ = k_p θ₀ from rest: the step response of a damped oscillator.
+#[test]
+fn a_servo_answers_a_step() {
+    let (inertia, kp, kd, target) = (0.1, 40.0, 1.2, 0.5);
+    let description = read(&format!(
+        "
+bodies: {{ arm: {{ mass: 1, inertia: {inertia} }} }}
+joints: {{ hinge: {{ revolute: [ground, arm] }} }}
+effects: {{ drive: {{ servo: {{ on: hinge, target: {target}, proportional: {kp}, derivative: {kd} }} }} }}
+initial: {{ arm.angle: 0, arm.angular_velocity: 0 }}
+outputs: {{ angle: arm.angle }}
+simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
+"
+    ));
+    let decay: f64 = kd / (2.0 * inertia);
+    let omega = (kp / inertia - decay * decay).sqrt();
+    let exact = |t: f64| target * (1.0 - (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin()));
+    let runs = [1e-3, 5e-4].map(|h| nominal(&description.clone().step(h)));
+    let left = distance_from(&runs[0].times, &richardson(curve(&runs[0], "angle"), curve(&runs[1], "angle")), exact);
+    assert!(left < 1e-7, "{left:e}");
+}
+
+/// Far from its target a servo gives what its limit allows; a moving target is followed in its rate too.
+#[test]
+fn a_servo_has_its_limit() {
+    let bounds = nominal(&read(
+        "
+bodies: { cart: { mass: 2, inertia: 1 } }
+joints: { rail: { prismatic: { between: [ground, cart], axis: x } } }
+effects: { drive: { servo: { on: rail, target: 100 + 3*t, proportional: 1000, derivative: 20, limit: 8 } } }
+initial: { cart.x: 0, cart.vx: 0 }
+outputs: { x: cart.x, force: drive.force }
+simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
+",
+    ));
+    assert!(distance_from(&bounds.times, curve(&bounds, "force"), |_| 8.0) < 1e-6);
+    assert!(distance_from(&bounds.times, curve(&bounds, "x"), |t| 2.0 * t * t) < 1e-6);
+}
+
+#[test]
+fn its_power_is_torque_times_rate() {
+    assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");
+}

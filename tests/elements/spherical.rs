@@ -1,0 +1,30 @@
+//! Spherical joints: MSC Adams.
+
+use crate::common::power::{assert_balance, spatial_pair};
+use crate::common::adams::Case;
+
+const ADAMS: Case = Case {
+    name: "spherical_joint/Spherical",
+    velocities: "revolute_joint/Revolute",
+    text: "bodies:
+  a: { mass: 1, inertia: [0.04, 0.1, 0.1], points: { P: [-2, 0, 0] } }
+joints: { j: { spherical: [ground, a.P] } }
+initial: { a.orientation: { axis: x, angle: 0 } }",
+    at_one: [-0.892369, 0.0, -1.78988, 0.52622, 0.0, 0.850348, 0.0, 11.4609, 0.0, 23.227, 0.0, 2.92608, 0.0],
+};
+
+#[test]
+fn after_a_second_it_is_where_adams_has_it() {
+    ADAMS.at_one_second();
+}
+
+#[test]
+#[ignore = "third-party results: MBINT_REFERENCE=folder"]
+fn it_moves_as_in_adams() {
+    ADAMS.over_five_seconds();
+}
+
+#[test]
+fn its_reactions_do_no_work() {
+    assert_balance(&spatial_pair("  j: { spherical: [a.P, b.P] }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  b.orientation: { rpy: [-0.3, 0.1, 0.5] }\n  b.omega: [-0.2, 0.5, 1.3]"), "0");
+}

@@ -1,0 +1,302 @@
+//! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
+//! perhaps with `# help: …`, in a URDF `<!-- error: … -->`. Message and place must both be found, and nothing else.
+//!
+//! `MBINT_UPDATE=1 cargo test --test program bad_models` writes what is found; then read the difference.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use mbint::{
+    model::{self, Override},
+    syntax::Diagnostics,
+};
+use proptest::prelude::*;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn slider_crank() -> String {
+    fs::read_to_string(root().join("models/slider_crank.yaml")).unwrap()
+}
+
+fn is_expectation(line: &str) -> bool {
+    let line = line.strip_prefix("<!-- ").or_else(|| line.strip_prefix("# "));
+    line.is_some_and(|line| ["error: ", "warning: ", "help: "].iter().any(|start| line.starts_with(start)))
+}
+
+/// As comments of the file's language.
+fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
+    if path.extension().is_some_and(|extension| extension == "yaml") {
+        return lines;
+    }
+    lines.iter().map(|line| format!("<!-- {} -->", line.trim_start_matches("# "))).collect()
+}
+
+fn found(diagnostics: &Diagnostics) -> Vec<String> {
+    let mut lines = Vec::new();
+    for record in diagnostics.records() {
+        let severity = format!("{:?}", record.severity).to_lowercase();
+        let place = match (record.line, record.column) {
+            (Some(line), Some(column)) => format!("{line}:{column} "),
+            _ => String::new(),
+        };
+        lines.push(format!("# {severity}: {place}{}", record.message));
+        lines.extend(record.help.map(|help| format!("# help: {help}")));
+    }
+    lines
+}
+
+fn bad_models() -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> = fs::read_dir(root().join("tests/bad_models"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml" || extension == "urdf"))
+        .collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn bad_models_are_reported_in_their_places() {
+    let update = std::env::var_os("MBINT_UPDATE").is_some();
+    let mut failures = String::new();
+    let paths = bad_models();
+    assert!(paths.len() >= 50, "only {} bad models", paths.len());
+    for path in paths {
+        let text = fs::read_to_string(&path).unwrap();
+        let expected: Vec<&str> = text.lines().take_while(|line| is_expectation(line)).collect();
+        let got = commented(&path, found(&model::read(&path, &[]).diagnostics));
+        if got == expected {
+            assert!(!expected.is_empty(), "{} is not bad", path.display());
+            continue;
+        }
+        if update {
+            let body: String = text.split_inclusive('\n').skip(expected.len()).collect();
+            let with = |lines: &[String]| format!("{}\n{body}", lines.join("\n"));
+            // The places move down by the lines that are written: once more gives them as they then are.
+            fs::write(&path, with(&got)).unwrap();
+            let moved = commented(&path, found(&model::read(&path, &[]).diagnostics));
+            fs::write(&path, with(&moved)).unwrap();
+        }
+        failures +=
+            &format!("{}\n  expected:\n{}\n  found:\n{}\n", path.display(), expected.join("\n"), got.join("\n"));
+    }
+    assert!(failures.is_empty(), "{failures}");
+}
+
+#[test]
+fn every_bad_model_renders() {
+    for path in bad_models() {
+        let diagnostics = model::read(&path, &[]).diagnostics;
+        for colour in [true, false] {
+            let text = diagnostics.render(colour);
+            assert!(!text.is_empty());
+            assert!(text.lines().all(|line| line.chars().count() < 1000), "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn an_error_looks_like_rustc() {
+    let text = slider_crank().replace("[crank.B, rod.B]", "[crnk.B, rod.B]");
+    let diagnostics = model::load_str("models/x.yaml", &text, &[]).unwrap_err();
+    let expected = "\
+error: unknown body `crnk`
+  --> models/x.yaml:19:23
+   |
+19 |   pin:   { revolute: [crnk.B, rod.B] }
+   |                       ^^^^
+   |
+   = help: did you mean `crank`?
+";
+    assert_eq!(diagnostics.render(false), expected);
+}
+
+#[test]
+fn both_places_of_a_duplicate_are_shown() {
+    let text = "parameters:\n  a: 1\n  a: 2\n";
+    let rendered = model::load_str("x.yaml", text, &[]).unwrap_err().render(false);
+    assert!(rendered.contains("first here") && rendered.contains("again here"), "{rendered}");
+}
+
+#[test]
+fn very_long_lines_are_cut() {
+    let filler = "x".repeat(1_000_000);
+    let text = format!("outputs: {{ {filler}: 1, b: [2], y: {filler} }}");
+    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    let rendered = diagnostics.render(false);
+    assert!(rendered.len() < 20_000, "{} bytes", rendered.len());
+    let place = diagnostics.records().into_iter().find(|record| record.column.is_some_and(|column| column > 1_000_000));
+    assert!(rendered.contains(&format!("x.yaml:1:{}", place.unwrap().column.unwrap())), "{rendered}");
+}
+
+fn error_of(path: &Path) -> String {
+    let start = Instant::now();
+    let diagnostics = model::load(path, &[]).unwrap_err();
+    assert!(start.elapsed() < Duration::from_secs(2));
+    let rendered = diagnostics.render(false);
+    assert!(rendered.contains(&path.display().to_string()), "{rendered}");
+    let record = diagnostics.records().remove(0);
+    record.message
+}
+
+#[test]
+fn files_that_are_no_models_are_refused_quickly() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    };
+    assert_eq!(error_of(&folder.path().join("missing.yaml")), "the file cannot be read: there is no such file");
+    assert_eq!(error_of(folder.path()), "this is a directory, not a file");
+    assert_eq!(error_of(&file("empty.yaml", b"")), "the file is empty");
+    assert_eq!(error_of(&file("comments.yaml", b"# nothing\n# here\n")), "the file is empty");
+    assert_eq!(error_of(&file("latin1.yaml", b"a: 1\nb: \xff\n")), "the file is not UTF-8 text: byte 9 in line 2");
+    assert!(error_of(&file("binary.yaml", &[0x7f, b'E', b'L', b'F', 2, 1, 1, 0])).contains("zero byte"));
+    let large = folder.path().join("large.yaml");
+    fs::File::create(&large).unwrap().set_len(100_000_000).unwrap();
+    assert_eq!(error_of(&large), "the file has 100.0 MB; a model may have 10 MB");
+    let mut bomb = "a: &a [x,x,x,x,x,x,x,x,x]\n".to_owned();
+    for (this, last) in ('b'..='i').zip('a'..) {
+        bomb += &format!("{this}: &{this} [{}]\n", vec![format!("*{last}"); 9].join(","));
+    }
+    let start = Instant::now();
+    let records = model::load_str("bomb.yaml", &bomb, &[]).unwrap_err().records();
+    for message in ["anchors are not supported", "aliases are not supported"] {
+        assert!(records.iter().any(|record| record.message == message));
+    }
+    assert!(start.elapsed() < Duration::from_secs(2));
+    for (name, open) in [("flow.yaml", "["), ("block.yaml", "- "), ("maps.yaml", "{a: ")] {
+        let message = error_of(&file(name, open.repeat(100_000).as_bytes()));
+        assert_eq!(message, "mappings and lists nest deeper than 40 levels");
+    }
+    let formula = slider_crank().replace("l1 + l2", &"(".repeat(100_000));
+    assert!(error_of(&file("formula.yaml", formula.as_bytes())).contains("nests deeper"));
+}
+
+#[test]
+fn large_files_are_read_in_time() {
+    let mut text = "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\n".to_owned();
+    text += "simulation: { duration: 1 }\nparameters:\n";
+    for index in 0..20_000 {
+        text += &format!("  p{index}: {}\n", if index == 0 { "1".to_owned() } else { format!("p{} + q", index - 1) });
+    }
+    let start = Instant::now();
+    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    assert_eq!(diagnostics.errors(), 19_999);
+    assert!(diagnostics.render(false).ends_with("… and 19949 more\n"));
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}
+
+#[test]
+fn overrides_are_reported_where_they_stand() {
+    let load = |text: &str| {
+        let wanted = Override::parse(text)?;
+        model::load_str("models/slider_crank.yaml", &slider_crank(), &[wanted])
+    };
+    for (text, message, place, help) in [
+        ("l3=1", "unknown parameter `l3`", Some((1, 1)), Some("did you mean `l1`?")),
+        ("l1", "a parameter is set with `=`", Some((1, 1)), None),
+        ("l1=", "the value is missing", Some((1, 1)), None),
+        ("l1=[1,2", "the interval's `]` is missing", Some((1, 4)), None),
+        ("l1=[1]", "an interval has two ends", Some((1, 4)), None),
+        ("l1=[2, 1]", "the interval is reversed", Some((1, 4)), Some("the smaller one stands first: `[1, 2]`")),
+        ("l1=1 kg", "a mass (kg) stands where a length (m) belongs", Some((1, 4)), None),
+        ("l1=1±-1%", "a tolerance cannot be negative", Some((1, 6)), None),
+        ("l1=1±", "a number belongs on either side of the `±`", Some((1, 4)), None),
+        ("l1=1 + foo", "unknown parameter `foo`", Some((1, 8)), None),
+    ] {
+        let diagnostics = load(text).unwrap_err();
+        let record = diagnostics.records().into_iter().find(|record| record.file == "--set").unwrap();
+        assert_eq!(record.message, message, "{text}");
+        assert_eq!(record.line.zip(record.column), place, "{text}");
+        if help.is_some() {
+            assert_eq!(record.help.as_deref(), help, "{text}");
+        }
+        assert!(diagnostics.render(false).contains("--> --set:1:"), "{text}");
+    }
+}
+
+/// What is spoilt: a model of the plane, a text with everything that there is in space, or one of scenes.
+fn sound(which: usize) -> String {
+    let file = ["models/slider_crank.yaml", "tests/bad_models/space.yaml", "models/door.yaml"][which];
+    fs::read_to_string(root().join(file)).unwrap()
+}
+
+fn never_panics(text: &str) {
+    let reading = model::read_str("x.yaml", text, &[]);
+    let rendered = reading.diagnostics.render(false);
+    assert_eq!(reading.description.is_none(), reading.diagnostics.has_errors());
+    assert_eq!(rendered.is_empty(), reading.diagnostics.is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn flipped_bytes_do_not_panic(
+        which in 0..3_usize,
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = sound(which).into_bytes();
+        for (index, byte) in flips {
+            let at = index.index(bytes.len());
+            bytes[at] = byte;
+        }
+        never_panics(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn edited_lines_do_not_panic(
+        which in 0..3_usize,
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..3), 1..5),
+    ) {
+        let text = sound(which);
+        let mut lines: Vec<&str> = text.lines().collect();
+        for (from, to, edit) in edits {
+            let (from, to) = (from.index(lines.len()), to.index(lines.len()));
+            match edit {
+                0 if lines.len() > 1 => { lines.remove(from); }
+                1 => lines.insert(to, lines[from]),
+                _ => lines.swap(from, to),
+            }
+        }
+        never_panics(&lines.join("\n"));
+    }
+
+    #[test]
+    fn swapped_tokens_do_not_panic(
+        which in 0..3_usize,
+        swaps in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..5),
+    ) {
+        let text = sound(which);
+        let mut tokens: Vec<String> = Vec::new();
+        for c in text.chars() {
+            match tokens.last_mut() {
+                Some(token) if c.is_alphanumeric() && token.ends_with(char::is_alphanumeric) => token.push(c),
+                _ => tokens.push(c.to_string()),
+            }
+        }
+        for (a, b) in swaps {
+            let (a, b) = (a.index(tokens.len()), b.index(tokens.len()));
+            tokens.swap(a, b);
+        }
+        never_panics(&tokens.concat());
+    }
+
+    #[test]
+    fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        never_panics(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn random_overrides_do_not_panic(text in "l1=?[-+±%0-9a-z. \\[\\],=*/^()]{0,20}") {
+        if let Ok(wanted) = Override::parse(&text) {
+            let reading = model::read_str("x.yaml", &slider_crank(), &[wanted]);
+            reading.diagnostics.render(false);
+        }
+    }
+}

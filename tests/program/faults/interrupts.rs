@@ -1,0 +1,120 @@
+//! Ctrl-C, and worse.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use crate::place::Place;
+
+/// A model whose methods take long enough to be interrupted.
+fn long(place: &Place) {
+    place.model("crank");
+    let path = place.path().join("crank.yaml");
+    let text = fs::read_to_string(&path).unwrap();
+    let slow = text.replace("duration: 0.1, step: 1e-3", "duration: 4, step: 1e-4").replace("points: 3", "points: 200");
+    assert_ne!(text, slow);
+    fs::write(path, slow).unwrap();
+}
+
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+fn begin(place: &Place, arguments: &str) -> Child {
+    place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+#[test]
+fn what_is_finished_at_a_ctrl_c_is_written() {
+    let place = Place::new();
+    long(&place);
+    let run = begin(&place, "run -q crank.yaml -o out");
+    std::thread::sleep(Duration::from_millis(1500));
+    signal(&run, "-INT");
+    let ended = run.wait_with_output().unwrap();
+    let errors = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(130), "{errors}");
+    assert!(errors.starts_with("error: crank: interrupted"), "{errors}");
+    let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    // The scan of 40 000 samples was not done: where it stands, it is said to be unknown.
+    let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
+    assert!(heading.starts_with("t,angle.nominal"), "{heading}");
+    assert!(last.starts_with("4,"), "{last}");
+    assert!(!heading.contains("scan") || (last.contains("NaN") && last.contains("angle.scan")), "{last}");
+    assert!(fs::read_to_string(place.path().join("out/summary.json")).unwrap().contains("interrupted"));
+}
+
+/// Its reference alone takes seconds, and without it nothing was measured.
+#[test]
+fn a_study_of_costs_ends_at_a_ctrl_c() {
+    let place = Place::new();
+    long(&place);
+    let run = begin(&place, "cost -q crank.yaml -o out");
+    std::thread::sleep(Duration::from_millis(700));
+    signal(&run, "-INT");
+    let ended = run.wait_with_output().unwrap();
+    let errors = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(
+        (ended.status.code(), errors.as_str()),
+        (Some(130), "error: crank: interrupted before there was anything to compare\n")
+    );
+    assert_eq!(place.files("out"), Vec::<String>::new());
+}
+
+#[test]
+fn a_second_ctrl_c_does_not_wait() {
+    let place = Place::new();
+    long(&place);
+    let run = begin(&place, "run -q crank.yaml -o out");
+    std::thread::sleep(Duration::from_millis(700));
+    for _ in 0..20 {
+        signal(&run, "-INT");
+    }
+    assert_eq!(run.wait_with_output().unwrap().status.code(), Some(130));
+}
+
+/// Killed at any moment, a run leaves whole files or none; the next one works.
+#[test]
+fn a_killed_run_leaves_nothing_half() {
+    let place = Place::new();
+    place.model("crank");
+    place.run("run -q crank.yaml -o whole", 0);
+    let whole = fs::read(place.path().join("whole/bounds.csv")).unwrap();
+    let mut written = 0;
+    for trial in 0..40_u64 {
+        let mut run = begin(&place, "run -q crank.yaml -o out");
+        std::thread::sleep(Duration::from_millis(3 * trial));
+        // It may be over.
+        let _ = run.kill();
+        run.wait().unwrap();
+        let out = place.path().join("out");
+        if let Ok(table) = fs::read(out.join("bounds.csv")) {
+            assert!(table == whole, "after {} ms", 3 * trial);
+            written += 1;
+        }
+        if out.join("summary.json").exists() {
+            assert!(["bounds.csv", "angle.svg", "force.svg"].iter().all(|name| out.join(name).exists()));
+        }
+        let _ = fs::remove_dir_all(out);
+    }
+    println!("{written} of 40 had written");
+    place.run("run -q crank.yaml -o out", 0);
+}
+
+#[test]
+fn nothing_is_asked_of_a_terminal() {
+    let place = Place::new();
+    place.model("crank");
+    let mut command = place.command("run crank.yaml");
+    command.stdin(Stdio::null()).env_clear().env("LC_ALL", "nonsense.KOI8-R").env("TERM", "dumb");
+    let done = command.output().unwrap();
+    assert_eq!((done.status.code(), String::from_utf8(done.stderr).unwrap().as_str()), (Some(0), ""));
+    let all_closed = "exec \"$0\" run crank.yaml -o closed <&- >&- 2>&-";
+    let mut command = Command::new("sh");
+    command.args(["-c", all_closed]).arg(assert_cmd::cargo::cargo_bin!("mbint")).current_dir(place.path());
+    assert_eq!(command.status().unwrap().code(), Some(0));
+    let [with, without] = ["results/crank", "closed"].map(|dir| fs::read(place.path().join(dir).join("bounds.csv")));
+    assert_eq!(with.unwrap(), without.unwrap());
+}

@@ -1,0 +1,9 @@
+//! What can go wrong around a run, and uncertainty that a mechanism does not bear: nothing half is left, what is finished is
+//! kept, and what is told is true.
+
+mod disk;
+mod infeasible;
+mod interrupts;
+mod names;
+mod sizes;
+mod uncertainty;

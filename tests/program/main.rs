@@ -1,0 +1,13 @@
+//! The program as users meet it: its command line, files and messages, what the documents show, and the order of the source.
+
+mod bad_models;
+mod book;
+mod cli;
+mod cost;
+mod docs_effects;
+mod faults;
+mod place;
+mod readme;
+mod rooms;
+mod scenes;
+mod schema;

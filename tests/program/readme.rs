@@ -1,0 +1,29 @@
+//! What the README shows is so.
+
+use mbint::{model, study};
+
+const README: &str = include_str!("../../README.md");
+
+/// The code blocks of a language.
+fn blocks(language: &str) -> impl Iterator<Item = &'static str> {
+    let parts = README.split("```").skip(1).step_by(2);
+    parts.filter_map(move |block| block.strip_prefix(language)?.strip_prefix('\n'))
+}
+
+#[test]
+fn the_models_are_right() {
+    assert_eq!(blocks("yaml").count(), 1);
+    for text in blocks("yaml") {
+        let description =
+            model::load_str("README.md", text, &[]).unwrap_or_else(|told| panic!("{}", told.render(false)));
+        study::prepare(&description).unwrap();
+    }
+}
+
+#[test]
+fn the_first_screen_has_the_two_commands() {
+    let first = blocks("sh").next().unwrap();
+    assert_eq!(first, "cargo run --release -- run models/slider_crank.yaml\ncargo test\n");
+    let before = README.split("cargo test").next().unwrap();
+    assert!(before.lines().count() < 24, "they have left the first screen");
+}

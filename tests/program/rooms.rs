@@ -1,0 +1,262 @@
+//! The order of the source: rooms import only what is before them, files of a room form no circles, and no file is long.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// Each room stands on those before it, and knows none after it.
+const ROOMS: [&str; 15] = [
+    "syntax",
+    "grammar",
+    "multibody",
+    "numerics",
+    "methods",
+    "elements",
+    "model",
+    "reduce",
+    "assemble",
+    "compile",
+    "simulate",
+    "results",
+    "study",
+    "export",
+    "cli",
+];
+
+/// Lines that a file may have.
+const LONGEST: usize = 400;
+
+/// Files that are longer still; the list only ever gets shorter.
+const LONG: &[&str] = &[
+    "crates/symdiff/src/expr.rs",
+    "crates/symdiff/src/formula.rs",
+    "crates/symdiff/src/taylor_model.rs",
+    "src/assemble/tests/effects.rs",
+    "src/cli/run.rs",
+    "src/grammar/names.rs",
+    "src/grammar/quantity.rs",
+    "src/grammar/reader.rs",
+    "src/model/parameters.rs",
+    "src/model/scenes.rs",
+    "src/model/urdf/build.rs",
+    "src/model/urdf/read.rs",
+];
+
+/// Modules that are in circles still; the list only ever gets shorter.
+const CIRCLING: &[&str] = &[
+    "assemble::body",
+    "assemble::carried",
+    "assemble::coordinates",
+    "assemble::joints",
+    "assemble::mechanism",
+    "cli::run",
+    "cli::scenes",
+    "export::files",
+    "export::folder",
+    "export::overlay",
+    "export::scenes",
+    "expr",
+    "grammar::element",
+    "grammar::reader",
+    "methods::result",
+    "methods::validation",
+    "model::load",
+    "model::parameters",
+    "model::scenes",
+    "model::tables",
+    "model::urdf",
+    "numerics::bernstein",
+    "numerics::range",
+    "scalar",
+    "study::conclude",
+    "study::single",
+];
+
+/// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.
+type Module = Vec<String>;
+
+/// The source of a package without its unit tests, by module.
+struct Package(BTreeMap<Module, String>);
+
+impl Package {
+    fn of(folder: &str) -> Self {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        let mut modules = BTreeMap::new();
+        let mut folders = vec![(source, Module::new())];
+        while let Some((folder, within)) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+                if name == "tests" {
+                    continue;
+                }
+                let module = [&within[..], std::slice::from_ref(&name)].concat();
+                if path.is_dir() {
+                    folders.push((path, module));
+                } else if path.extension().is_some_and(|extension| extension == "rs") {
+                    let module = if ["mod", "lib", "main"].contains(&name.as_str()) { within.clone() } else { module };
+                    let text = fs::read_to_string(&path).unwrap();
+                    modules.entry(module).or_insert_with(String::new).push_str(without_tests(&text));
+                }
+            }
+        }
+        Self(modules)
+    }
+
+    /// What a module names of its own package, as paths from the root.
+    fn named(&self, module: &Module) -> Vec<Module> {
+        let text: Vec<&str> = self.0[module].lines().map(|line| line.split("//").next().unwrap()).collect();
+        let text = text.join("\n");
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let mut found = Vec::new();
+        for (at, _) in text.match_indices("::") {
+            let start = text[..at].rfind(|c| !is_word(c)).map_or(0, |before| before + 1);
+            if text[..start].ends_with("::") || start == at {
+                continue;
+            }
+            let within: &[String] = match &text[start..at] {
+                "crate" => &[],
+                "super" => &module[..module.len().saturating_sub(1)],
+                "self" => module,
+                // In `use child::Item;` a child stands alone.
+                child if self.0.contains_key(&[&module[..], &[child.to_owned()]].concat()) => module,
+                _ => continue,
+            };
+            let mut rest = &text[start..];
+            if ["crate", "super", "self"].contains(&&text[start..at]) {
+                rest = &text[at + 2..];
+            }
+            let mut within = within.to_vec();
+            while let Some(above) = rest.strip_prefix("super::") {
+                within.pop();
+                rest = above;
+            }
+            found.extend(expand(rest).0.into_iter().map(|path| [&within[..], &path].concat()));
+        }
+        found
+    }
+
+    /// The module that an item is written in: through re-exports of the modules on its path.
+    fn home(&self, path: &[String]) -> Option<Module> {
+        let depth = (0..=path.len()).rev().find(|&depth| self.0.contains_key(&path[..depth]))?;
+        let (module, item) = (path[..depth].to_vec(), path.get(depth));
+        let passed_on = item.and_then(|item| {
+            let paths = self.named(&module).into_iter();
+            let mut inner = paths.filter(|named| named.len() > depth + 1 && named.starts_with(&module));
+            inner.find(|named| named.last() == Some(item))
+        });
+        passed_on.map_or(Some(module), |inner| self.home(&inner))
+    }
+}
+
+/// Unit tests stand at the end of a file.
+fn without_tests(text: &str) -> &str {
+    text.split("#[cfg(test)]\nmod tests {").next().unwrap()
+}
+
+/// The paths of `a::{b, c::d}`, and how much of the text they take.
+fn expand(text: &str) -> (Vec<Module>, usize) {
+    let word = text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len());
+    if word > 0 {
+        let own = text[..word].to_owned();
+        let Some(rest) = text[word..].strip_prefix("::") else { return (vec![vec![own]], word) };
+        let (inner, taken) = expand(rest);
+        let inner: Vec<Module> = if inner.is_empty() { vec![Module::new()] } else { inner };
+        return (
+            inner.into_iter().map(|path| [std::slice::from_ref(&own), &path[..]].concat()).collect(),
+            word + 2 + taken,
+        );
+    }
+    let (mut paths, mut at) = (Vec::new(), 1);
+    if !text.starts_with('{') {
+        return (paths, 0);
+    }
+    while let Some(next) = text[at..].chars().next() {
+        if next == '}' {
+            return (paths, at + 1);
+        }
+        let (found, taken) = expand(&text[at..]);
+        paths.extend(found);
+        at += taken.max(next.len_utf8());
+    }
+    (paths, at)
+}
+
+#[test]
+fn use_trees_are_expanded() {
+    let join = |text: &str| expand(text).0.iter().map(|path| path.join("::")).collect::<Vec<_>>();
+    assert_eq!(join("a::b;"), ["a::b"]);
+    assert_eq!(join("a::{b, c::{d, self}, E};"), ["a::b", "a::c::d", "a::c::self", "a::E"]);
+}
+
+#[test]
+fn rooms_import_only_what_is_before_them() {
+    let package = Package::of("src");
+    let mut wrong = BTreeSet::new();
+    for module in package.0.keys().filter(|module| !module.is_empty()) {
+        let place = |room: &String| ROOMS.iter().position(|known| known == room);
+        let own = place(&module[0]).unwrap_or_else(|| panic!("where among the rooms is {}?", module[0]));
+        for path in package.named(module) {
+            if path.first().and_then(place).is_some_and(|other| other > own) {
+                wrong.insert(format!("{} imports {}", module.join("::"), path.join("::")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Modules that reach each other, but for a parent and its children.
+fn circles(package: &Package) -> Vec<Vec<String>> {
+    let mut reached: BTreeMap<&Module, BTreeSet<Module>> = BTreeMap::new();
+    for module in package.0.keys() {
+        let targets = package.named(module).into_iter().filter_map(|path| package.home(&path));
+        let beside = targets.filter(|target| !target.starts_with(module) && !module.starts_with(target));
+        reached.insert(module, beside.collect());
+    }
+    loop {
+        let before: usize = reached.values().map(BTreeSet::len).sum();
+        for module in package.0.keys() {
+            let further: Vec<Module> = reached[module].iter().flat_map(|target| reached[target].clone()).collect();
+            reached.get_mut(module).unwrap().extend(further);
+        }
+        if reached.values().map(BTreeSet::len).sum::<usize>() == before {
+            break;
+        }
+    }
+    let together = |module: &Module| -> Vec<String> {
+        let others = reached[module].iter().filter(|other| reached[*other].contains(module));
+        others.map(|module| module.join("::")).collect()
+    };
+    let circles: BTreeSet<Vec<String>> = package.0.keys().map(together).filter(|circle| !circle.is_empty()).collect();
+    circles.into_iter().collect()
+}
+
+#[test]
+fn files_form_no_circles() {
+    let found: Vec<_> = ["src", "crates/symdiff/src"].iter().flat_map(|folder| circles(&Package::of(folder))).collect();
+    let new: Vec<_> =
+        found.iter().filter(|circle| !circle.iter().all(|module| CIRCLING.contains(&module.as_str()))).collect();
+    assert!(new.is_empty(), "{new:#?}");
+}
+
+#[test]
+fn no_file_is_long() {
+    let mut long = Vec::new();
+    for folder in ["src", "crates"] {
+        let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+        while let Some(folder) = folders.pop() {
+            for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|extension| extension == "rs")
+                    && fs::read_to_string(&path).unwrap().lines().count() > LONGEST
+                {
+                    let within = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap();
+                    long.push(within.to_string_lossy().into_owned());
+                }
+            }
+        }
+    }
+    long.retain(|file| !LONG.contains(&file.as_str()));
+    assert!(long.is_empty(), "more than {LONGEST} lines: {long:#?}");
+}
