@@ -18,7 +18,8 @@ pub struct ModelBuilder {
 }
 
 impl ModelBuilder {
-    pub(super) fn new(name: &str) -> Self {
+    /// A model without entries.
+    pub fn new(name: &str) -> Self {
         Self { name: name.to_owned(), sections: Default::default(), keys: Vec::new() }
     }
 

@@ -1,8 +1,8 @@
-//! A model: read from a file or a text, or built in Rust.
+//! A model, read from a file or a text.
 
 use std::path::{Path, PathBuf};
 
-use super::{Error, ModelBuilder, Study};
+use super::{Error, Study};
 use crate::model::{Description, Override, ParameterValue, Reading, read, read_str};
 use crate::syntax::Diagnostics;
 
@@ -40,11 +40,6 @@ impl Model {
     /// [`Error::Model`]: everything that is wrong with the text.
     pub fn from_yaml_str(name: &str, text: &str) -> Result<Self, Error> {
         Self::read(Origin::Text { name: name.to_owned(), text: text.to_owned() }, Vec::new(), None)
-    }
-
-    /// Builds a model in Rust.
-    pub fn builder(name: &str) -> ModelBuilder {
-        ModelBuilder::new(name)
     }
 
     /// The same model with another value of a parameter, written as after `--set` on the command line: `"0.16 ± 2%"`,

@@ -62,7 +62,7 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     }
     text += &format!("{}\n", trajectories(study).render(2));
     text += "  Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.\n";
-    text += match study.is_certain() {
+    text += match study.is_deterministic() {
         false => {
             "  Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.\n"
         }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Each room stands on those before it, and knows none after it.
-const ROOMS: [&str; 15] = [
+const ROOMS: [&str; 16] = [
     "syntax",
     "grammar",
     "multibody",
@@ -20,6 +20,7 @@ const ROOMS: [&str; 15] = [
     "results",
     "study",
     "export",
+    "api",
     "cli",
 ];
 
@@ -36,10 +37,6 @@ const LONG: &[&str] = &[
     "src/grammar/names.rs",
     "src/grammar/quantity.rs",
     "src/grammar/reader.rs",
-    "src/model/parameters.rs",
-    "src/model/scenes.rs",
-    "src/model/urdf/build.rs",
-    "src/model/urdf/read.rs",
 ];
 
 /// Modules that are in circles still; the list only ever gets shorter.
@@ -58,18 +55,12 @@ const CIRCLING: &[&str] = &[
     "expr",
     "grammar::element",
     "grammar::reader",
-    "methods::result",
-    "methods::validation",
     "model::load",
     "model::parameters",
     "model::scenes",
     "model::tables",
     "model::urdf",
-    "numerics::bernstein",
-    "numerics::range",
     "scalar",
-    "study::conclude",
-    "study::single",
 ];
 
 /// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.

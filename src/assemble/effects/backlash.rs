@@ -10,57 +10,46 @@
 //! computed. The reactions of the
 //! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid gear.
 
-use symdiff::{Builder, Expr, Unary};
+use symdiff::{Builder, Expr, Scalar};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
+use crate::assemble::mechanism::Mechanism;
 use crate::model::{Backlash, Coordinate, JointCoordinate, Measure, Referent, TimeOrder, Turning};
 
 use super::Loads;
 use super::positive_part::PositivePart;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> Result<(), BuildError> {
-    let number = |g: &Builder, formula| m.formula(g, formula, Context::Motion);
-    let (ratio, offset) = (number(g, &gear.ratio)?, number(g, &gear.offset)?);
-    let (play, corner) = (number(g, &gear.backlash)?, number(g, &gear.transition)?);
-    let (stiffness, damping) = (number(g, &gear.stiffness)?, number(g, &gear.damping)?);
+    let (ratio, offset) = (m.value(g, &gear.ratio)?, m.value(g, &gear.offset)?);
+    let (play, corner) = (m.value(g, &gear.backlash)?, m.value(g, &gear.transition)?);
+    let (stiffness, damping) = (m.value(g, &gear.stiffness)?, m.value(g, &gear.damping)?);
     let between = |order: TimeOrder| {
-        let [first, second] = gear.between.map(|angle_of| turned(g, m, angle_of, order));
-        let wanted = g.mul(ratio, first);
-        g.sub(second, wanted)
+        let [first, second] = gear.between.map(|angle_of| g.scalar(angle(g, m, angle_of, order)));
+        second - ratio * first
     };
     let (place, rate) = (between(TimeOrder::Position), between(TimeOrder::Velocity));
-    let place = g.sub(place, offset);
-    let half = g.scale(0.5, play);
-    let (ahead, opposite) = (g.sub(place, half), g.neg(place));
-    let behind = g.sub(opposite, half);
+    let place = place - offset;
+    let half = 0.5 * play;
+    let (ahead, behind) = (place - half, -place - half);
     // |x| − b/2 + ε
-    let (far, inside) = (g.unary(Unary::Abs, place), g.sub(half, corner));
-    let bearing_at = g.sub(far, inside);
-    loads.only_where(bearing_at);
-    let [ahead, behind] = [ahead, behind].map(|depth| PositivePart::of(g, depth, corner));
-    let twist = g.sub(ahead.value, behind.value);
-    let elastic = g.mul(stiffness, twist);
-    let bearing = g.add(ahead.slope, behind.slope);
-    let felt = g.mul(damping, bearing);
-    let viscous = g.mul(felt, rate);
-    let torque = g.add(elastic, viscous);
-    let (back, forth) = (g.neg(torque), g.mul(ratio, torque));
-    add_torque(g, m, loads, gear.between[0], forth)?;
-    add_torque(g, m, loads, gear.between[1], back)?;
-    let torque = g.only_where(bearing_at, torque);
-    let stored = g.add(ahead.integral, behind.integral);
-    let potential = g.mul(stiffness, stored);
-    let potential = g.only_where(bearing_at, potential);
-    loads.add_potential(g, m, &[stiffness, play, corner, ratio, offset], potential);
+    let bearing_at = place.abs() - (half - corner);
+    loads.only_where(bearing_at.expr());
+    let [ahead, behind] = [ahead, behind].map(|depth| PositivePart::of(depth, corner));
+    let torque = stiffness * (ahead.value - behind.value) + damping * (ahead.slope + behind.slope) * rate;
+    let (back, forth) = (-torque, ratio * torque);
+    add_torque(g, m, loads, gear.between[0], forth.expr())?;
+    add_torque(g, m, loads, gear.between[1], back.expr())?;
+    let torque = torque.only_where(bearing_at);
+    let potential = (stiffness * (ahead.integral + behind.integral)).only_where(bearing_at);
+    loads.add_potential(g, m, &[stiffness, play, corner, ratio, offset].map(Scalar::expr), potential.expr());
     for (measure, value) in [(Measure::Angle, place), (Measure::Rate, rate), (Measure::Torque, torque)] {
-        loads.measure(measure, value);
+        loads.measure(measure, value.expr());
     }
     Ok(())
 }
 
 /// An angle, or its rate.
-fn turned(g: &Builder, m: &Mechanism, angle_of: Turning, order: TimeOrder) -> Expr {
+fn angle(g: &Builder, m: &Mechanism, angle_of: Turning, order: TimeOrder) -> Expr {
     match angle_of {
         Turning::Body(body) => m.observe(g, Referent::Coordinate { body, coordinate: Coordinate::Angle, order }),
         Turning::Joint(joint) => m.joint_coordinate(g, joint, JointCoordinate::Angle, order),

@@ -20,7 +20,7 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space::{self, Vector};
 use crate::model::{Contact, Measure, PointRef};
-use crate::multibody::Pair;
+use crate::multibody::{Pair, Vector as Handle};
 
 use super::Loads;
 use super::dry_friction::DryFriction;
@@ -42,15 +42,15 @@ pub enum Shape {
 
 /// Two surfaces and what they do to one another.
 #[derive(Clone, Copy, Debug)]
-pub struct Touch {
+pub struct Touch<'g> {
     pub between: [PointRef; 2],
     pub shape: Shape,
     /// r, m
     pub radius: Expr,
     /// A unit vector in the first frame across which centres are apart.
     pub axis: Option<Vector>,
-    pub impact: Impact,
-    pub friction: Option<DryFriction>,
+    pub impact: Impact<'g>,
+    pub friction: Option<DryFriction<'g>>,
 }
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, contact: &Contact) -> Result<(), BuildError> {
@@ -90,46 +90,39 @@ struct Gap {
     overlap: Expr,
 }
 
-impl Touch {
+impl<'g> Touch<'g> {
     /// Adds the forces.
-    pub fn apply(&self, g: &Builder, m: &Mechanism, loads: &mut Loads) {
+    pub fn apply(&self, g: &'g Builder, m: &Mechanism, loads: &mut Loads) {
         let pair = m.pair(g, self.between);
         let Gap { gap, normal, overlap } = self.gap(g, &pair);
-        let inward = space::scale(g, self.radius, normal);
-        let place = space::sub(g, pair.second.point.position, inward);
-        let [first, second] = self.between.map(|point| m.carried_along(g, point.body, place));
-        let velocity = space::sub(g, second.velocity, first.velocity);
-        let parting = space::dot(g, normal, velocity);
-        let (depth, approach) = (g.neg(gap), g.neg(parting));
-        loads.only_where(overlap);
-        let push = self.impact.force(g, depth, approach);
-        let push = g.only_where(depth, push);
-        let mut force = space::scale(g, push, normal);
+        let (gap, overlap, normal) = (g.scalar(gap), g.scalar(overlap), Handle::of(g, normal));
+        let place = Handle::of(g, pair.second.point.position) - g.scalar(self.radius) * normal;
+        let [first, second] = self.between.map(|point| m.carried_along(g, point.body, place.exprs()));
+        let velocity = Handle::of(g, second.velocity) - Handle::of(g, first.velocity);
+        let parting = normal.dot(velocity);
+        let (depth, approach) = (-gap, -parting);
+        loads.only_where(overlap.expr());
+        let push = self.impact.force(depth, approach).only_where(depth);
+        let mut force = push * normal;
         if let Some(friction) = &self.friction {
-            let along = space::scale(g, parting, normal);
-            let sliding = space::sub(g, velocity, along);
-            let resistance = friction.resistance(g, &sliding);
-            let bound = g.mul(friction.coefficient, push);
-            let resistance = g.mul(bound, resistance);
-            let drag = space::scale(g, resistance, sliding);
-            force = space::sub(g, force, drag);
+            let sliding = velocity - parting * normal;
+            let resistance = friction.resistance(sliding.dot(sliding));
+            let drag = friction.coefficient * push * resistance * sliding;
+            force = force - drag;
             let felt = if m.is_spatial() {
-                space::norm(g, drag)
+                drag.norm()
             } else {
                 // Along n turned clockwise: x on a floor.
-                let back = space::perpendicular(g, normal);
-                space::dot(g, back, drag)
+                normal.perpendicular().dot(drag)
             };
-            let felt = g.only_where(overlap, felt);
-            loads.measure(Measure::Friction, felt);
+            loads.measure(Measure::Friction, felt.only_where(overlap).expr());
         }
-        loads.add_force_pair(g, &first, &second, force);
-        let push = g.only_where(overlap, push);
-        let potential = self.impact.potential(g, depth);
-        let potential = g.only_where(depth, potential);
-        loads.add_potential(g, m, &[self.impact.stiffness], potential);
+        loads.add_force_pair(g, &first, &second, force.exprs());
+        let push = push.only_where(overlap);
+        let potential = self.impact.potential(depth).only_where(depth);
+        loads.add_potential(g, m, &[self.impact.stiffness.expr()], potential.expr());
         for (measure, value) in [(Measure::Gap, gap), (Measure::Rate, parting), (Measure::Force, push)] {
-            loads.measure(measure, value);
+            loads.measure(measure, value.expr());
         }
     }
 

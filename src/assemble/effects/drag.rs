@@ -10,8 +10,8 @@ use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::assemble::space;
 use crate::model::{Drag, Measure};
+use crate::multibody::Vector;
 
 use super::Loads;
 
@@ -20,24 +20,16 @@ const AT_REST: f64 = 1e-6;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Result<(), BuildError> {
     let point = m.point(g, drag.on);
-    let wind = m.vector(g, &drag.wind, Context::Motion)?;
-    let linear = m.formula(g, &drag.linear, Context::Motion)?;
-    let mut quadratic = g.constant(1.0);
+    let wind = Vector::of(g, m.vector(g, &drag.wind, Context::Motion)?);
+    let linear = m.value(g, &drag.linear)?;
+    let mut quadratic = g.number(1.0);
     for factor in &drag.factors() {
-        let factor = m.formula(g, factor, Context::Motion)?;
-        quadratic = g.mul(quadratic, factor);
+        quadratic *= m.value(g, factor)?;
     }
-    let relative = space::sub(g, point.velocity, wind);
-    let square = space::dot(g, relative, relative);
-    let rest = g.constant(AT_REST * AT_REST);
-    let smooth = g.add(square, rest);
-    let speed = g.sqrt(smooth);
-    let inertial = g.mul(quadratic, speed);
-    let resistance = g.add(linear, inertial);
-    let against = g.neg(resistance);
-    let force = space::scale(g, against, relative);
-    loads.add_force(g, &point, force);
-    let felt = g.mul(resistance, speed);
-    loads.measure(Measure::Force, felt);
+    let u = Vector::of(g, point.velocity) - wind;
+    let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
+    let resistance = linear + quadratic * speed;
+    loads.add_force(g, &point, (-resistance * u).exprs());
+    loads.measure(Measure::Force, (resistance * speed).expr());
     Ok(())
 }

@@ -9,52 +9,48 @@
 //! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
 //! of the friction that it could bear at u₀ κ/√(1 − κ²).
 
-use symdiff::{Builder, Expr, Formula, Unary};
+use symdiff::{Builder, Formula, Scalar};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
+use crate::assemble::mechanism::Mechanism;
 use crate::model;
 
 /// The law's numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct DryFriction {
+pub struct DryFriction<'g> {
     /// μ
-    pub coefficient: Expr,
-    breakaway: Expr,
-    stribeck: Option<Expr>,
-    transition: Expr,
+    pub coefficient: Scalar<'g>,
+    breakaway: Scalar<'g>,
+    stribeck: Option<Scalar<'g>>,
+    transition: Scalar<'g>,
 }
 
-impl DryFriction {
-    pub fn of(g: &Builder, m: &Mechanism, coefficient: &Formula, law: &model::DryFriction) -> Result<Self, BuildError> {
-        let stribeck = law.stribeck_velocity.as_ref().map(|speed| m.formula(g, speed, Context::Motion)).transpose()?;
+impl<'g> DryFriction<'g> {
+    pub fn of(
+        g: &'g Builder,
+        m: &Mechanism,
+        coefficient: &Formula,
+        law: &model::DryFriction,
+    ) -> Result<Self, BuildError> {
+        let stribeck = law.stribeck_velocity.as_ref().map(|speed| m.value(g, speed)).transpose()?;
         Ok(Self {
-            coefficient: m.formula(g, coefficient, Context::Motion)?,
-            breakaway: m.formula(g, &law.breakaway, Context::Motion)?,
+            coefficient: m.value(g, coefficient)?,
+            breakaway: m.value(g, &law.breakaway)?,
             stribeck,
-            transition: m.formula(g, &law.transition_velocity, Context::Motion)?,
+            transition: m.value(g, &law.transition_velocity)?,
         })
     }
 
-    /// s/√(|u|² + u₀²): what a unit of dry friction takes for a unit of velocity.
-    pub fn resistance(&self, g: &Builder, velocity: &[Expr]) -> Expr {
-        let square = g.dot(velocity, velocity);
-        let rest = g.mul(self.transition, self.transition);
-        let smooth = g.add(square, rest);
-        let smooth = g.sqrt(smooth);
-        let one = g.constant(1.0);
-        let excess = match self.stribeck {
+    /// s/√(|u|² + u₀²): dry friction by its bound and the velocity of sliding; `square` is |u|².
+    pub fn resistance(&self, square: Scalar<'g>) -> Scalar<'g> {
+        let smooth = (square + self.transition * self.transition).sqrt();
+        let strength = match self.stribeck {
             Some(speed) => {
-                let scale = g.mul(speed, speed);
-                let ratio = g.div(square, scale);
-                let ratio = g.neg(ratio);
-                let fading = g.unary(Unary::Exp, ratio);
-                let excess = g.sub(self.breakaway, one);
-                g.mul(excess, fading)
+                let fading = (-(square / (speed * speed))).exp();
+                1.0 + (self.breakaway - 1.0) * fading
             }
-            None => g.constant(0.0),
+            None => square.builder().number(1.0),
         };
-        let strength = g.add(one, excess);
-        g.div(strength, smooth)
+        strength / smooth
     }
 }

@@ -12,13 +12,13 @@
 //! matrix has its block −∂Q/∂λ. |F| is √(F² + ε²), ε = 1 µN, for |F| has no slope at 0. Where friction is so large that the
 //! reaction it needs grows faster than what it resists, the mechanism jams (Painlevé) and there is no motion to be found.
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Scalar};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::joints;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::assemble::space::{self, Vector};
-use crate::model::{FrictionMode, JointCoordinate, JointFriction, Measure};
+use crate::assemble::mechanism::Mechanism;
+use crate::model::{FrictionMode, JointCoordinate, JointFriction, Measure, OnJoint};
+use crate::multibody::Vector;
 
 use super::Loads;
 use super::dry_friction::DryFriction;
@@ -29,79 +29,63 @@ const NO_LOAD: f64 = 1e-6;
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFriction) -> Result<(), BuildError> {
     let joint = friction.on.joint;
     let dry = DryFriction::of(g, m, &friction.coefficient, &friction.dry)?;
-    let constant = m.formula(g, &friction.coulomb, Context::Motion)?;
-    let viscous = m.formula(g, &friction.viscous, Context::Motion)?;
+    let constant = m.value(g, &friction.coulomb)?;
+    let viscous = m.value(g, &friction.viscous)?;
     let radius = match &friction.radius {
-        Some(radius) => m.formula(g, radius, Context::Motion)?,
-        None => g.constant(0.0),
+        Some(radius) => m.value(g, radius)?,
+        None => g.number(0.0),
     };
     let load = load(g, m, friction)?;
-    let mut bound = g.mul(dry.coefficient, load);
+    let mut bound = dry.coefficient * load;
     if friction.on.mode == FrictionMode::Turning {
-        bound = g.mul(radius, bound);
+        bound = radius * bound;
     }
-    let bound = g.add(constant, bound);
+    let bound = constant + bound;
 
-    let rate = |g: &Builder, coordinate| m.joint_rate(g, joint, coordinate);
-    let mut efforts = Vec::new();
+    let rate = |coordinate| m.joint_rate(g, joint, coordinate).map(|rate| g.scalar(rate));
     let velocity = match friction.on.mode {
-        FrictionMode::Turning => vec![rate(g, JointCoordinate::Angle)?],
-        FrictionMode::Sliding => vec![rate(g, JointCoordinate::Displacement)?],
+        FrictionMode::Turning => vec![rate(JointCoordinate::Angle)?],
+        FrictionMode::Sliding => vec![rate(JointCoordinate::Displacement)?],
         FrictionMode::Both => {
-            let turning = rate(g, JointCoordinate::Angle)?;
-            vec![rate(g, JointCoordinate::Displacement)?, g.mul(radius, turning)]
+            let turning = rate(JointCoordinate::Angle)?;
+            vec![rate(JointCoordinate::Displacement)?, radius * turning]
         }
     };
-    let resistance = dry.resistance(g, &velocity);
-    let resistance = g.mul(bound, resistance);
-    let resistance = g.add(resistance, viscous);
-    let against = velocity.iter().map(|&velocity| {
-        let drag = g.mul(resistance, velocity);
-        g.neg(drag)
-    });
-    let against: Vec<Expr> = against.collect();
-    match friction.on.mode {
-        FrictionMode::Turning => efforts.push((JointCoordinate::Angle, against[0])),
-        FrictionMode::Sliding => efforts.push((JointCoordinate::Displacement, against[0])),
+    let square = velocity.iter().fold(g.number(0.0), |sum, &velocity| sum + velocity * velocity);
+    let resistance = bound * dry.resistance(square) + viscous;
+    let against: Vec<Scalar> = velocity.iter().map(|&velocity| -(resistance * velocity)).collect();
+    let efforts = match friction.on.mode {
+        FrictionMode::Turning => vec![(JointCoordinate::Angle, against[0])],
+        FrictionMode::Sliding => vec![(JointCoordinate::Displacement, against[0])],
         FrictionMode::Both => {
-            efforts.push((JointCoordinate::Displacement, against[0]));
-            efforts.push((JointCoordinate::Angle, g.mul(radius, against[1])));
+            vec![(JointCoordinate::Displacement, against[0]), (JointCoordinate::Angle, radius * against[1])]
         }
-    }
-    loads.measure(Measure::Load, load);
+    };
+    loads.measure(Measure::Load, load.expr());
     for (coordinate, effort) in efforts {
-        match coordinate {
-            JointCoordinate::Angle => loads.add_joint_torque(g, m, joint, effort)?,
-            JointCoordinate::Displacement => loads.add_joint_force(g, m, joint, effort)?,
-        }
-        loads.measure(Measure::of_effort(coordinate), effort);
+        loads.add_joint_effort(g, m, OnJoint { joint, coordinate }, effort.expr())?;
+        loads.measure(Measure::of_effort(coordinate), effort.expr());
     }
     Ok(())
 }
 
 /// N.
-fn load(g: &Builder, m: &Mechanism, friction: &JointFriction) -> Result<Expr, BuildError> {
+fn load<'g>(g: &'g Builder, m: &Mechanism, friction: &JointFriction) -> Result<Scalar<'g>, BuildError> {
     let reaction = &m.reactions[friction.on.joint];
-    let (force, torque) = (reaction.force, reaction.torque);
-    let Some(length) = &friction.length else { return Ok(magnitude(g, force)) };
-    let length = m.formula(g, length, Context::Motion)?;
+    let (force, torque) = (Vector::of(g, reaction.force), Vector::of(g, reaction.torque));
+    let Some(length) = &friction.length else { return Ok(magnitude(force)) };
+    let length = m.value(g, length)?;
     let coordinate = match friction.on.mode {
         FrictionMode::Turning => JointCoordinate::Angle,
         FrictionMode::Sliding | FrictionMode::Both => JointCoordinate::Displacement,
     };
-    let axis = joints::axis_in_ground(g, m, friction.on.joint, coordinate)?;
-    let couple = space::cross(g, torque, axis);
-    let couple = couple.map(|component| g.div(component, length));
-    let half = force.map(|component| g.scale(0.5, component));
-    let (front, back) = (space::add(g, half, couple), space::sub(g, half, couple));
-    let (front, back) = (magnitude(g, front), magnitude(g, back));
-    Ok(g.add(front, back))
+    let axis = Vector::of(g, joints::axis_in_ground(g, m, friction.on.joint, coordinate)?);
+    let couple = torque.cross(axis) / length;
+    let half = 0.5 * force;
+    Ok(magnitude(half + couple) + magnitude(half - couple))
 }
 
 /// √(F² + ε²).
-fn magnitude(g: &Builder, force: Vector) -> Expr {
-    let square = space::dot(g, force, force);
-    let least = g.constant(NO_LOAD * NO_LOAD);
-    let sum = g.add(square, least);
-    g.sqrt(sum)
+fn magnitude(force: Vector<'_>) -> Scalar<'_> {
+    (force.dot(force) + NO_LOAD * NO_LOAD).sqrt()
 }

@@ -28,16 +28,16 @@ mod torsional_spring_damper;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Expr, Formula, Scalar};
 
 use crate::model::force::Frame;
 use crate::model::torque::TorqueOn;
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, SpringDamper};
+use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, SpringDamper, TimeOrder};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints;
-use super::mechanism::Mechanism;
+use super::mechanism::{Context, Mechanism};
 use super::space::{self, Vector};
 
 /// Applies an effect.
@@ -82,6 +82,24 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -
         EffectKind::Backlash(backlash) => backlash::apply(g, m, loads, backlash),
         EffectKind::Preload(preload) => preload::apply(g, m, loads, preload),
         EffectKind::Beam(beam) => beam::apply(g, m, loads, beam),
+    }
+}
+
+impl Mechanism<'_> {
+    /// A formula of parameters, t and the motion, to compute with.
+    fn value<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
+        Ok(g.scalar(self.formula(g, formula, Context::Motion)?))
+    }
+
+    /// A formula of parameters and t, to compute with.
+    fn given<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
+        Ok(g.scalar(self.formula(g, formula, Context::Time)?))
+    }
+
+    /// A joint's coordinate and its rate, to compute with.
+    fn coordinate_and_rate<'g>(&self, g: &'g Builder, on: OnJoint) -> [Scalar<'g>; 2] {
+        let of = |order| g.scalar(self.joint_coordinate(g, on.joint, on.coordinate, order));
+        [of(TimeOrder::Position), of(TimeOrder::Velocity)]
     }
 }
 

@@ -6,32 +6,26 @@
 //!
 //! p has a continuous slope, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
 
-use symdiff::{Builder, Expr};
+use symdiff::Scalar;
 
 /// p, its slope and its integral.
 #[derive(Clone, Copy, Debug)]
-pub struct PositivePart {
-    pub value: Expr,
-    pub slope: Expr,
-    pub integral: Expr,
+pub struct PositivePart<'g> {
+    pub value: Scalar<'g>,
+    pub slope: Scalar<'g>,
+    pub integral: Scalar<'g>,
 }
 
 /// max(x, 0).
-pub fn clipped(g: &Builder, x: Expr) -> Expr {
-    g.only_where(x, x)
+pub fn clipped(x: Scalar) -> Scalar {
+    x.only_where(x)
 }
 
-impl PositivePart {
+impl<'g> PositivePart<'g> {
     /// Of x, with a corner ε wide to either side.
-    pub fn of(g: &Builder, x: Expr, corner: Expr) -> Self {
-        let (above, below) = (g.add(x, corner), g.sub(x, corner));
-        let (above, below) = (clipped(g, above), clipped(g, below));
-        let difference = |power: i32, divisor: f64| {
-            let (high, low) = (g.powi(above, power), g.powi(below, power));
-            let difference = g.sub(high, low);
-            let divisor = g.scale(divisor, corner);
-            g.div(difference, divisor)
-        };
+    pub fn of(x: Scalar<'g>, corner: Scalar<'g>) -> Self {
+        let (above, below) = (clipped(x + corner), clipped(x - corner));
+        let difference = |power: i32, divisor: f64| (above.powi(power) - below.powi(power)) / (divisor * corner);
         Self { slope: difference(1, 2.0), value: difference(2, 4.0), integral: difference(3, 12.0) }
     }
 }

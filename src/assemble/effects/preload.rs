@@ -10,32 +10,29 @@
 use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::assemble::space;
+use crate::assemble::mechanism::Mechanism;
 use crate::model::{Preload, TimeOrder};
+use crate::multibody::Vector;
 
 use super::Loads;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, preload: &Preload) -> Result<(), BuildError> {
-    let force = m.formula(g, &preload.value, Context::Motion)?;
+    let force = m.value(g, &preload.value)?;
     let potential = match (preload.between, preload.on) {
         (Some(between), None) => {
             let [a, b] = between.map(|point| m.point(g, point));
-            let line = space::sub(g, b.position, a.position);
-            let length = space::norm(g, line);
-            let density = g.div(force, length);
-            let pull = space::scale(g, density, line);
-            loads.add_force_pair(g, &b, &a, pull);
-            g.mul(force, length)
+            let line = Vector::of(g, b.position) - Vector::of(g, a.position);
+            let length = line.norm();
+            loads.add_force_pair(g, &b, &a, (force / length * line).exprs());
+            force * length
         }
         (_, Some(on)) => {
-            loads.add_joint_effort(g, m, on, force)?;
+            loads.add_joint_effort(g, m, on, force.expr())?;
             let place = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Position);
-            let potential = g.mul(force, place);
-            g.neg(potential)
+            -(force * g.scalar(place))
         }
         (None, None) => return Ok(()),
     };
-    loads.add_potential(g, m, &[force], potential);
+    loads.add_potential(g, m, &[force.expr()], potential.expr());
     Ok(())
 }

@@ -7,11 +7,11 @@
 //!
 //! sat is x well within the limit L (its slope there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
 
-use symdiff::{Builder, Expr};
+use symdiff::{Builder, Scalar};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{Measure, Servo, TimeOrder};
+use crate::assemble::mechanism::Mechanism;
+use crate::model::{Measure, Servo};
 
 use super::Loads;
 
@@ -20,32 +20,22 @@ const CORNER: f64 = 0.01;
 
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, servo: &Servo) -> Result<(), BuildError> {
     let on = servo.on;
-    let target = m.formula(g, &servo.target, Context::Time)?;
-    let proportional = m.formula(g, &servo.proportional, Context::Motion)?;
-    let derivative = m.formula(g, &servo.derivative, Context::Motion)?;
-    let wanted_rate = g.derivative(target, m.time);
-    let place = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Position);
-    let rate = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Velocity);
-    let (behind, slow) = (g.sub(target, place), g.sub(wanted_rate, rate));
-    let (stiff, damped) = (g.mul(proportional, behind), g.mul(derivative, slow));
-    let mut effort = g.add(stiff, damped);
+    let target = m.given(g, &servo.target)?;
+    let proportional = m.value(g, &servo.proportional)?;
+    let derivative = m.value(g, &servo.derivative)?;
+    let target_rate = target.derivative(g.scalar(m.time));
+    let [place, rate] = m.coordinate_and_rate(g, on);
+    let mut effort = proportional * (target - place) + derivative * (target_rate - rate);
     if let Some(limit) = &servo.limit {
-        let limit = m.formula(g, limit, Context::Motion)?;
-        effort = saturated(g, effort, limit);
+        effort = saturated(effort, m.value(g, limit)?);
     }
-    loads.measure(Measure::of_effort(on.coordinate), effort);
-    loads.add_joint_effort(g, m, on, effort)
+    loads.measure(Measure::of_effort(on.coordinate), effort.expr());
+    loads.add_joint_effort(g, m, on, effort.expr())
 }
 
-fn saturated(g: &Builder, x: Expr, limit: Expr) -> Expr {
-    let corner = g.scale(CORNER, limit);
-    let corner = g.mul(corner, corner);
-    let (above, below) = (g.add(x, limit), g.sub(x, limit));
-    let [above, below] = [above, below].map(|distance| {
-        let square = g.mul(distance, distance);
-        let smooth = g.add(square, corner);
-        g.sqrt(smooth)
-    });
-    let doubled = g.sub(above, below);
-    g.scale(0.5, doubled)
+fn saturated<'g>(x: Scalar<'g>, limit: Scalar<'g>) -> Scalar<'g> {
+    let corner = CORNER * limit;
+    let corner = corner * corner;
+    let [above, below] = [x + limit, x - limit].map(|distance| (distance * distance + corner).sqrt());
+    0.5 * (above - below)
 }

@@ -9,17 +9,16 @@
 //!
 //! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
-//! ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
-//! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may speak of.
+//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
+//! A further tension is a formula of the spring's own length ℓ (or s) and rate, and whatever else a formula may refer to.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Builder, Formula, Scalar};
 
-use crate::assemble::body::MaterialPoint;
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::assemble::space::{self, Vector};
 use crate::model::{Measure, PointRef};
+use crate::multibody::Vector;
 
 use super::Loads;
 
@@ -44,80 +43,66 @@ pub fn apply(
     further: Option<&Formula>,
 ) -> Result<(), BuildError> {
     let spring = Spring {
-        stiffness: m.formula(g, spring.stiffness, Context::Motion)?,
-        damping: m.formula(g, spring.damping, Context::Motion)?,
-        free_length: m.formula(g, spring.free_length, Context::Motion)?,
+        stiffness: m.value(g, spring.stiffness)?,
+        damping: m.value(g, spring.damping)?,
+        free_length: m.value(g, spring.free_length)?,
     };
     let [a, b] = between.map(|point| m.point(g, point));
-    let Stretched { mut pull, direction, length, rate, tension } = match along {
-        Some(axis) => {
-            let axis = m.vector(g, axis, Context::Motion)?;
-            along_axis(g, &a, &b, axis, spring)
-        }
-        None => along_line(g, &a, &b, spring),
+    let axis = along.map(|axis| m.vector(g, axis, Context::Motion)).transpose()?;
+    let line = Vector::of(g, b.position) - Vector::of(g, a.position);
+    let growth = Vector::of(g, b.velocity) - Vector::of(g, a.velocity);
+    let Stretched { mut pull, direction, length, rate, mut tension } = match axis {
+        Some(axis) => along_axis(line, growth, Vector::of(g, axis), spring),
+        None => along_line(line, growth, spring),
     };
-    let mut tension = tension;
     if let Some(further) = further {
-        let further = m.own_formula(g, further, &[(Measure::Length, length), (Measure::Rate, rate)])?;
-        let further_pull = space::scale(g, further, direction);
-        pull = space::add(g, pull, further_pull);
-        tension = g.add(tension, further);
+        let own = [(Measure::Length, length.expr()), (Measure::Rate, rate.expr())];
+        let further = g.scalar(m.own_formula(g, further, &own)?);
+        pull += further * direction;
+        tension += further;
     }
     // The tension pulls A towards B.
-    loads.add_force_pair(g, &b, &a, pull);
-    let stretch = g.sub(length, spring.free_length);
-    let square = g.mul(stretch, stretch);
-    let doubled = g.mul(spring.stiffness, square);
-    let potential = g.scale(0.5, doubled);
+    loads.add_force_pair(g, &b, &a, pull.exprs());
+    let stretch = length - spring.free_length;
+    let potential = 0.5 * (spring.stiffness * (stretch * stretch));
     if further.is_none() {
-        loads.add_potential(g, m, &[spring.stiffness, spring.free_length], potential);
+        loads.add_potential(g, m, &[spring.stiffness.expr(), spring.free_length.expr()], potential.expr());
     }
     for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
-        loads.measure(measure, value);
+        loads.measure(measure, value.expr());
     }
     Ok(())
 }
 
 /// A spring in its place.
-struct Stretched {
+struct Stretched<'g> {
     /// F_A
-    pull: Vector,
+    pull: Vector<'g>,
     /// Of F_A under tension.
-    direction: Vector,
+    direction: Vector<'g>,
     /// ℓ or s
-    length: Expr,
+    length: Scalar<'g>,
     /// ℓ̇ or ṡ
-    rate: Expr,
+    rate: Scalar<'g>,
     /// f
-    tension: Expr,
+    tension: Scalar<'g>,
 }
 
-fn along_line(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, spring: Spring<Expr>) -> Stretched {
-    let line = space::sub(g, b.position, a.position);
-    let rate = space::sub(g, b.velocity, a.velocity);
-    let square = space::dot(g, line, line);
-    let length = g.sqrt(square);
-    let one = g.constant(1.0);
-    let share = g.div(spring.free_length, length);
-    let strain = g.sub(one, share);
-    let elastic = g.mul(spring.stiffness, strain);
-    let growth = space::dot(g, line, rate);
-    let relative = g.div(growth, square);
-    let viscous = g.mul(spring.damping, relative);
-    let density = g.add(elastic, viscous);
-    let pull = space::scale(g, density, line);
-    let direction = line.map(|component| g.div(component, length));
-    Stretched { pull, direction, length, rate: g.div(growth, length), tension: g.mul(density, length) }
+/// By d and ḋ.
+fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Spring<Scalar<'g>>) -> Stretched<'g> {
+    let square = line.dot(line);
+    let length = square.sqrt();
+    let elastic = spring.stiffness * (1.0 - spring.free_length / length);
+    let growth = line.dot(growth);
+    let density = elastic + spring.damping * (growth / square);
+    let (pull, direction) = (density * line, line / length);
+    Stretched { pull, direction, length, rate: growth / length, tension: density * length }
 }
 
-fn along_axis(g: &Builder, a: &MaterialPoint, b: &MaterialPoint, axis: Vector, spring: Spring<Expr>) -> Stretched {
-    let axis = space::unit(g, axis);
-    let line = space::sub(g, b.position, a.position);
-    let rate = space::sub(g, b.velocity, a.velocity);
-    let (extent, growth) = (space::dot(g, axis, line), space::dot(g, axis, rate));
-    let stretch = g.sub(extent, spring.free_length);
-    let elastic = g.mul(spring.stiffness, stretch);
-    let viscous = g.mul(spring.damping, growth);
-    let tension = g.add(elastic, viscous);
-    Stretched { pull: space::scale(g, tension, axis), direction: axis, length: extent, rate: growth, tension }
+/// By d and ḋ.
+fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring: Spring<Scalar<'g>>) -> Stretched<'g> {
+    let direction = axis.unit();
+    let (length, rate) = (direction.dot(line), direction.dot(growth));
+    let tension = spring.stiffness * (length - spring.free_length) + spring.damping * rate;
+    Stretched { pull: tension * direction, direction, length, rate, tension }
 }

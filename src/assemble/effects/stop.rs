@@ -6,11 +6,11 @@
 //!
 //! Between the stops nothing acts, and nothing is computed but where s is.
 
-use symdiff::{Binary, Builder, Expr};
+use symdiff::{Builder, Scalar};
 
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{Measure, Stop, TimeOrder};
+use crate::assemble::mechanism::Mechanism;
+use crate::model::{Measure, Stop};
 
 use super::Loads;
 use super::impact::Impact;
@@ -18,36 +18,28 @@ use super::impact::Impact;
 pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, stop: &Stop) -> Result<(), BuildError> {
     let on = stop.on;
     let impact = Impact::of(g, m, &stop.impact)?;
-    let place = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Position);
-    let rate = m.joint_coordinate(g, on.joint, on.coordinate, TimeOrder::Velocity);
-    let back = g.neg(rate);
-    let mut push = g.constant(0.0);
-    let mut ends: Vec<Expr> = Vec::new();
+    let [place, rate] = m.coordinate_and_rate(g, on);
+    let back = -rate;
+    let mut push = g.number(0.0);
+    let mut ends: Vec<Scalar> = Vec::new();
     if let Some(lower) = &stop.lower {
-        let lower = m.formula(g, lower, Context::Time)?;
-        let depth = g.sub(lower, place);
-        let force = impact.force(g, depth, back);
-        let force = g.only_where(depth, force);
-        push = g.add(push, force);
+        let depth = m.given(g, lower)? - place;
+        push += impact.force(depth, back).only_where(depth);
         ends.push(depth);
     }
     if let Some(upper) = &stop.upper {
-        let upper = m.formula(g, upper, Context::Time)?;
-        let depth = g.sub(place, upper);
-        let force = impact.force(g, depth, rate);
-        let force = g.only_where(depth, force);
-        push = g.sub(push, force);
+        let depth = place - m.given(g, upper)?;
+        push -= impact.force(depth, rate).only_where(depth);
         ends.push(depth);
     }
-    if let Some(overlap) = ends.iter().copied().reduce(|a, b| g.binary(Binary::Max, a, b)) {
-        loads.only_where(overlap);
+    if let Some(overlap) = ends.iter().copied().reduce(Scalar::max) {
+        loads.only_where(overlap.expr());
     }
-    loads.add_joint_effort(g, m, on, push)?;
+    loads.add_joint_effort(g, m, on, push.expr())?;
     for depth in ends {
-        let potential = impact.potential(g, depth);
-        let potential = g.only_where(depth, potential);
-        loads.add_potential(g, m, &[impact.stiffness], potential);
+        let potential = impact.potential(depth).only_where(depth);
+        loads.add_potential(g, m, &[impact.stiffness.expr()], potential.expr());
     }
-    loads.measure(Measure::of_effort(on.coordinate), push);
+    loads.measure(Measure::of_effort(on.coordinate), push.expr());
     Ok(())
 }

@@ -12,8 +12,8 @@ use symdiff::{Builder, Formula};
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
-use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{JointCoordinate, Measure, TimeOrder, TorsionalSpringDamper};
+use crate::assemble::mechanism::Mechanism;
+use crate::model::{JointCoordinate, Measure, OnJoint, TorsionalSpringDamper};
 
 use super::Loads;
 
@@ -25,49 +25,42 @@ pub fn apply(
     [stiffness, damping, free_angle]: [&Formula; 3],
     further: Option<&Formula>,
 ) -> Result<(), BuildError> {
-    let stiffness = m.formula(g, stiffness, Context::Motion)?;
-    let damping = m.formula(g, damping, Context::Motion)?;
-    let free_angle = m.formula(g, free_angle, Context::Motion)?;
+    let stiffness = m.value(g, stiffness)?;
+    let damping = m.value(g, damping)?;
+    let free_angle = m.value(g, free_angle)?;
     let bodies = spring.between.map(|bodies| bodies.map(|body| body.0));
-    let (turned, rate) = match (bodies, spring.on) {
-        (Some([first, second]), None) => (
-            g.sub(m.bodies[second].position[ANGLE], m.bodies[first].position[ANGLE]),
-            g.sub(m.bodies[second].velocity[ANGLE], m.bodies[first].velocity[ANGLE]),
-        ),
-        (_, Some(joint)) => {
-            let joint = joint.0;
-            let coordinate = |order| m.joint_coordinate(g, joint, JointCoordinate::Angle, order);
-            (coordinate(TimeOrder::Position), coordinate(TimeOrder::Velocity))
+    let [angle, rate] = match (bodies, spring.on) {
+        (Some([first, second]), None) => {
+            let [first, second] = [first, second].map(|body| &m.bodies[body]);
+            let difference = |after, before| g.scalar(after) - g.scalar(before);
+            [
+                difference(second.position[ANGLE], first.position[ANGLE]),
+                difference(second.velocity[ANGLE], first.velocity[ANGLE]),
+            ]
         }
+        (_, Some(joint)) => m.coordinate_and_rate(g, OnJoint { joint: joint.0, coordinate: JointCoordinate::Angle }),
         (None, None) => return Ok(()),
     };
-    let twist = g.sub(turned, free_angle);
-    let elastic = g.mul(stiffness, twist);
-    let viscous = g.mul(damping, rate);
-    let mut torque = g.add(elastic, viscous);
+    let twist = angle - free_angle;
+    let mut torque = stiffness * twist + damping * rate;
     if let Some(further) = further {
-        let further = m.own_formula(g, further, &[(Measure::Angle, turned), (Measure::Rate, rate)])?;
-        torque = g.add(torque, further);
+        let own = [(Measure::Angle, angle.expr()), (Measure::Rate, rate.expr())];
+        torque += g.scalar(m.own_formula(g, further, &own)?);
     }
-    for (measure, value) in [(Measure::Angle, turned), (Measure::Rate, rate), (Measure::Torque, torque)] {
-        loads.measure(measure, value);
+    for (measure, value) in [(Measure::Angle, angle), (Measure::Rate, rate), (Measure::Torque, torque)] {
+        loads.measure(measure, value.expr());
     }
     match (bodies, spring.on) {
         (Some([first, second]), None) => {
             let zero = g.constant(0.0);
-            loads.add_torque_pair(g, second, first, [zero, zero, torque]);
+            loads.add_torque_pair(g, second, first, [zero, zero, torque.expr()]);
         }
-        (_, Some(joint)) => {
-            let back = g.neg(torque);
-            loads.add_joint_torque(g, m, joint.0, back)?;
-        }
+        (_, Some(joint)) => loads.add_joint_torque(g, m, joint.0, (-torque).expr())?,
         (None, None) => {}
     }
-    let square = g.mul(twist, twist);
-    let doubled = g.mul(stiffness, square);
-    let potential = g.scale(0.5, doubled);
+    let potential = 0.5 * (stiffness * (twist * twist));
     if further.is_none() {
-        loads.add_potential(g, m, &[stiffness, free_angle], potential);
+        loads.add_potential(g, m, &[stiffness.expr(), free_angle.expr()], potential.expr());
     }
     Ok(())
 }

@@ -11,7 +11,6 @@ use super::robot::{Joint, Kind, Limits, Number};
 use super::source::{Built, Source, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
-
 use crate::model::description::Effect;
 use crate::model::file;
 use crate::model::names::Reader;

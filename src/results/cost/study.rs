@@ -24,20 +24,20 @@ pub struct CostStudy {
 
 impl CostStudy {
     /// Whether nothing is uncertain, so that there is nothing to bound.
-    pub fn is_certain(&self) -> bool {
+    pub fn is_deterministic(&self) -> bool {
         matches!(self.reference.method, CostMethod::Scheme(_))
     }
 
     /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
     fn choices(&self) -> impl Iterator<Item = &CostPoint> {
         let own = |point: &&CostPoint| matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }));
-        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_certain());
+        let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_deterministic());
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
 
     /// The reference's own error in what is chosen from.
     pub fn own_error(&self) -> f64 {
-        if self.is_certain() { self.reference.trajectory_error } else { self.reference.bounds_error }
+        if self.is_deterministic() { self.reference.trajectory_error } else { self.reference.bounds_error }
     }
 
     /// The cheapest setting that is neither too wide nor too narrow by more than the tolerance, the reference's own error

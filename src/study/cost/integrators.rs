@@ -63,9 +63,9 @@ impl Course {
         let (schedule, mut failure) = match stepping {
             Stepping::Fixed(step) => (Schedule::fixed(simulation.duration, step, simulation.output_step), None),
             Stepping::Tolerance(tolerance) => {
-                let pilots = std::slice::from_ref(&nominal);
+                let samples = std::slice::from_ref(&nominal);
                 let piloted =
-                    schedule_for_tolerance(simulator, pilots, simulation.duration, simulation.output_step, tolerance)?;
+                    schedule_for_tolerance(simulator, samples, simulation.duration, simulation.output_step, tolerance)?;
                 (piloted.schedule, piloted.failure.map(|failure| failure.to_string()))
             }
         };

@@ -91,12 +91,12 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     if (options.interrupted)() {
         left_out.push("what was not done when the study was interrupted".to_owned());
     }
-    mark(&mut bounds, reference.told.bounds_error);
-    mark(&mut trajectories, reference.told.trajectory_error);
+    mark(&mut bounds, reference.summary.bounds_error);
+    mark(&mut trajectories, reference.summary.trajectory_error);
     Ok(CostStudy {
         model: model.name.clone(),
         tolerance: options.tolerance,
-        reference: reference.told,
+        reference: reference.summary,
         bounds,
         trajectories,
         left_out,

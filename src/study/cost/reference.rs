@@ -19,11 +19,11 @@ use crate::results::{CostMethod, CostReference};
 /// Bounds and nominal courses that others are held against, and what is known of their errors.
 pub(super) struct Reference {
     pub(super) known: Known,
-    pub(super) told: CostReference,
+    pub(super) summary: CostReference,
 }
 
 impl Reference {
-    /// Carries out a plan. `progress` is told which share is done.
+    /// Carries out a plan. `progress` gets the share that is done.
     ///
     /// # Errors
     /// Where a run fails or ends early.
@@ -72,7 +72,7 @@ impl Reference {
             known.widen(&whole);
             parts.push((format!("scan of {points} points for {}", points / 2 + 1), added));
         }
-        let told = CostReference {
+        let summary = CostReference {
             method: plan.method,
             order: plan.order,
             steps: steppings,
@@ -80,7 +80,7 @@ impl Reference {
             trajectory_error: of_courses,
             parts,
         };
-        Ok(Self { known, told })
+        Ok(Self { known, summary })
     }
 }
 

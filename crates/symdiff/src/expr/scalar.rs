@@ -324,6 +324,7 @@ mod tests {
         let mut sum = x;
         sum += y;
         let found = [x + y * x, -x / y - 1.0, 0.5 * x, x.only_where(y), y.select(x, y), (x * y).derivative(x), sum - y];
+        let sum = graph.add(a, b);
         let product = graph.mul(b, a);
         let first = graph.add(a, product);
         let negative = graph.neg(a);
@@ -331,7 +332,6 @@ mod tests {
         let second = graph.sub(quotient, one);
         let (third, fourth, fifth) = (graph.scale(0.5, a), graph.only_where(b, a), graph.select(b, a, b));
         let sixth = graph.derivative(product, a);
-        let sum = graph.add(a, b);
         let wanted = [first, second, third, fourth, fifth, sixth, graph.sub(sum, b)];
         assert_eq!(found.map(Scalar::expr), wanted);
         let graphs = [builder.finish(), graph].map(|graph| graph.exprs_after(0).map(|expr| graph.node(expr)).collect());
