@@ -7,7 +7,7 @@ use symdiff::formula::FUNCTIONS;
 use super::motions::{ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, TURNING, joint_dimension, motion_dimension};
 use super::names::ENERGIES;
 use super::quantity::{Dimension, named_units};
-use super::symbols::{Coordinate, EnergyKind, JointCoordinate, Measure, TimeOrder};
+use super::symbols::{Coordinate, EnergyKind, JointCoordinate, TimeOrder};
 
 /// A unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,7 +36,7 @@ pub struct FunctionDocs {
 /// Something that an output may observe.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct OutputDocs {
-    /// The kind of thing it belongs to.
+    /// The kind of thing that has it; of an effect its keyword.
     pub of: &'static str,
     /// The name, with names of the model's own things in capitals: `BODY.vx`.
     pub output: String,
@@ -67,15 +67,11 @@ pub fn functions() -> Vec<FunctionDocs> {
     FUNCTIONS.iter().map(function).collect()
 }
 
-/// All outputs of bodies, points, joints, effects and of the whole mechanism.
+/// All outputs of bodies, points, joints and of the whole mechanism; effects list their own.
 pub fn outputs() -> Vec<OutputDocs> {
     let mut outputs = body_outputs();
     outputs.extend(point_outputs());
     outputs.extend(joint_outputs());
-    outputs.extend(Measure::ALL.map(|measure| {
-        let (unit, meaning) = measured(measure);
-        output("effect", format!("EFFECT.{}", measure.name()), unit, meaning.to_owned())
-    }));
     outputs.extend(ENERGIES.map(|(name, energy)| {
         let meaning = match energy {
             EnergyKind::Total => "kinetic and potential energy of the mechanism",
@@ -188,20 +184,4 @@ fn joint_outputs() -> Vec<OutputDocs> {
         reaction(&format!("torque.{axis}"), &torque, &meaning)
     }));
     outputs
-}
-
-/// Unit and meaning of what effects measure; signs are those of the effect's equation.
-fn measured(measure: Measure) -> (String, &'static str) {
-    let (dimension, meaning) = match measure {
-        Measure::Length => (Dimension::LENGTH, "distance between the effect's points"),
-        Measure::Angle => (Dimension::ANGLE, "angle between the effect's bodies"),
-        Measure::Gap => (Dimension::LENGTH, "distance between the surfaces; negative where they overlap"),
-        Measure::Rate => (Dimension::VELOCITY, "rate of length, gap (m/s) or angle (rad/s)"),
-        Measure::Load => (Dimension::FORCE, "force that presses the friction surfaces together"),
-        Measure::Force => (Dimension::FORCE, "force of the effect, with the sign of its equation"),
-        Measure::Torque => (Dimension::TORQUE, "torque of the effect, with the sign of its equation"),
-        Measure::StartTorque => (Dimension::TORQUE, "bending moment at the element's first end"),
-        Measure::Friction => (Dimension::FORCE, "friction force along the surface"),
-    };
-    (dimension.unit(), meaning)
 }
