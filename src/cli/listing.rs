@@ -58,7 +58,7 @@ fn outputs() -> Vec<OutputDocs> {
         outputs.extend(effect.sensors.into_iter().map(|(name, unit)| OutputDocs {
             of: effect.keyword,
             output: format!("EFFECT.{name}"),
-            unit: unit.to_string(),
+            unit,
             meaning: "value and sign as in the effect's equation".to_owned(),
         }));
     }
