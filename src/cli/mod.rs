@@ -7,6 +7,7 @@ mod cost;
 mod effects;
 mod explain;
 mod interrupt;
+mod job;
 mod joints;
 mod listing;
 mod load;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::console::{BOLD, Console, count, file_names};
-use super::run::{Done, Job, Request, report, run_one};
+use super::job::{Done, Job, Request, report, run_one};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};

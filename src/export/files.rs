@@ -1,29 +1,13 @@
 //! The files of a run's results.
 
 use std::collections::HashSet;
-use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
 use crate::export::{bounds_csv, contributions_csv, contributions_svg, plot_svg};
 use crate::results::Bounds;
 use crate::results::Summary;
-
-/// Why results could not be written.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)]
-pub enum ExportError {
-    #[error("cannot write into the folder {}: {source}", path.display())]
-    Folder { path: PathBuf, source: io::Error },
-    #[error("cannot write {}: {source}", path.display())]
-    Write { path: PathBuf, source: io::Error },
-    #[error("cannot write the table of bounds: {0}")]
-    Csv(#[from] csv::Error),
-    #[error("cannot write the summary: {0}")]
-    Json(#[from] serde_json::Error),
-    #[error("cannot plot `{output}`: {message}")]
-    Plot { output: String, message: String },
-}
 
 /// Writes `bounds.csv`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::files::ExportError;
+use super::error::ExportError;
 
 /// Files that are written under temporary names next to their destinations and renamed when all are written. Neither a failure
 /// nor a killed run leaves a partial file; a full disk leaves older results unchanged; and of two runs into one folder, the

@@ -4,8 +4,16 @@ use plotters::prelude::*;
 
 use super::figure::{Course, figure_svg};
 use super::panel::Style;
-use super::scenes::SceneBounds;
-use crate::results::{Band, OutputBounds, foremost};
+use crate::results::{Band, Bounds, OutputBounds, foremost};
+
+/// The bounds of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneBounds<'a> {
+    /// The scene's name.
+    pub name: &'a str,
+    /// The results of its run.
+    pub bounds: &'a Bounds,
+}
 
 /// Colours that every colour vision distinguishes; further scenes repeat them, darker.
 const COLORS: [RGBColor; 7] = [

@@ -5,19 +5,11 @@ use std::path::{Path, PathBuf};
 use csv::WriterBuilder;
 
 use super::csv::number;
-use super::files::{ExportError, unique_stems};
+use super::error::ExportError;
+use super::files::unique_stems;
 use super::folder::AtomicFiles;
-use super::overlay::overlay_svg;
+use super::overlay::{SceneBounds, overlay_svg};
 use crate::results::{Bounds, OutputBounds};
-
-/// The bounds of a scene.
-#[derive(Clone, Copy, Debug)]
-pub struct SceneBounds<'a> {
-    /// The scene's name.
-    pub name: &'a str,
-    /// The results of its run.
-    pub bounds: &'a Bounds,
-}
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
 ///

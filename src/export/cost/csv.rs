@@ -6,7 +6,7 @@ use csv::WriterBuilder;
 
 use super::plot::cost_svg;
 use crate::export::csv::number;
-use crate::export::files::ExportError;
+use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
 use crate::model::Stepping;
 use crate::results::{CostPoint, CostStudy, Deviation};

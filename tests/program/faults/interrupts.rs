@@ -58,7 +58,7 @@ fn a_study_of_costs_ends_at_a_ctrl_c() {
     let errors = String::from_utf8(ended.stderr).unwrap();
     assert_eq!(
         (ended.status.code(), errors.as_str()),
-        (Some(130), "error: crank: interrupted before there was anything to compare\n")
+        (Some(130), "error: crank: interrupted before any setting was finished\n")
     );
     assert_eq!(place.files("out"), Vec::<String>::new());
 }
