@@ -1,4 +1,4 @@
-//! What may stand on the command line.
+//! The arguments of the command line.
 
 use std::path::PathBuf;
 
@@ -6,12 +6,14 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use super::listing::Listing;
+use super::status;
 use crate::model::Override;
 use crate::results::Method;
 
-/// What a mechanism can do when its parameters are only known up to tolerances.
+/// Bounds of a mechanism's motion over time when its parameters are uncertain.
 #[derive(Debug, Parser)]
-#[command(name = "mbint", version, arg_required_else_help = true, after_help = EXIT_STATUS)]
+#[command(name = "mbint", version, arg_required_else_help = true, after_help = status::help())]
 pub(super) struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -21,29 +23,19 @@ pub(super) struct Cli {
     pub color: Color,
 }
 
-const EXIT_STATUS: &str = "\
-Exit status:
-  0  done
-  1  a run failed; what was finished is kept
-  2  the command or a model is wrong; nothing was run
-  3  done, but at some time no method resolves an output: the errors are too large
-  130  interrupted by Ctrl-C; what was finished is kept, and a second Ctrl-C does not wait for it
-
-Begin with `mbint new NAME`, which writes a small model to change.";
-
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Compute bounds of every output over time.
     Run(RunArgs),
-    /// Read and assemble models, and count: coordinates, constraints, degrees of freedom.
+    /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
-    /// Tell what accuracy costs in time: error against seconds for methods, orders and steps.
+    /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
-    /// Tell what a model is compiled to, and what is left out.
+    /// Explain what a model is compiled to and what is left out, or list what the language offers.
     Explain(ExplainArgs),
     /// Print the JSON Schema of model files, for editors.
     Schema,
-    /// Write a small, commented model to begin with.
+    /// Write a small, commented model as a starting point.
     New(NewArgs),
     /// Print a completion script for a shell.
     Completions(CompletionsArgs),
@@ -60,12 +52,12 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// These methods instead of the model's: chebyshev, taylor, scan, certified [default: all that the model asks for].
+    /// Methods to run: chebyshev, taylor, scan, certified [default: the model's].
     #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
     #[arg(value_parser = methods(), hide_possible_values = true)]
     pub method: Vec<Method>,
 
-    /// Add certified bounds: proven for every parameter of the box, of the motion as the scheme's steps define it.
+    /// Add certified bounds: proven for all parameter values within their tolerances, for the time steps taken.
     #[arg(long)]
     pub certify: bool,
 
@@ -73,16 +65,16 @@ pub(super) struct RunArgs {
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
 
-    /// Only this scene of the models; may be given several times [default: all scenes].
+    /// Run this scene only; may be given several times [default: all scenes].
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub scene: Vec<String>,
 
-    /// Threads; results do not depend on it [default: one a core].
+    /// Number of threads; results do not depend on it [default: one per core].
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
 
-    /// Leave out the part of the parameters' box in which the mechanism cannot be assembled, or does not move to the end,
-    /// and say in each row how much is left.
+    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the simulation;
+    /// the column `covered` has the share that is left.
     #[arg(long)]
     pub skip_infeasible: bool,
 
@@ -90,23 +82,23 @@ pub(super) struct RunArgs {
     #[arg(short, long)]
     pub quiet: bool,
 
-    /// Simulate every sample with halved steps too, to know the time steps' error of every bound [default: a few].
+    /// Also simulate every sample with halved steps, to estimate the time error of every bound [default: a few samples].
     #[arg(long)]
     pub certify_time: bool,
 
-    /// Write seconds into summary.json, which is then no longer the same from run to run.
+    /// Write computing times into summary.json, which then differs from run to run.
     #[arg(long)]
     pub timings: bool,
 }
 
-/// More than any machine that mbint is run on has; beyond it, a slip of the keyboard.
+/// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
 const MOST_THREADS: i64 = 1024;
 
 const RUN_HELP: &str = "\
-Writes bounds.csv (a column t, then NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
-output, and which are unresolved),
-summary.json, and a plot NAME.svg of each output. A model's scenes have a folder each; beside
-them are scenes.csv and a plot of each output with all scenes in it.";
+Writes bounds.csv (columns: t; NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
+output; the unreliable bounds of the row), summary.json, and a plot NAME.svg of each output.
+Each scene of a model has a folder of its own; next to them are scenes.csv and a plot of each
+output with all scenes.";
 
 #[derive(Debug, Args)]
 #[command(after_help = COST_HELP)]
@@ -119,11 +111,11 @@ pub(super) struct CostArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Error that is wanted, as a share of the widest that an output's bounds get [default: 1e-3].
+    /// Wanted error, relative to the largest width of an output's bounds [default: 1e-3].
     #[arg(short, long, value_name = "SHARE", value_parser = positive)]
     pub tolerance: Option<f64>,
 
-    /// Seconds to spend, about; settings that take longer are left out.
+    /// Approximate computing time in seconds; settings that take longer are left out.
     #[arg(short, long, value_name = "SECONDS", value_parser = positive, default_value_t = 60.0)]
     pub budget: f64,
 
@@ -131,11 +123,11 @@ pub(super) struct CostArgs {
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     pub set: Vec<Override>,
 
-    /// A scene of the model, instead of the model itself.
+    /// Use this scene of the model.
     #[arg(long, value_name = "NAME")]
     pub scene: Option<String>,
 
-    /// Threads [default: one a core].
+    /// Number of threads [default: one per core].
     #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
 
@@ -145,9 +137,9 @@ pub(super) struct CostArgs {
 }
 
 const COST_HELP: &str = "\
-Runs the model with many methods, orders and steps, and compares their bounds with those of a
-reference that it computes itself. Writes cost.csv (a row a setting) and cost.svg; both hold
-seconds, and so differ from run to run.";
+Runs the model with many methods, orders and step sizes, and compares their bounds with a
+reference that it computes first. Writes cost.csv (one row per setting) and cost.svg; both
+contain computing times, and so differ from run to run.";
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {
@@ -155,7 +147,7 @@ pub(super) struct CheckArgs {
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
 
-    /// Text for people, or a JSON array with an object a model.
+    /// Text for people, or a JSON array with one object per model.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }
@@ -163,33 +155,74 @@ pub(super) struct CheckArgs {
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
     /// Model file.
-    #[arg(value_name = "MODEL", required_unless_present_any = ["effects", "joints", "methods"])]
+    #[arg(value_name = "MODEL", required_unless_present = "list")]
     pub model: Option<PathBuf>,
 
-    /// A scene of the model, instead of the model itself.
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["effects", "joints", "methods"])]
+    /// Use this scene of the model.
+    #[arg(long, value_name = "NAME", conflicts_with = "list")]
     pub scene: Option<String>,
 
-    /// Instead of a model: every effect that there is, with its keys, units, formula and source.
-    #[arg(long, conflicts_with = "model")]
-    pub effects: bool,
+    #[command(flatten)]
+    pub list: ListArgs,
 
-    /// Instead of a model: every joint that there is, with its keys, units, equations and the signs of its reaction.
-    #[arg(long, conflicts_with_all = ["model", "effects"])]
-    pub joints: bool,
-
-    /// Instead of a model: every bounding method that there is, with its keys and source.
-    #[arg(long, conflicts_with_all = ["model", "effects", "joints"])]
-    pub methods: bool,
-
-    /// Text for people, or a JSON object.
+    /// Text for people, or JSON.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+
+    /// Print a list as a page of the book.
+    #[arg(long, hide = true, requires = "list", conflicts_with_all = ["format", "effects", "joints", "methods"])]
+    pub page: bool,
+}
+
+/// What to list instead of explaining a model.
+#[derive(Debug, Args)]
+#[group(id = "list", multiple = false, conflicts_with = "model")]
+pub(super) struct ListArgs {
+    /// List every effect with its keys, units, equation and source.
+    #[arg(long)]
+    pub effects: bool,
+
+    /// List every joint with its keys, units, equations and the signs of its reaction.
+    #[arg(long)]
+    pub joints: bool,
+
+    /// List every bounding method with its keys and source.
+    #[arg(long)]
+    pub methods: bool,
+
+    /// List every unit with its value in SI units.
+    #[arg(long)]
+    pub units: bool,
+
+    /// List every function of formulas with its domain.
+    #[arg(long)]
+    pub functions: bool,
+
+    /// List every output of bodies, joints and effects with unit, sign and frame.
+    #[arg(long)]
+    pub outputs: bool,
+
+    /// List the exit codes.
+    #[arg(long)]
+    pub exit_codes: bool,
+}
+
+impl ListArgs {
+    /// The list that is asked for, other than that of effects.
+    pub fn listing(&self) -> Option<Listing> {
+        let listings = [
+            (self.units, Listing::Units),
+            (self.functions, Listing::Functions),
+            (self.outputs, Listing::Outputs),
+            (self.exit_codes, Listing::ExitCodes),
+        ];
+        listings.into_iter().find(|(asked, _)| *asked).map(|(_, listing)| listing)
+    }
 }
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
-    /// The model's name, perhaps with a folder before it; NAME.yaml is written, never over another file.
+    /// The model's name, with a folder before it if wanted; writes NAME.yaml and never overwrites a file.
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
 }
@@ -214,7 +247,7 @@ pub(super) enum Color {
     Never,
 }
 
-/// Methods by the names that they have everywhere.
+/// Methods by their names.
 fn methods() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
@@ -227,10 +260,10 @@ fn positive(text: &str) -> Result<f64, String> {
 
 fn parse_override(text: &str) -> Result<Override, String> {
     Override::parse(text).map_err(|wrong| {
-        let told = wrong.records().into_iter().map(|record| match record.help {
+        let messages = wrong.records().into_iter().map(|record| match record.help {
             Some(help) => format!("{}; {help}", record.message),
             None => record.message,
         });
-        told.collect::<Vec<_>>().join("; ")
+        messages.collect::<Vec<_>>().join("; ")
     })
 }

@@ -1,40 +1,40 @@
-//! `mbint check`: whether models are right, and what they are made of.
+//! `mbint check`: errors of models, and their coordinates, constraints and degrees of freedom.
 
 use std::path::Path;
 
 use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, to_json};
 use super::{Failure, Status, tree};
 use crate::model::{self, Description};
 use crate::reduce::{Choices, Reduction};
 use crate::study::{self, RunError};
 
-/// What is known of a model; an element of the JSON output.
+/// Result for a model; an element of the JSON output.
 #[derive(Serialize)]
 struct Checked {
     file: String,
     ok: bool,
     #[serde(flatten)]
     counts: Option<Counts>,
-    /// What is wrong, with its place.
+    /// Errors and warnings with their places.
     diagnostics: Vec<crate::syntax::Record>,
-    /// What is wrong with the mechanism as a whole.
+    /// The error of the mechanism as a whole.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
-    /// What is known of each of its scenes.
+    /// Results for its scenes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     scenes: Vec<CheckedScene>,
     /// `diagnostics` for people.
     #[serde(skip)]
     rendered: String,
-    /// Of a robot's links, for people.
+    /// The tree of a robot's links, for people.
     #[serde(skip)]
     tree: String,
 }
 
-/// What is known of a scene.
+/// Result for a scene.
 #[derive(Serialize)]
 struct CheckedScene {
     scene: String,
@@ -66,7 +66,7 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
     match args.format {
         Format::Text => {
             for model in &checked {
-                console.complain(&model.rendered);
+                console.report(&model.rendered);
                 if let Some(error) = &model.error {
                     console.error(&format!("{}: {error}", model.file));
                 }
@@ -104,12 +104,12 @@ fn check_one(path: &Path, color: bool) -> Checked {
         tree: String::new(),
     };
     let reading = model::read(path, &[]);
-    let told = &reading.diagnostics;
-    let rendered = if told.is_empty() { String::new() } else { told.render(color) };
-    let read = Checked { diagnostics: told.records(), rendered, ..nothing };
+    let diagnostics = &reading.diagnostics;
+    let rendered = if diagnostics.is_empty() { String::new() } else { diagnostics.render(color) };
+    let read = Checked { diagnostics: diagnostics.records(), rendered, ..nothing };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
     if !reading.scenes.is_empty() {
-        // The scenes are what is run; the model itself has been read.
+        // Only the scenes are run.
         let scenes: Vec<CheckedScene> = reading.scenes.iter().map(check_scene).collect();
         return Checked { ok: scenes.iter().all(|scene| scene.ok), scenes, ..read };
     }
@@ -129,7 +129,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 }
 
 impl Counts {
-    /// Of the whole model, whatever of it will be simulated.
+    /// Of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
         let explanation = study::explain_whole(model)?;
         Ok(Self {
@@ -163,9 +163,9 @@ impl Counts {
             [] => String::new(),
             names => format!(", {what} {}", names.join(", ")),
         };
-        let singular = others(&self.singular_at_start, "a singular start, at which others imply");
+        let singular = others(&self.singular_at_start, "a singular start, at which other constraints imply");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
-        let left_out = others(&self.not_simulated, "not simulated, since no output depends on it:");
+        let left_out = others(&self.not_simulated, "not simulated because no output depends on it:");
         format!(
             "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}{left_out}\n",
             self.model,
@@ -175,12 +175,6 @@ impl Counts {
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
         )
     }
-}
-
-/// Indented JSON with a line end.
-pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n").map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
-//! The terminal, or what stands in for it: text for people and errors.
+//! Standard output and standard error: text for people, JSON, errors.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
 use clap::builder::styling::{AnsiColor, Style};
+use serde::Serialize;
 
 use super::Failure;
 
@@ -15,13 +16,12 @@ const RED: Style = AnsiColor::Red.on_default().bold();
 /// Standard output and standard error.
 #[derive(Debug, Default)]
 pub(super) struct Console {
-    /// Whoever read standard output has gone (`mbint … | head -1`).
+    /// Whether the reader of standard output has closed the pipe (`mbint … | head -1`).
     closed: bool,
 }
 
 impl Console {
-    /// Writes to standard output as it stands. A reader who has read enough and closed the pipe is no failure: what
-    /// comes after is dropped.
+    /// Writes text to standard output. A closed pipe is no failure: further text is dropped.
     pub fn print(&mut self, text: &str) -> Result<(), Failure> {
         if self.closed {
             return Ok(());
@@ -36,18 +36,18 @@ impl Console {
         }
     }
 
-    /// An error's one line on standard error.
+    /// Writes an error in one line to standard error.
     pub fn error(&self, message: &str) {
-        self.complain(&format!("{RED}error{RED:#}: {message}\n"));
+        self.report(&format!("{RED}error{RED:#}: {message}\n"));
     }
 
-    /// A warning's one line on standard error.
+    /// Writes a warning in one line to standard error.
     pub fn warning(&self, message: &str) {
-        self.complain(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
+        self.report(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
     }
 
-    /// Text as it stands to standard error. If that is closed there is no one left to tell.
-    pub fn complain(&self, text: &str) {
+    /// Writes text to standard error; if that is closed, nobody can be told.
+    pub fn report(&self, text: &str) {
         let _ = anstream::stderr().lock().write_all(text.as_bytes());
     }
 
@@ -57,7 +57,7 @@ impl Console {
     }
 }
 
-/// Names of files or folders without what leads to them, in a line.
+/// Names of files or folders without their paths, in a line.
 pub(super) fn file_names<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> String {
     let names = paths.into_iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
     names.collect::<Vec<_>>().join(", ")
@@ -70,4 +70,10 @@ pub(super) fn count(n: usize, one: &str, many: &str) -> String {
         1 => format!("1 {one}"),
         _ => format!("{n} {many}"),
     }
+}
+
+/// Indented JSON with a line end.
+pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(value);
+    text.map(|text| text + "\n").map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))
 }

@@ -1,4 +1,4 @@
-//! `mbint cost`: what accuracy costs in time.
+//! `mbint cost`: error against computing time.
 
 use std::path::{Path, PathBuf};
 
@@ -36,7 +36,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         Ok(study) => study,
         Err(_) if interrupt::asked() => {
             drop(progress);
-            console.error(&format!("{}: interrupted before there was anything to compare", model.name));
+            console.error(&format!("{}: interrupted before any setting was finished", model.name));
             return Ok(Status::Interrupted);
         }
         Err(error) => return Err(failed(&error)),
@@ -49,24 +49,24 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
     Ok(if interrupt::asked() { Status::Interrupted } else { Status::Done })
 }
 
-/// The error that is wanted: the command's, else the model's own, else the default.
+/// The wanted error: the command's, else the model's, else the default.
 fn wanted(args: &CostArgs, model: &Description) -> f64 {
     args.tolerance.or(model.bounds.tolerance).unwrap_or(BoundsRequest::TOLERANCE)
 }
 
-/// Each method's front in a table, what the errors are measured against, what was left out, and the choice.
+/// Each method's front in a table, the reference of the errors, the settings left out, and the choice.
 fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
-    let mut text = format!("{BOLD}{}{BOLD:#}: what accuracy costs\n\n", study.model);
+    let mut text = format!("{BOLD}{}{BOLD:#}: error against computing time\n\n", study.model);
     if !study.bounds.is_empty() {
         text += &format!("{}\n", bounds(study).render(2));
     }
     text += &format!("{}\n", trajectories(study).render(2));
-    text += "  Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.\n";
+    text += "  Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.\n";
     text += match study.is_deterministic() {
         false => {
-            "  Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.\n"
+            "  Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.\n"
         }
-        true => "  Errors are shares of how far an output's course reaches.\n",
+        true => "  Errors are relative to the range of an output's course.\n",
     };
     text += &reference(study);
     for left_out in &study.left_out {
@@ -77,7 +77,7 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     text
 }
 
-/// The settings that none of the same method betters, method by method, from cheap to dear.
+/// The settings on each method's front, method by method, from the cheapest.
 fn fronts(points: &[CostPoint], own: f64) -> Vec<&CostPoint> {
     let front = |method| {
         let of: Vec<&CostPoint> = points.iter().filter(|point| point.method == method).collect();
@@ -137,7 +137,7 @@ fn trajectories(study: &CostStudy) -> Table<5> {
     table
 }
 
-/// An error, or the reference's own where it is smaller; nothing is there only where nothing was found.
+/// An error, or the reference's own error where that is larger; 0 is exact.
 fn error(error: f64, own: f64) -> String {
     match error {
         0.0 => "0".to_owned(),
@@ -150,7 +150,7 @@ fn seconds(seconds: f64) -> String {
     if seconds < 0.1 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
 }
 
-/// A step size, or a tolerance in its place.
+/// A step size, or the tolerance that controls it.
 fn step(stepping: Stepping) -> String {
     match stepping {
         Stepping::Fixed(step) => {
@@ -162,7 +162,7 @@ fn step(stepping: Stepping) -> String {
     }
 }
 
-/// What errors are measured against, and how well it is known.
+/// The reference of the errors, and its own error.
 fn reference(study: &CostStudy) -> String {
     let reference = &study.reference;
     let [finest, middle, _] = reference.steps.map(step);
@@ -179,13 +179,13 @@ fn reference(study: &CostStudy) -> String {
     text + "\n"
 }
 
-/// The one sentence: the cheapest setting that meets the tolerance.
+/// The cheapest setting that meets the tolerance, in a sentence.
 fn choice(study: &CostStudy) -> String {
     let (wanted, own) = (study.tolerance, study.own_error());
-    let told = |point: &CostPoint| {
+    let described = |point: &CostPoint| {
         let count_of = match (point.order, point.points) {
             (Some(order), _) => format!(" of order {order}"),
-            (_, Some(points)) => format!(" of {points} points a parameter"),
+            (_, Some(points)) => format!(" with {points} points per parameter"),
             _ => String::new(),
         };
         let off = match point.deviation {
@@ -200,11 +200,11 @@ fn choice(study: &CostStudy) -> String {
     };
     match (study.cheapest(), study.nearest()) {
         _ if own >= wanted => {
-            format!("Nothing can be said of {wanted:e}: the reference itself is only known to {own:.1e}.")
+            format!("No setting can be compared at {wanted:e}: the reference's own error is {own:.1e}.")
         }
-        (Some(point), _) => format!("The cheapest within {wanted:e} is {}.", told(point)),
-        (None, Some(point)) => format!("No setting tried is within {wanted:e}; the nearest is {}.", told(point)),
-        (None, None) => format!("No setting tried has come to its end, so none is within {wanted:e}."),
+        (Some(point), _) => format!("The cheapest setting within {wanted:e} is {}.", described(point)),
+        (None, Some(point)) => format!("No setting meets {wanted:e}; the nearest is {}.", described(point)),
+        (None, None) => format!("No setting was finished, so none meets {wanted:e}."),
     }
 }
 
@@ -264,7 +264,7 @@ mod tests {
         let files = ["cost.csv", "cost.svg"].map(|name| Path::new("results/crank").join(name));
         let text = overview(&study(), Path::new("results/crank"), &files);
         insta::assert_snapshot!(plain(&text), @r"
-        crank: what accuracy costs
+        crank: error against computing time
 
           bounds                 order  points    step  simulations  seconds  too wide  too narrow
           * Chebyshev, composed      5          1e-3 s           36   2.5e-2    4.0e-4    ≤ 1.0e-5
@@ -273,12 +273,12 @@ mod tests {
           nominal trajectory        step  steps  seconds   error
             HHT-I3, α = −0.1  3.333e-4 s   6000   2.0e-3  2.0e-5
 
-          Of each method, what none of its own betters; * nothing betters at all; ≤ below the reference's own error.
-          Errors are shares of the widest that an output's bounds get; too narrow is what the bounds leave out.
+          Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.
+          Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.
           reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
           left out: Scan: 3 of its settings
 
-        The cheapest within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        The cheapest setting within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
           results/crank: cost.csv, cost.svg
         ");
     }
@@ -287,9 +287,9 @@ mod tests {
     fn the_sentence_says_when_nothing_can_be_chosen() {
         let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
         insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
-        The cheapest within 3e-3 is Scan of 5 points a parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
-        No setting tried is within 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
-        Nothing can be said of 1e-5: the reference itself is only known to 1.0e-5.
+        The cheapest setting within 3e-3 is Scan with 5 points per parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
+        No setting meets 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
+        No setting can be compared at 1e-5: the reference's own error is 1.0e-5.
         ");
     }
 }

@@ -1,8 +1,7 @@
-//! `mbint explain`: what a model is compiled to, or which effects, joints and bounding methods there are.
+//! `mbint explain`: what a model is compiled to, or what the language offers.
 
 use super::args::{ExplainArgs, Format};
-use super::check::to_json;
-use super::console::{BOLD, Console, count};
+use super::console::{BOLD, Console, count, to_json};
 use super::effects::adds;
 use super::table::{Align, Table};
 use super::{Failure, Status, effects, joints, load, methods};
@@ -11,26 +10,8 @@ use crate::results::{Decision, Explanation};
 use crate::study;
 
 pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Status, Failure> {
-    if args.methods {
-        console.print(&match args.format {
-            Format::Text => methods::text(),
-            Format::Json => to_json(&methods::all())?,
-        })?;
-        return Ok(Status::Done);
-    }
     let Some(path) = &args.model else {
-        if args.joints {
-            console.print(&match args.format {
-                Format::Text => joints::text(),
-                Format::Json => to_json(&JointKind::docs())?,
-            })?;
-            return Ok(Status::Done);
-        }
-        console.print(&match args.format {
-            Format::Text => effects::text()?,
-            Format::Json => to_json(&effects::all()?)?,
-        })?;
-        return Ok(Status::Done);
+        return console.print(&listed(args)?).map(|()| Status::Done);
     };
     let Some(model) = load::load(path, &[], args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
@@ -43,7 +24,26 @@ pub(super) fn explain(args: &ExplainArgs, console: &mut Console) -> Result<Statu
     Ok(Status::Done)
 }
 
-/// The explanation for people, a paragraph a subject; subjects that the model does not have are not there.
+/// The list that is asked for.
+fn listed(args: &ExplainArgs) -> Result<String, Failure> {
+    if let Some(listing) = args.list.listing() {
+        return match args.format {
+            _ if args.page => Ok(listing.page()),
+            Format::Text => Ok(listing.text()),
+            Format::Json => listing.json(),
+        };
+    }
+    match args.format {
+        Format::Text if args.list.methods => Ok(methods::text()),
+        Format::Json if args.list.methods => to_json(&methods::all()),
+        Format::Text if args.list.joints => Ok(joints::text()),
+        Format::Json if args.list.joints => to_json(&JointKind::docs()),
+        Format::Text => effects::text(),
+        Format::Json => to_json(&effects::all()?),
+    }
+}
+
+/// The explanation for people, one paragraph per subject that the model has.
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
     let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n{}\n", e.model, e.space, e.formulation);

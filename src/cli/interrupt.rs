@@ -1,21 +1,20 @@
-//! Ctrl-C: the first asks a run to keep what is finished and end, the second ends it at once.
+//! Ctrl-C: the first asks a run to keep finished results and end, the second ends the program at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit status of what was interrupted: 128 and SIGINT's number, as in a shell.
-pub(super) const STATUS: u8 = 130;
+use super::status::Status;
 
-/// Whether the user does not want to wait any more.
+/// Whether Ctrl-C was pressed.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// From now on the first Ctrl-C only leaves word.
+/// From now on the first Ctrl-C only sets a flag.
 pub(super) fn listen() {
     let asked = || {
         if ASKED.swap(true, Ordering::Relaxed) {
-            std::process::exit(STATUS.into());
+            std::process::exit(Status::Interrupted.code().into());
         }
     };
-    // Where there is no way to listen, Ctrl-C ends the run as it ends any program.
+    // Without a handler, Ctrl-C ends the program at once.
     let _ = ctrlc::set_handler(asked);
 }
 

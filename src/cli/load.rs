@@ -1,4 +1,4 @@
-//! Models from their files, with all that is wrong with all of them told at once.
+//! Models read from their files; the errors of all files are reported at once.
 
 use std::path::{Path, PathBuf};
 
@@ -6,19 +6,19 @@ use super::Failure;
 use super::console::Console;
 use crate::model::{self, Description, Override, Reading};
 
-/// A model that is to be run: by itself, or as scenes.
+/// A model to be run, alone or as scenes.
 pub(super) struct Model {
-    /// Its name, which its folder has too.
+    /// Its name, which is also that of its folder.
     pub name: String,
-    /// Its scenes' names, with what they are; one without a name where the model has none.
+    /// Its scenes with their names; one without a name if the model has none.
     pub scenes: Vec<(Option<String>, Description)>,
 }
 
-/// Reads all models and chooses their scenes: those of these names, or all. If any model is wrong, everything that is wrong with
-/// any of them is told and there is no result.
+/// Reads all models and chooses their scenes: those of these names, or all. If any model has errors, the errors of all models
+/// are reported and there is no result.
 ///
 /// # Errors
-/// For a name that a model has no scene of.
+/// For a name that is no scene of a model.
 pub(super) fn load_all(
     models: &[PathBuf],
     overrides: &[Override],
@@ -38,10 +38,10 @@ pub(super) fn load_all(
     }
 }
 
-/// Reads a model, or a scene of it; tells what is wrong or doubtful about it.
+/// Reads a model, or a scene of it, and reports its errors and warnings.
 ///
 /// # Errors
-/// For a name that it has no scene of.
+/// For a name that is no scene of it.
 pub(super) fn load(
     path: &Path,
     overrides: &[Override],
@@ -55,11 +55,11 @@ pub(super) fn load(
     Ok(chosen.into_iter().map(|(_, description)| description).next())
 }
 
-/// What a file gives, unless it is wrong; what is wrong or doubtful is told.
+/// Reads a file and reports its errors and warnings; `None` if it has errors.
 fn read(path: &Path, overrides: &[Override], console: &Console) -> Option<Reading> {
     let reading = model::read(path, overrides);
     if !reading.diagnostics.is_empty() {
-        console.complain(&reading.diagnostics.render(console.color()));
+        console.report(&reading.diagnostics.render(console.color()));
     }
     reading.description.is_some().then_some(reading)
 }

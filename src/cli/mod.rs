@@ -1,8 +1,4 @@
-//! The command line. Arguments are read (`args`), checked and built once into what a command needs, and carried out
-//! by one file a command.
-//!
-//! Exit status: 0 done; 1 the run failed; 2 the command or the model is wrong; 3 done, but
-//! at some time no method resolves an output; 130 interrupted.
+//! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit codes.
 
 mod args;
 mod check;
@@ -12,12 +8,15 @@ mod effects;
 mod explain;
 mod interrupt;
 mod joints;
+mod listing;
 mod load;
 mod methods;
 mod new;
+mod overview;
 mod progress;
 mod run;
 mod scenes;
+mod status;
 mod table;
 mod tree;
 
@@ -28,43 +27,21 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches};
 
 use self::args::{Cli, Color, Command};
 use self::console::Console;
+use self::status::Status;
 
-/// How a command ended; the worse, the greater.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Status {
-    Done,
-    Unresolved,
-    Failed,
-    Interrupted,
-    Wrong,
-}
-
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
-        Self::from(match status {
-            Status::Done => 0,
-            Status::Failed => 1,
-            Status::Wrong => 2,
-            Status::Unresolved => 3,
-            // A shell's number for what SIGINT ends.
-            Status::Interrupted => interrupt::STATUS,
-        })
-    }
-}
-
-/// Why a command came to an end before its time, in words for the user.
+/// Why a command ended early, in words for the user.
 #[derive(Debug)]
 enum Failure {
-    /// The command or the model is wrong.
+    /// The command or the model has errors.
     Wrong(String),
-    /// It was right, and failed all the same.
+    /// The command was valid and failed.
     Failed(String),
 }
 
-/// The program: reads the process' arguments, does what they say and tells how it went.
+/// The program: reads the process' arguments, executes the command and returns its exit code.
 pub fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    // Before the arguments are read, for the errors and help texts that reading them gives.
+    // Before the arguments are read, because errors and help texts are coloured too.
     let color = color(&arguments);
     color.stream().write_global();
 
@@ -72,7 +49,7 @@ pub fn main() -> ExitCode {
     let parsed = command.try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
         Ok(cli) => cli,
-        // Help and version come this way too, with status 0. A closed pipe is no error.
+        // Help and version are errors of clap too, with status 0. A closed pipe is no error.
         Err(error) => {
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
@@ -80,7 +57,7 @@ pub fn main() -> ExitCode {
     };
 
     let mut console = Console::default();
-    let status = carry_out(cli.command, &mut console).unwrap_or_else(|failure| {
+    let status = execute(cli.command, &mut console).unwrap_or_else(|failure| {
         let (message, status) = match failure {
             Failure::Wrong(message) => (message, Status::Wrong),
             Failure::Failed(message) => (message, Status::Failed),
@@ -91,7 +68,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(status)
 }
 
-fn carry_out(command: Command, console: &mut Console) -> Result<Status, Failure> {
+fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
         Command::Run(args) => run::run(args, console),
         Command::Check(args) => check::check(&args, console),
@@ -107,7 +84,7 @@ fn carry_out(command: Command, console: &mut Console) -> Result<Status, Failure>
     }
 }
 
-/// The last `--color` among the arguments; `auto` where it is missing or wrong (reading the arguments complains).
+/// The last `--color` among the arguments; `auto` where it is missing or wrong, which clap reports.
 fn color(arguments: &[OsString]) -> Color {
     let mut color = Color::Auto;
     let mut arguments = arguments.iter().filter_map(|argument| argument.to_str()).take_while(|a| *a != "--");

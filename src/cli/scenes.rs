@@ -1,10 +1,10 @@
-//! `mbint run` of a model with scenes: each by itself, and then side by side.
+//! `mbint run` of a model with scenes: one run for each, then files that compare them.
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use super::console::{BOLD, Console, count, file_names};
-use super::run::{Done, Job, Request, complain, run_one};
+use super::run::{Done, Job, Request, report, run_one};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};
@@ -14,16 +14,16 @@ use crate::results::{ErrorSummary, Summary};
 /// A model's scenes that are run together.
 pub(super) struct Scenes {
     model: String,
-    /// In which each scene has a folder.
+    /// Each scene has a folder in it.
     folder: PathBuf,
     jobs: Vec<(String, Job)>,
 }
 
-/// What a scene's run came to, and how long it took, compiling included.
+/// Outcome of a scene's run, and its time, compilation included.
 struct Ran<'s> {
     scene: &'s str,
     seconds: f64,
-    /// Absent where there is nothing.
+    /// `None` where the run failed.
     done: Option<Done>,
 }
 
@@ -36,7 +36,7 @@ impl Scenes {
         self.jobs.iter().map(|(_, job)| job)
     }
 
-    /// Runs all of them, or those before an interruption. One that fails does not take the others with it.
+    /// Runs all scenes, or those before an interruption. The others run even if one fails.
     pub fn run(&self, request: &Request, console: &mut Console) -> Result<Status, Failure> {
         let mut status = Status::Done;
         let mut ran: Vec<Ran> = Vec::new();
@@ -44,7 +44,7 @@ impl Scenes {
             let start = Instant::now();
             let done = match run_one(job, request) {
                 Ok(done) => {
-                    complain(&done, console);
+                    report(&done, console);
                     status = status.max(done.status);
                     Some(done)
                 }
@@ -72,7 +72,7 @@ impl Scenes {
         Ok(status)
     }
 
-    /// What was found, scene by scene, and where it is, for people.
+    /// Results scene by scene and their files, for people.
     fn overview(&self, ran: &[Ran], files: &[PathBuf]) -> String {
         let not_run = self.jobs.len() - ran.len();
         let mut text = format!("{BOLD}{}{BOLD:#}: {}", self.model, count(self.jobs.len(), "scene", "scenes"));
@@ -92,7 +92,7 @@ impl Scenes {
     }
 }
 
-/// How large each scene is, how wide each output's bounds are, and how far they may be from the truth.
+/// Coordinates and time of each scene, and the largest width and error of each output's bounds.
 fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) -> Table<6> {
     let mut table = Table::new([
         ("scene", Align::Left),

@@ -1,4 +1,4 @@
-//! `contributions.csv` and `NAME.contributions.svg`: which tolerance matters, and when.
+//! `contributions.csv` and `NAME.contributions.svg`: the tolerances that matter at each time.
 
 use csv::WriterBuilder;
 use plotters::prelude::*;
@@ -13,7 +13,7 @@ use crate::results::{Bounds, Contribution};
 ///
 /// Columns: `t`, then for each output and parameter `x3.l1.main` and `.total`, the parameter's share of the output's variance
 /// alone and with others, and `.width_without`, how wide the output's range would be if the parameter were at its nominal
-/// value. What is unknown is `NaN`.
+/// value. Unknown values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -42,7 +42,7 @@ const RIGHT: f64 = 20.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
 
-/// Colours that are apart for every colour vision; more parameters share the last.
+/// Colours that every colour vision distinguishes; further parameters share the last.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(240, 160, 20),
@@ -52,7 +52,7 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(213, 94, 0),
     RGBColor(150, 150, 150),
 ];
-/// What parameters have only together.
+/// The share of interactions of parameters.
 const TOGETHER: RGBColor = RGBColor(215, 215, 215);
 
 /// The parameters' shares of one output's variance over time, one upon the other, the largest lowest.
@@ -79,7 +79,7 @@ fn draw(canvas: &Canvas, times: &[f64], name: &str, contributions: &[Contributio
     let mut ranked: Vec<(usize, &Contribution)> = contributions.iter().enumerate().collect();
     let mean = |contribution: &Contribution| contribution.main.iter().filter(|share| share.is_finite()).sum::<f64>();
     ranked.sort_by(|a, b| mean(b.1).total_cmp(&mean(a.1)));
-    // Rows where nothing varies or nothing is known are left white.
+    // Rows without variance or without known shares stay white.
     let known = |row: usize| contributions.iter().any(|contribution| contribution.main[row] > 0.0);
     let mut below = vec![0.0; times.len()];
     let mut entry = LEFT;

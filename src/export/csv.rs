@@ -1,4 +1,4 @@
-//! `bounds.csv`: a row a time, a column a curve.
+//! `bounds.csv`: one row for each time, one column for each curve.
 
 use csv::WriterBuilder;
 
@@ -7,8 +7,9 @@ use crate::results::{Band, Bounds};
 /// The table of all bounds as CSV, RFC 4180 with `\n` line ends.
 ///
 /// Columns: `t`, then for each output `x3.nominal`, and for each of its bands `x3.chebyshev.lower`, `.upper` and `.error`;
-/// last `unresolved`, which names the bands that cannot be relied on in that row (`x3.chebyshev x3.taylor`), where there are
-/// bands, and `covered`, the share of the box that the row is of, where that may be less than all. Numbers are the shortest decimals that read back as the same `f64`; what is unknown is `NaN`.
+/// last `unresolved`, the names of the bands that are unreliable in the row (`x3.chebyshev x3.taylor`), if there are bands, and
+/// `covered`, the share of the box that the row covers, if that may be less than all. Numbers are the shortest decimals that
+/// read back as the same `f64`; unknown values are `NaN`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -35,7 +36,7 @@ struct Column<'a> {
     values: &'a [f64],
 }
 
-/// The columns, left to right: the one place where their names and their order are decided.
+/// The columns, left to right, with their names.
 fn columns(bounds: &Bounds) -> Vec<Column<'_>> {
     let mut columns = vec![Column { name: "t".to_owned(), values: &bounds.times }];
     for output in &bounds.outputs {
@@ -59,7 +60,7 @@ fn bands(bounds: &Bounds) -> Vec<(String, &Band)> {
     outputs.map(|(output, band)| (format!("{}.{}", output.name, band.method.name()), band)).collect()
 }
 
-/// Names of the bands that are not resolved in a row.
+/// Names of the unreliable bands of a row.
 fn unresolved(bands: &[(String, &Band)], row: usize) -> String {
     let names = bands.iter().filter(|(_, band)| band.error.unresolved[row]).map(|(name, _)| name.as_str());
     names.collect::<Vec<_>>().join(" ")

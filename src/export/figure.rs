@@ -1,7 +1,7 @@
-//! The figure that bounds over time are shown in, of one run or of several.
+//! The figure of bounds over time, for one run or several.
 //!
-//! Two panels share the time axis. The upper shows the output: nominal courses and bands. Tolerances of a per cent make bands
-//! that are a line wide there, so the lower panel shows each band less its own nominal course.
+//! Two panels share the time axis. The upper panel shows the output: nominal courses and bands. Tolerances of a per cent make
+//! bands as thin as a line there, so the lower panel shows each band minus its own nominal course.
 
 use plotters::prelude::*;
 
@@ -27,7 +27,7 @@ const COURSE: f64 = 1.2;
 
 /// A nominal course with its bands.
 pub(super) struct Course<'a> {
-    /// Of the course itself; empty where its bands say enough.
+    /// Label of the course; empty where the labels of its bands suffice.
     pub label: &'a str,
     pub color: RGBColor,
     pub times: &'a [f64],
@@ -63,7 +63,7 @@ pub(super) fn figure_svg(name: &str, unit: &str, courses: &[Course]) -> Result<S
 /// What is drawn, and where.
 struct Figure<'a> {
     courses: &'a [Course<'a>],
-    /// Each course's bands less it.
+    /// Each course's bands minus the course.
     deviations: Vec<Vec<Band>>,
     time: Axis,
     main: Axis,
@@ -102,7 +102,7 @@ impl<'a> Figure<'a> {
         Self { courses, deviations, time, main, below, left, legend: rows(keys, width) }
     }
 
-    /// Height of the legend's rows behind the first, px.
+    /// Height of the legend's rows after the first, px.
     fn more_rows(&self) -> f64 {
         ROW * self.legend.len().saturating_sub(1) as f64
     }
@@ -142,7 +142,7 @@ impl<'a> Figure<'a> {
         lower.time_axis()
     }
 
-    /// Rows above the panel: never in the way of the data.
+    /// Rows above the panel, clear of the data.
     fn legend(&self, panel: &Panel) -> Drawn {
         for (row, keys) in self.legend.iter().rev().enumerate() {
             let (mut x, y) = (panel.left, panel.top - 19.0 - ROW * row as f64);

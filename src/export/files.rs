@@ -1,10 +1,10 @@
-//! Results on disk, each file whole or not there.
+//! The files of a run's results.
 
 use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::export::folder::Together;
+use crate::export::folder::AtomicFiles;
 use crate::export::{bounds_csv, contributions_csv, contributions_svg, plot_svg};
 use crate::results::Bounds;
 use crate::results::Summary;
@@ -25,15 +25,16 @@ pub enum ExportError {
     Plot { output: String, message: String },
 }
 
-/// Writes `bounds.csv`, an SVG for each output, who has which part in it where that is known, and `summary.json` into `dir`, which is made if it is not there.
+/// Writes `bounds.csv`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
+/// `dir`, which is created if it does not exist.
 ///
-/// They get their names when all could be written, `summary.json` last: where it is, the others are. Returns the files
-/// written, in that order.
+/// The files appear when all are written, `summary.json` last: where it exists, the others do. Returns the files written, in
+/// that order.
 ///
 /// # Errors
-/// At the first file that cannot be written; then older results are left as they were.
+/// At the first file that cannot be written; older results then stay unchanged.
 pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = Together::in_folder(dir)?;
+    let mut files = AtomicFiles::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
@@ -56,7 +57,7 @@ pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<V
     files.put_in_place()
 }
 
-/// `name` as a file name without extension that every system takes: letters, digits, `_`, `-` and `.` stay, the rest
+/// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
 /// becomes `_`.
 pub fn file_stem(name: &str) -> String {
     /// Names of devices on Windows, whatever their extension.

@@ -1,4 +1,4 @@
-//! Files put into a folder together: each whole, and none unless all could be written.
+//! Atomic files: a set of files that appears in a folder completely or not at all.
 
 use std::fs;
 use std::io::{self, Write};
@@ -8,16 +8,16 @@ use tempfile::NamedTempFile;
 
 use super::files::ExportError;
 
-/// Files that are written under temporary names beside their places, and get their own when all are there. So neither
-/// a failure nor a killed run leaves half a file, or half a new file in place of an old one; a disk that is full leaves
-/// the older results as they were; and of two runs into one folder one's files are there in the end, not some of each.
-pub(super) struct Together<'d> {
+/// Files that are written under temporary names next to their destinations and renamed when all are written. Neither a failure
+/// nor a killed run leaves a partial file; a full disk leaves older results unchanged; and of two runs into one folder, the
+/// files of one remain, not a mixture.
+pub(super) struct AtomicFiles<'d> {
     dir: &'d Path,
     files: Vec<(PathBuf, NamedTempFile)>,
 }
 
-impl<'d> Together<'d> {
-    /// None yet, for a folder that is made if it is not there.
+impl<'d> AtomicFiles<'d> {
+    /// An empty set, for a folder that is created if it does not exist.
     ///
     /// # Errors
     /// As [`prepare_folder`].
@@ -29,7 +29,7 @@ impl<'d> Together<'d> {
     /// Writes a file under a temporary name.
     ///
     /// # Errors
-    /// If it cannot be written; temporary files go with `self`.
+    /// If it cannot be written; temporary files are deleted with `self`.
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), ExportError> {
         let path = self.dir.join(name);
         let written = temporary(self.dir).and_then(|mut file| file.as_file_mut().write_all(contents).map(|()| file));
@@ -38,13 +38,13 @@ impl<'d> Together<'d> {
         Ok(())
     }
 
-    /// Gives the files their names, in the order in which they were added. Where a folder can be locked, no other run does
-    /// so at the same time.
+    /// Renames the files to their destinations, in the order in which they were added. A lock on the folder, where there is one,
+    /// keeps other runs from doing so at the same time.
     ///
     /// # Errors
-    /// At the first that cannot be named so; those before it are kept.
+    /// At the first file that cannot be renamed; those before it are kept.
     pub fn put_in_place(self) -> Result<Vec<PathBuf>, ExportError> {
-        // Not every system opens folders, not every file system locks: without, two runs may mix.
+        // Not every system opens folders, and not every file system locks: then the files of two runs may mix.
         let folder = fs::File::open(self.dir).ok();
         let _ = folder.as_ref().map(fs::File::lock);
         let put = |(path, file): (PathBuf, NamedTempFile)| match file.persist(&path) {
@@ -55,10 +55,10 @@ impl<'d> Together<'d> {
     }
 }
 
-/// Makes `dir` if it is not there, and tries whether a file can be made in it: better known before a long run than after.
+/// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than after it.
 ///
 /// # Errors
-/// If it cannot.
+/// If either fails.
 pub fn prepare_folder(dir: &Path) -> Result<(), ExportError> {
     let folder = |source| ExportError::Folder { path: dir.to_owned(), source };
     if dir.exists() && !dir.is_dir() {
@@ -70,7 +70,7 @@ pub fn prepare_folder(dir: &Path) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// An empty file of a name that no other has, gone when dropped.
+/// An empty file with a unique name, deleted when dropped.
 fn temporary(dir: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".mbint-").suffix(".tmp");
@@ -80,7 +80,7 @@ fn temporary(dir: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(dir).map_err(plain)
 }
 
-/// tempfile adds the temporary path to its errors, which tells the user nothing: only what went wrong is left.
+/// The error without the temporary path that tempfile adds to it.
 fn plain(error: io::Error) -> io::Error {
     match error.kind() {
         _ if error.raw_os_error().is_some() => error,
@@ -98,12 +98,12 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let contents = || fs::read_to_string(dir.path().join("a.csv")).unwrap();
         fs::write(dir.path().join("a.csv"), "old").unwrap();
-        let mut files = Together::in_folder(dir.path()).unwrap();
+        let mut files = AtomicFiles::in_folder(dir.path()).unwrap();
         files.add("a.csv", b"new").unwrap();
         assert_eq!(contents(), "old");
         drop(files);
         assert_eq!((contents().as_str(), fs::read_dir(dir.path()).unwrap().count()), ("old", 1), "no temporary files");
-        let mut files = Together::in_folder(dir.path()).unwrap();
+        let mut files = AtomicFiles::in_folder(dir.path()).unwrap();
         files.add("a.csv", b"new").unwrap();
         assert_eq!(files.put_in_place().unwrap(), [dir.path().join("a.csv")]);
         assert_eq!((contents().as_str(), fs::read_dir(dir.path()).unwrap().count()), ("new", 1));
@@ -115,7 +115,7 @@ mod tests {
         use std::os::unix::fs::MetadataExt;
         let dir = tempfile::tempdir().unwrap();
         fs::write(dir.path().join("plain"), "").unwrap();
-        let mut files = Together::in_folder(dir.path()).unwrap();
+        let mut files = AtomicFiles::in_folder(dir.path()).unwrap();
         files.add("ours", b"").unwrap();
         files.put_in_place().unwrap();
         let mode = |name| fs::metadata(dir.path().join(name)).unwrap().mode();

@@ -12,6 +12,7 @@ mod overlay;
 mod panel;
 mod plot;
 mod polyline;
+mod reference;
 mod scenes;
 mod view;
 
@@ -22,4 +23,5 @@ pub use files::{ExportError, file_stem, write_results};
 pub use folder::prepare_folder;
 pub use overlay::overlay_svg;
 pub use plot::plot_svg;
+pub use reference::effects as effects_page;
 pub use scenes::{SceneBounds, scenes_csv, write_scenes};

@@ -7,7 +7,7 @@ use super::panel::Style;
 use super::scenes::SceneBounds;
 use crate::results::{Band, OutputBounds, foremost};
 
-/// Colours that are apart for every colour vision; further scenes have them again, darker.
+/// Colours that every colour vision distinguishes; further scenes repeat them, darker.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(230, 130, 0),
@@ -19,7 +19,7 @@ const COLORS: [RGBColor; 7] = [
 ];
 const DARKER: f64 = 0.6;
 
-/// The bands of one output in several scenes as an SVG document, one a scene: of the first method that resolves it to the end.
+/// The bands of one output in several scenes as an SVG document: for each scene the first method that is reliable to the end.
 ///
 /// # Errors
 /// plotters' own, as text; none is known to occur.

@@ -1,6 +1,6 @@
 //! A panel of a plot: axes, curves, bands with their errors, and a legend above it.
 //!
-//! Around each band a lighter one is as wide as its error; from where it is not resolved, a band is hatched.
+//! A lighter band around each band shows its error; from where it is unreliable, a band is hatched.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -10,9 +10,9 @@ use super::canvas::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, text_style,
 use super::polyline::{Point, band_pieces, pieces};
 use crate::results::Band;
 
-/// Opacity of what a band's error adds, over the band's own.
+/// Opacity of the error around a band, relative to the band's own.
 const LIGHTER: f64 = 0.5;
-/// From one line of a hatched band to the next, and how far each leans over, px.
+/// Distance of the lines of a hatched band, and their slant, px.
 const HATCH: (f64, f64) = (7.0, 5.0);
 
 /// How a band is drawn.
@@ -124,7 +124,7 @@ impl Panel<'_, '_> {
         Ok(())
     }
 
-    /// Lines across the band from where it is not resolved.
+    /// Lines across the band from where it is unreliable.
     fn hatch(&self, times: &[f64], band: &Band, style: &Style) -> Drawn {
         let Some(first) = band.error.unresolved_from() else { return Ok(()) };
         let pixels_a_row = (self.right - self.left) * (self.x.place(times[times.len() - 1]) - self.x.place(times[0]))

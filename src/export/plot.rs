@@ -1,4 +1,4 @@
-//! `x3.svg`: an output's bounds over time, and how far they are from the nominal course.
+//! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
 use plotters::prelude::*;
 

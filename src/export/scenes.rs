@@ -1,4 +1,4 @@
-//! `scenes.csv`, and an overlay plot of each output that several scenes have: a model's scenes side by side.
+//! Comparison of a model's scenes: `scenes.csv`, and an overlay plot of each output that several scenes have.
 
 use std::path::{Path, PathBuf};
 
@@ -6,23 +6,24 @@ use csv::WriterBuilder;
 
 use super::csv::number;
 use super::files::{ExportError, unique_stems};
-use super::folder::Together;
+use super::folder::AtomicFiles;
 use super::overlay::overlay_svg;
 use crate::results::{Bounds, OutputBounds};
 
-/// A scene's name, and what its run found.
+/// The bounds of a scene.
 #[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)]
 pub struct SceneBounds<'a> {
+    /// The scene's name.
     pub name: &'a str,
+    /// The results of its run.
     pub bounds: &'a Bounds,
 }
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
 ///
-/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` where the row cannot be
-/// relied on) and, where a scene is of a part of its box only, `covered`, the share of the box that the row is of. An output without
-/// bands has one row a time, without a method. Numbers are as in `bounds.csv`.
+/// Columns: `scene`, `output`, `unit`, `method`, `t`, `nominal`, `lower`, `upper`, `error`, `unresolved` (`true` where the row is
+/// unreliable) and, if some scene covers a part of its box only, `covered`, the share of the box that the row covers. An output
+/// without bands has one row for each time, without a method. Numbers are as in `bounds.csv`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -57,7 +58,7 @@ pub fn scenes_csv(scenes: &[SceneBounds]) -> Result<Vec<u8>, csv::Error> {
 /// # Errors
 /// As [`write_results`](super::write_results).
 pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = Together::in_folder(dir)?;
+    let mut files = AtomicFiles::in_folder(dir)?;
     let shared = shared(scenes);
     for (name, stem) in shared.iter().zip(unique_stems(shared.iter().copied())) {
         let svg =
@@ -68,7 +69,7 @@ pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, 
     files.put_in_place()
 }
 
-/// Outputs of more than one scene, in the order in which they are met first.
+/// Outputs that more than one scene has, in the order of their first occurrence.
 fn shared<'a>(scenes: &[SceneBounds<'a>]) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
     let outputs = |scene: &SceneBounds<'a>| -> &'a [OutputBounds] { &scene.bounds.outputs };

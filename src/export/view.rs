@@ -1,11 +1,11 @@
-//! What of the data a plot shows.
+//! The range of the data that a plot shows.
 
 use crate::results::Band;
 
-/// The values that an axis is to show, and which bands go beyond it.
+/// The values that an axis has to show, and which bands exceed it.
 ///
-/// The narrowest band with the nominal course is always in view, and what is up to `widest` times as wide. A bound that
-/// has exploded, as Taylor's does over long times, would make lines of all the others: it leaves the plot instead.
+/// The narrowest band and the nominal course are always in view, and so is everything up to `widest` times as wide. A diverged
+/// bound, such as Taylor's over long times, would reduce the others to lines: it leaves the plot instead.
 pub(super) fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<bool>) {
     let nominal = extent(nominal.iter());
     let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();
@@ -14,7 +14,7 @@ pub(super) fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>
     let half = |(low, high): (f64, f64)| 0.5 * high - 0.5 * low;
     let whole = extents.iter().map(|&extent| union(extent, nominal)).filter(|&extent| half(extent).is_finite());
     let narrowest = whole.min_by(|&a, &b| half(a).total_cmp(&half(b))).unwrap_or(nominal);
-    // A constant gives no measure.
+    // A constant output has no width to compare with.
     let room = if half(narrowest) > 0.0 { (widest - 1.0) * half(narrowest) } else { f64::INFINITY };
     let view = (narrowest.0 - room, narrowest.1 + room);
 

@@ -310,6 +310,8 @@ pub struct ElementDocs {
     pub example: &'static str,
     /// Its keys.
     pub keys: Vec<KeyDocs>,
+    /// What it measures, for outputs, with units.
+    pub sensors: Vec<(&'static str, String)>,
 }
 
 /// A key of an element, for people.
@@ -341,6 +343,7 @@ impl ElementDocs {
             source: E::SOURCE,
             example: E::EXAMPLE,
             keys: keys.iter().map(docs).collect(),
+            sensors: Vec::new(),
         }
     }
 }

@@ -12,6 +12,7 @@ mod places;
 pub(crate) mod plane;
 pub(crate) mod quantity;
 pub(crate) mod reader;
+pub mod reference;
 mod symbols;
 pub(crate) mod values;
 mod vectors;

@@ -14,7 +14,7 @@ use crate::syntax::suggest;
 pub const GROUND: &str = "ground";
 
 /// Names without a dot that are taken.
-const ENERGIES: [(&str, EnergyKind); 3] = [
+pub(crate) const ENERGIES: [(&str, EnergyKind); 3] = [
     ("energy", EnergyKind::Total),
     ("kinetic_energy", EnergyKind::Kinetic),
     ("potential_energy", EnergyKind::Potential),
@@ -51,7 +51,7 @@ pub struct NameError {
 pub fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi")
         || ENERGIES.iter().any(|(energy, _)| *energy == name)
-        || symdiff::formula::FUNCTIONS.iter().any(|(function, _)| *function == name)
+        || symdiff::formula::FUNCTIONS.iter().any(|function| function.name == name)
 }
 
 /// What a name in a formula stands for; `None` where it stands for nothing.

@@ -146,6 +146,14 @@ impl Dimension {
         found.map(|(_, unit, noun)| (*unit, *noun))
     }
 
+    /// The quantity in words, without an article: `length`.
+    pub fn noun(self) -> String {
+        match self.named() {
+            Some((_, noun)) => noun.trim_start_matches("an ").trim_start_matches("a ").to_owned(),
+            None => "quantity".to_owned(),
+        }
+    }
+
     /// The SI unit as one writes it; empty for pure numbers.
     pub fn unit(self) -> String {
         if let Some((unit, _)) = self.named() {
@@ -295,6 +303,11 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("mbar", 100.0, 1.0, NAMED[19].0),
     ("1", 1.0, 1.0, Dimension::NUMBER),
 ];
+
+/// Every unit that has a name, in the table's order.
+pub fn named_units() -> impl Iterator<Item = (&'static str, Unit)> {
+    UNITS.iter().map(|&(name, times, over, dimension)| (name, Unit { times, over, dimension }))
+}
 
 struct UnitParser<'t> {
     text: &'t str,

@@ -238,48 +238,59 @@ pub struct OnJoint {
     pub coordinate: JointCoordinate,
 }
 
-/// Something that an effect measures.
+/// Something that an effect measures, by its name; elements may have their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)] // the names say it
-pub enum Measure {
-    Length,
-    Angle,
-    Gap,
-    Rate,
-    Load,
-    Force,
-    Torque,
-    StartTorque,
-    Friction,
+pub struct Measure {
+    name: &'static str,
+    is_motion: bool,
 }
 
 impl Measure {
+    /// Between two points.
+    pub const LENGTH: Self = Self::of_motion("length");
+    /// Of a spring or of teeth.
+    pub const ANGLE: Self = Self::of_motion("angle");
+    /// Between two surfaces.
+    pub const GAP: Self = Self::of_motion("gap");
+    /// Of a length, an angle or a gap.
+    pub const RATE: Self = Self::of_motion("rate");
+    /// Of a joint with friction.
+    pub const LOAD: Self = Self::of_force("load");
+    /// The force.
+    pub const FORCE: Self = Self::of_force("force");
+    /// The torque; of a beam that at its end.
+    pub const TORQUE: Self = Self::of_force("torque");
+    /// Of a beam at its start.
+    pub const START_TORQUE: Self = Self::of_force("start_torque");
+    /// Between two surfaces.
+    pub const FRICTION: Self = Self::of_force("friction");
+
+    /// What follows from positions and velocities alone, so that the effect's own formulas may refer to it.
+    pub const fn of_motion(name: &'static str) -> Self {
+        Self { name, is_motion: true }
+    }
+
+    /// What follows from the forces.
+    pub const fn of_force(name: &'static str) -> Self {
+        Self { name, is_motion: false }
+    }
+
     /// What pushes a joint's coordinate.
     pub fn of_effort(coordinate: JointCoordinate) -> Self {
         match coordinate {
-            JointCoordinate::Angle => Self::Torque,
-            JointCoordinate::Displacement => Self::Force,
+            JointCoordinate::Angle => Self::TORQUE,
+            JointCoordinate::Displacement => Self::FORCE,
         }
     }
 
     /// Its name, as in `spring.length`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Length => "length",
-            Self::Angle => "angle",
-            Self::Gap => "gap",
-            Self::Rate => "rate",
-            Self::Load => "load",
-            Self::Force => "force",
-            Self::Torque => "torque",
-            Self::StartTorque => "start_torque",
-            Self::Friction => "friction",
-        }
+        self.name
     }
 
-    /// Whether it follows from positions and velocities alone, so that the effect's own formulas may speak of it.
+    /// Whether it follows from positions and velocities alone.
     pub fn is_motion(self) -> bool {
-        matches!(self, Self::Length | Self::Angle | Self::Gap | Self::Rate)
+        self.is_motion
     }
 }
 

@@ -1,8 +1,8 @@
-//! What of a mechanism hangs together: bodies, joints and effects that touch, or name, one another.
+//! Couplings of a mechanism: which bodies, joints and effects act on, or refer to, one another.
 //!
-//! The ground connects nothing, nor does what is merged with it: it does not move, whatever is attached to it. Gravity acts on every body alike and
-//! connects none, unless its formula names a part of the motion. A dependency is taken both ways: a force on B that follows A keeps A and B
-//! together, though A would not miss B.
+//! The ground and the bodies merged with it couple nothing: they do not move, whatever is attached to them. Gravity acts on
+//! every body alike and couples none, unless its formula refers to the motion. A dependency couples both ways: a force on B
+//! that depends on A couples A and B, although A's motion does not depend on B.
 
 use symdiff::Formula;
 
@@ -18,21 +18,21 @@ pub enum Part {
     Effect(usize),
 }
 
-/// What a formula speaks of.
+/// The parts of a mechanism that formulas refer to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Named {
-    /// Parts whose motion, reaction or measure it names.
+pub struct Dependencies {
+    /// Parts whose motion, reaction or sensor they refer to.
     pub parts: Vec<Part>,
     /// Named points of bodies: body and point.
     pub points: Vec<(usize, usize)>,
     /// Parameters, by index.
     pub parameters: Vec<usize>,
-    /// Whether it names an energy, to which every body adds.
+    /// Whether they refer to an energy, to which every body adds.
     pub everything: bool,
 }
 
-impl Named {
-    /// By a formula of a description.
+impl Dependencies {
+    /// Adds those of a formula.
     pub fn add(&mut self, description: &Description, formula: &Formula) {
         for (name, _) in formula.names() {
             match description.referent(name) {
@@ -56,14 +56,14 @@ impl Named {
         }
     }
 
-    /// By many formulas.
+    /// Those of several formulas.
     pub fn by<'f>(description: &Description, formulas: impl IntoIterator<Item = &'f Formula>) -> Self {
         let mut named = Self::default();
         formulas.into_iter().for_each(|formula| named.add(description, formula));
         named
     }
 
-    /// By a joint or an effect: its formulas, and what it stands between.
+    /// Those of a joint or an effect: of its formulas, and the bodies and points between which it acts.
     fn by_part<'f>(
         description: &Description,
         formulas: impl IntoIterator<Item = &'f Formula>,
@@ -83,8 +83,8 @@ impl Named {
         named
     }
 
-    /// Takes in what something else names.
-    pub fn take(&mut self, other: &Self) {
+    /// Adds other dependencies.
+    pub fn extend(&mut self, other: &Self) {
         self.parts.extend(&other.parts);
         self.points.extend(&other.points);
         self.parameters.extend(&other.parameters);
@@ -92,41 +92,43 @@ impl Named {
     }
 }
 
-/// Which parts hang together.
+/// Sets of coupled parts.
 pub struct Couplings {
     sets: Sets,
-    /// What each joint, effect and output names.
-    pub joints: Vec<Named>,
-    #[allow(missing_docs)]
-    pub effects: Vec<Named>,
-    #[allow(missing_docs)]
-    pub outputs: Vec<Named>,
-    /// Whether each effect acts on every body without connecting them.
+    /// Dependencies of each joint.
+    pub joints: Vec<Dependencies>,
+    /// Dependencies of each effect.
+    pub effects: Vec<Dependencies>,
+    /// Dependencies of each output.
+    pub outputs: Vec<Dependencies>,
+    /// Whether each effect acts on every body without coupling them.
     pub fields: Vec<bool>,
-    /// Of each body that is merged with the ground, directly or through others, the joint towards it.
-    pub still: Vec<Option<usize>>,
-    /// Whether each joint is such a one.
-    holds: Vec<bool>,
+    /// For each body that is merged with the ground, directly or through others, the joint towards the ground.
+    pub grounded: Vec<Option<usize>>,
+    /// Whether each joint is such a joint.
+    joins_ground: Vec<bool>,
 }
 
 impl Couplings {
     /// Of a description whose welds are marked.
     pub fn of(description: &Description) -> Self {
         let joint =
-            |Joint { kind, .. }: &Joint| Named::by_part(description, kind.formulas(), kind.clone().references());
-        let joints: Vec<Named> = description.joints.iter().map(joint).collect();
-        let effect =
-            |Effect { kind, .. }: &Effect| Named::by_part(description, kind.formulas(), kind.clone().references());
-        let effects: Vec<Named> = description.effects.iter().map(effect).collect();
-        let outputs = description.outputs.iter().map(|output| Named::by(description, [&output.formula])).collect();
+            |Joint { kind, .. }: &Joint| Dependencies::by_part(description, kind.formulas(), kind.clone().references());
+        let joints: Vec<Dependencies> = description.joints.iter().map(joint).collect();
+        let effect = |Effect { kind, .. }: &Effect| {
+            Dependencies::by_part(description, kind.formulas(), kind.clone().references())
+        };
+        let effects: Vec<Dependencies> = description.effects.iter().map(effect).collect();
+        let outputs =
+            description.outputs.iter().map(|output| Dependencies::by(description, [&output.formula])).collect();
         let on_every_body = |effect: usize| description.effects[effect].kind.scope() == Scope::EveryBody;
         let fields: Vec<bool> =
             effects.iter().enumerate().map(|(effect, named)| on_every_body(effect) && named.parts.is_empty()).collect();
-        let still = still(description);
-        let mut holds = vec![false; joints.len()];
-        still.iter().flatten().for_each(|&joint| holds[joint] = true);
+        let grounded = grounded(description);
+        let mut joins_ground = vec![false; joints.len()];
+        grounded.iter().flatten().for_each(|&joint| joins_ground[joint] = true);
         let parts = description.bodies.len() + joints.len() + effects.len();
-        let mut couplings = Self { sets: Sets::new(parts), joints, effects, outputs, fields, still, holds };
+        let mut couplings = Self { sets: Sets::new(parts), joints, effects, outputs, fields, grounded, joins_ground };
         for joint in 0..description.joints.len() {
             let parts = couplings.joints[joint].parts.clone();
             couplings.join(Part::Joint(joint), &parts);
@@ -141,19 +143,19 @@ impl Couplings {
         couplings
     }
 
-    /// Everything that may move, and what moves it.
+    /// Parts that may move, and the joints and effects that act on them.
     pub fn movable(&self) -> Vec<Part> {
-        let bodies = (0..self.still.len()).map(Part::Body);
+        let bodies = (0..self.grounded.len()).map(Part::Body);
         let joints = (0..self.joints.len()).map(Part::Joint);
         let effects = (0..self.effects.len()).filter(|&effect| !self.fields[effect]).map(Part::Effect);
-        bodies.chain(joints).chain(effects).filter(|&part| !self.is_still(part)).collect()
+        bodies.chain(joints).chain(effects).filter(|&part| !self.is_grounded(part)).collect()
     }
 
-    /// Whether a part connects nothing: the ground and what is merged with it.
-    pub fn is_still(&self, part: Part) -> bool {
+    /// Whether a part couples nothing: the ground, and bodies merged with it.
+    pub fn is_grounded(&self, part: Part) -> bool {
         match part {
-            Part::Body(body) => body == 0 || self.still[body].is_some(),
-            Part::Joint(joint) => self.holds[joint],
+            Part::Body(body) => body == 0 || self.grounded[body].is_some(),
+            Part::Joint(joint) => self.joins_ground[joint],
             Part::Effect(_) => false,
         }
     }
@@ -161,8 +163,8 @@ impl Couplings {
     fn place(&self, part: Part) -> usize {
         match part {
             Part::Body(body) => body,
-            Part::Joint(joint) => self.still.len() + joint,
-            Part::Effect(effect) => self.still.len() + self.joints.len() + effect,
+            Part::Joint(joint) => self.grounded.len() + joint,
+            Part::Effect(effect) => self.grounded.len() + self.joints.len() + effect,
         }
     }
 
@@ -173,9 +175,9 @@ impl Couplings {
     }
 
     fn join(&mut self, part: Part, with: &[Part]) {
-        if !self.is_still(part) {
+        if !self.is_grounded(part) {
             for &other in with {
-                if !self.is_still(other) {
+                if !self.is_grounded(other) {
                     let (a, b) = (self.place(part), self.place(other));
                     self.sets.join(a, b);
                 }
@@ -183,16 +185,16 @@ impl Couplings {
         }
     }
 
-    /// The set that all of these are in from now on; `None` where they are still.
-    pub fn together(&mut self, parts: &[Part]) -> Option<usize> {
-        let first = parts.iter().copied().find(|&part| !self.is_still(part))?;
+    /// Unites the sets of these parts and returns the united set; `None` where all are grounded.
+    pub fn unite(&mut self, parts: &[Part]) -> Option<usize> {
+        let first = parts.iter().copied().find(|&part| !self.is_grounded(part))?;
         self.join(first, parts);
         Some(self.set(first))
     }
 }
 
-/// Of each body that is merged with the ground, the joint towards it.
-fn still(description: &Description) -> Vec<Option<usize>> {
+/// For each body that is merged with the ground, the joint towards the ground.
+fn grounded(description: &Description) -> Vec<Option<usize>> {
     let mut welds = vec![Vec::new(); description.bodies.len()];
     for (index, joint) in description.joints.iter().enumerate() {
         if let (true, Some([a, b])) = (joint.merged, joint.kind.between()) {
@@ -200,15 +202,15 @@ fn still(description: &Description) -> Vec<Option<usize>> {
             welds[b.body].push((index, a.body));
         }
     }
-    let mut still = vec![None; description.bodies.len()];
+    let mut grounded = vec![None; description.bodies.len()];
     let mut next = vec![0];
     while let Some(body) = next.pop() {
         for &(joint, other) in &welds[body] {
-            if other != 0 && still[other].is_none() && still[body] != Some(joint) {
-                still[other] = Some(joint);
+            if other != 0 && grounded[other].is_none() && grounded[body] != Some(joint) {
+                grounded[other] = Some(joint);
                 next.push(other);
             }
         }
     }
-    still
+    grounded
 }

@@ -1,9 +1,9 @@
-//! A part of a model as a model of its own.
+//! Extraction of a subsystem as a model of its own.
 
-use super::couplings::{Couplings, Named, Part};
+use super::couplings::{Couplings, Dependencies, Part};
 use crate::model::{Description, ParameterValue, PointRef, Reference, StartValue};
 
-/// What is kept of a description, by index.
+/// The parts of a description that are kept, by index.
 struct Kept {
     bodies: Vec<bool>,
     /// Body by body.
@@ -13,7 +13,7 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
-/// Where what is kept has gone.
+/// The new index of each kept part.
 fn places(kept: &[bool]) -> Vec<Option<usize>> {
     let mut next = 0..;
     kept.iter().map(|&kept| if kept { next.next() } else { None }).collect()
@@ -24,8 +24,8 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
     list.retain(|_| *kept.next().unwrap_or(&true));
 }
 
-/// The model of the parts in `set`, with these of the outputs; every other part is left out, and so are parameters that nothing
-/// kept names. Also which uncertain parameters are left, by their number among all.
+/// The model of the parts in `set` with these outputs. Every other part is left out, and so are parameters that no kept part
+/// refers to. Also returns the numbers of the remaining uncertain parameters among all.
 pub fn extract(
     description: &Description,
     couplings: &mut Couplings,
@@ -44,7 +44,7 @@ pub fn extract(
         };
         Some(PointRef { body: bodies[place.body]?, point })
     };
-    // What is kept refers to nothing that is not.
+    // Kept parts refer to kept parts only.
     let follow = |reference: Reference| match reference {
         Reference::Body(body) => *body = bodies[*body].unwrap_or(0),
         Reference::Point(place) => *place = moved(*place).unwrap_or(PointRef { body: 0, point: None }),
@@ -73,14 +73,14 @@ pub fn extract(
     (part, left)
 }
 
-/// Leaves in the requests what is said of these of the uncertain parameters.
+/// Restricts the requested orders, nodes and points to these uncertain parameters.
 pub fn narrow(description: &mut Description, left: &[usize]) {
     description.bounds.methods_mut().into_iter().for_each(|(_, method)| method.narrow(left));
 }
 
 impl Kept {
     fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, outputs: &[usize]) -> Self {
-        let mut has = |part: Part| !couplings.is_still(part) && set.is_some_and(|set| couplings.set(part) == set);
+        let mut has = |part: Part| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
         let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Part::Body(body))).collect();
         let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Part::Joint(joint))).collect();
         let effects: Vec<bool> = (0..d.effects.len()).map(|effect| has(Part::Effect(effect))).collect();
@@ -88,23 +88,23 @@ impl Kept {
         bodies[0] = true;
 
         let chosen = |kept: &[bool]| (0..kept.len()).filter(|&index| kept[index]).collect::<Vec<_>>();
-        let mut named = Named::default();
-        outputs.iter().for_each(|&output| named.take(&couplings.outputs[output]));
-        chosen(&joints).into_iter().for_each(|joint| named.take(&couplings.joints[joint]));
-        chosen(&effects).into_iter().for_each(|effect| named.take(&couplings.effects[effect]));
-        // Bodies that are merged with the ground, as far as something is attached to them, with what they hang on.
+        let mut named = Dependencies::default();
+        outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
+        chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
+        chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
+        // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
         while let Some(part) = named.parts.pop() {
             let joint = match part {
                 Part::Body(body) if !bodies[body] => {
                     bodies[body] = true;
-                    couplings.still[body]
+                    couplings.grounded[body]
                 }
                 Part::Joint(joint) => Some(joint),
                 _ => None,
             };
             if let Some(joint) = joint.filter(|&joint| !joints[joint]) {
                 joints[joint] = true;
-                named.take(&couplings.joints[joint]);
+                named.extend(&couplings.joints[joint]);
             }
         }
 
@@ -114,34 +114,35 @@ impl Kept {
         for index in chosen(&kept.bodies) {
             let mut body = d.bodies[index].clone();
             retain(&mut body.points, &kept.points[index]);
-            named.parameters.extend(Named::by(d, body.formulas()).parameters);
+            named.parameters.extend(Dependencies::by(d, body.formulas()).parameters);
         }
         let starts = d.initial.iter().chain(&d.guess).filter(|value| kept.starts(value));
-        named.parameters.extend(Named::by(d, starts.flat_map(StartValue::formulas)).parameters);
+        named.parameters.extend(Dependencies::by(d, starts.flat_map(StartValue::formulas)).parameters);
         named.parameters.iter().for_each(|&parameter| kept.parameters[parameter] = true);
-        // Each depends on earlier ones only.
+        // Each parameter depends on earlier ones only.
         for index in (0..d.parameters.len()).rev() {
             if let (true, ParameterValue::Formula(formula)) = (kept.parameters[index], &d.parameters[index].value) {
-                Named::by(d, [formula]).parameters.iter().for_each(|&earlier| kept.parameters[earlier] = true);
+                Dependencies::by(d, [formula]).parameters.iter().for_each(|&earlier| kept.parameters[earlier] = true);
             }
         }
         kept
     }
 
-    /// Points: all of bodies that move. Of those that do not, which may belong to many parts of the model, what is used here or nowhere.
+    /// Points: all points of bodies that move. Of grounded bodies, which other subsystems may use too, the points that are used
+    /// here, and those that are used nowhere.
     fn points(&self, d: &Description, couplings: &Couplings, used: &[(usize, usize)]) -> Vec<Vec<bool>> {
-        let still = |body: usize| couplings.is_still(Part::Body(body));
+        let grounded = |body: usize| couplings.is_grounded(Part::Body(body));
         let mut points: Vec<Vec<bool>> = d.bodies.iter().map(|body| vec![true; body.points.len()]).collect();
         let joints = couplings.joints.iter().zip(&self.joints).filter(|(_, kept)| !**kept).map(|(named, _)| named);
         let effects = couplings.effects.iter().zip(&self.effects).filter(|(_, kept)| !**kept).map(|(named, _)| named);
         for &(body, point) in joints.chain(effects).chain(&couplings.outputs).flat_map(|named| &named.points) {
-            points[body][point] &= !still(body);
+            points[body][point] &= !grounded(body);
         }
         used.iter().for_each(|&(body, point)| points[body][point] = true);
         points
     }
 
-    /// Whether a value at the start is of something kept.
+    /// Whether a value at the start belongs to a kept part.
     fn starts(&self, value: &StartValue) -> bool {
         match value.clone().reference() {
             Reference::Body(body) => self.bodies[*body],

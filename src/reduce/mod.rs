@@ -1,11 +1,11 @@
-//! Description → [`Reduction`]: what of a mechanism has to be simulated for the outputs that are asked for.
+//! Description → [`Reduction`]: the parts of a mechanism that have to be simulated for the requested outputs.
 //!
-//! - `welds`: bodies that are welded together become one, unless an output asks for the weld's reaction;
-//! - `couplings`: what hangs together; the ground does not connect;
-//! - what no output depends on is left out;
-//! - what hangs together is a subsystem, a model of its own (`extract`), with those of the uncertain parameters that it names.
+//! - `welds`: bodies that are welded together become one, unless an output needs the weld's reaction;
+//! - `couplings`: which bodies, joints and effects are coupled; the ground couples nothing;
+//! - parts that no output depends on are left out;
+//! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to.
 //!
-//! A model of one subsystem, of which nothing is left out, is itself.
+//! A model of one subsystem, of which nothing is left out, stays as it is.
 
 mod couplings;
 mod extract;
@@ -21,14 +21,14 @@ use couplings::{Couplings, Part};
 pub use extract::narrow;
 pub use welds::Weld;
 
-/// What is done; everything by default.
+/// Which reductions are applied; all by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choices {
     /// Whether welded bodies are merged.
     pub merge: bool,
     /// Whether parts that no output depends on are left out.
     pub prune: bool,
-    /// Whether subsystems are taken apart.
+    /// Whether subsystems become models of their own.
     pub part: bool,
 }
 
@@ -38,25 +38,25 @@ impl Default for Choices {
     }
 }
 
-/// A part of a model that moves on its own.
+/// A part of a model that moves independently of the rest.
 #[derive(Clone, Debug)]
 pub struct Subsystem {
-    /// A model of its own, with the whole one's name.
+    /// A model of its own, with the name of the whole model.
     pub description: Description,
-    /// Its outputs, by their numbers in the whole model.
+    /// Numbers of its outputs in the whole model.
     pub outputs: Vec<usize>,
-    /// Its uncertain parameters, by their numbers among those of the whole model.
+    /// Numbers of its uncertain parameters among those of the whole model.
     pub parameters: Vec<usize>,
 }
 
-/// What of a model is simulated.
+/// The parts of a model that are simulated.
 #[derive(Clone, Debug)]
 pub struct Reduction {
     /// In the order of their first outputs.
     pub subsystems: Vec<Subsystem>,
     /// Parts that no output depends on, by kind and name: `body pendulum`.
     pub left_out: Vec<String>,
-    /// Fixed joints of what is simulated: their names, and why their bodies stay two if they do.
+    /// Names of the simulated fixed joints, and why their bodies are not merged, if they are not.
     pub welds: Vec<(String, Option<String>)>,
 }
 
@@ -68,7 +68,7 @@ impl Reduction {
         let mut couplings = Couplings::of(&whole);
         let movable = couplings.movable();
         if choices.merge && !movable.iter().any(is_body) {
-            // Something has to have coordinates.
+            // A model needs a coordinate.
             return Self::of(description, Choices { merge: false, ..choices });
         }
         let sets = sets_of_outputs(&mut couplings, &movable, choices);
@@ -104,7 +104,7 @@ impl Reduction {
         }
     }
 
-    /// What is simulated as one model.
+    /// The simulated parts as one model.
     pub fn joined(description: &Description) -> Subsystem {
         let mut subsystems = Self::of(description, Choices { part: false, ..Choices::default() }).subsystems;
         subsystems.swap_remove(0)
@@ -115,32 +115,32 @@ fn is_body(part: &Part) -> bool {
     matches!(part, Part::Body(_))
 }
 
-/// The set of parts that each output needs; what an output names is in one.
+/// The set of parts that each output needs; all parts that an output refers to are in one set.
 fn sets_of_outputs(couplings: &mut Couplings, movable: &[Part], choices: Choices) -> Vec<Option<usize>> {
     let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
     let mut needed: Vec<Part> = Vec::new();
     for parts in &named {
-        couplings.together(parts);
-        needed.extend(parts.iter().filter(|&&part| !couplings.is_still(part)));
+        couplings.unite(parts);
+        needed.extend(parts.iter().filter(|&&part| !couplings.is_grounded(part)));
     }
-    // To an energy everything adds; and where no output names anything that moves, nothing says what is of no use.
+    // Every body adds to an energy; and where no output refers to anything that moves, nothing can be left out.
     if couplings.outputs.iter().any(|named| named.everything) || needed.is_empty() || !choices.prune {
         needed = movable.to_vec();
-        couplings.together(movable);
+        couplings.unite(movable);
     }
     if !choices.part {
-        couplings.together(&needed);
+        couplings.unite(&needed);
     }
-    // What acts on nothing that moves goes with something that does.
+    // A part that acts on nothing movable joins a part that does move.
     let bodies: Vec<Part> = movable.iter().copied().filter(is_body).collect();
     let moving: HashSet<usize> = bodies.iter().map(|&body| couplings.set(body)).collect();
     let (moves, alone): (Vec<Part>, Vec<Part>) =
         needed.into_iter().partition(|&part| moving.contains(&couplings.set(part)));
-    let company = moves.first().or(bodies.first()).copied();
+    let partner = moves.first().or(bodies.first()).copied();
     for part in alone {
-        company.map(|company| couplings.together(&[company, part]));
+        partner.map(|partner| couplings.unite(&[partner, part]));
     }
-    // So does what names nothing of the kind.
-    let first = company.map(|part| couplings.set(part));
-    named.iter().map(|parts| couplings.together(parts).or(first)).collect()
+    // So does an output that refers to nothing movable.
+    let first = partner.map(|part| couplings.set(part));
+    named.iter().map(|parts| couplings.unite(parts).or(first)).collect()
 }

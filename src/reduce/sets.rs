@@ -1,30 +1,30 @@
-//! Things that belong together.
+//! Disjoint sets (union–find).
 
 /// Disjoint sets of the numbers below a limit.
 pub struct Sets {
-    /// A number nearer to the one that stands for its set, or that one itself.
-    above: Vec<usize>,
+    /// Each number's parent; the smallest number of a set is its own parent.
+    parent: Vec<usize>,
 }
 
 impl Sets {
-    /// Each number alone.
+    /// Each number in a set of its own.
     pub fn new(count: usize) -> Self {
-        Self { above: (0..count).collect() }
+        Self { parent: (0..count).collect() }
     }
 
-    /// The number that stands for a number's set: the smallest in it.
+    /// The representative of a number's set: its smallest number.
     pub fn of(&mut self, mut number: usize) -> usize {
-        while self.above[number] != number {
-            self.above[number] = self.above[self.above[number]];
-            number = self.above[number];
+        while self.parent[number] != number {
+            self.parent[number] = self.parent[self.parent[number]];
+            number = self.parent[number];
         }
         number
     }
 
-    /// Makes two sets one; whether they were two.
+    /// Unites two sets; returns whether they were different.
     pub fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.of(a), self.of(b));
-        self.above[a.max(b)] = a.min(b);
+        self.parent[a.max(b)] = a.min(b);
         a != b
     }
 }

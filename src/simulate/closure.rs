@@ -1,7 +1,7 @@
-//! The whole motion from the independent coordinates: positions through the loop closure, velocities, accelerations and
-//! reactions through their linear systems, outputs through their formulas. No time integration.
+//! The closure: the whole motion from the independent coordinates. Positions follow from the loop closure, velocities,
+//! accelerations and reactions from their linear systems, outputs from their formulas. No time integration.
 //!
-//! The tapes are those of the start; what is "kept" there are the independent coordinates here.
+//! The tapes are those of the start, with the independent coordinates as given ones.
 
 use nalgebra::DMatrix;
 use symdiff::Tile;
@@ -12,7 +12,8 @@ use super::start::{Assembly, allowed_residual, free_columns};
 use crate::assemble::System;
 use crate::compile::{StartProgram, compile_start};
 
-/// How much rather a position is made dependent than an angle, which turns on and on and so tells more.
+/// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow without
+/// bound, so that they determine the configuration over whole turns.
 const ANGLES_STAY: f64 = 0.3;
 
 /// Lanes evaluated at once.
@@ -35,11 +36,11 @@ pub struct Points {
     pub count: usize,
     /// k rows.
     pub parameters: Vec<f64>,
-    /// 2n rows, positions and velocities: those of independent coordinates hold, the others say where to look.
+    /// 2n rows, positions and velocities: prescribed for independent coordinates, initial guesses for the others.
     pub motion: Vec<f64>,
 }
 
-/// Which coordinates are best taken as independent at a motion (its first n values).
+/// The coordinates to take as independent at a motion (its first n values).
 pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
     let start = &simulator.start;
     let layout = &start.layout;
@@ -91,13 +92,13 @@ impl<'s> Closure<'s> {
         &self.independent
     }
 
-    /// Whether outputs depend on velocities; where not, those of [`Points`] are not looked at.
+    /// Whether outputs depend on velocities; if not, those of [`Points`] are ignored.
     pub fn needs_velocities(&self) -> bool {
         self.needs.0
     }
 
-    /// Outputs at all points: output by output, point by point; not a number where the closure has no solution near the
-    /// point's motion.
+    /// Outputs at all points: output by output, point by point; NaN where the closure has no solution near the point's
+    /// motion.
     pub fn outputs(&self, time: f64, points: &Points, into: &mut Vec<f64>) {
         let layout = &self.program.layout;
         into.clear();

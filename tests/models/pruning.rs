@@ -428,7 +428,7 @@ fn every_decision_is_explained_with_what_it_saves() {
     kept = kept.replace("load: hinge.force,", "load: hinge.force, weld: weld.force,");
     let explanation = study::explain(&read(&kept)).unwrap();
     let stays = explanation.decisions.iter().find(|decision| decision.what == "bodies of joint weld stay two").unwrap();
-    assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is asked for", None));
+    assert_eq!((stays.why.as_str(), stays.saves), ("its reaction is needed", None));
     let count = |text: &str| -> i64 { instructions(&read(text))[2..6].iter().sum::<usize>() as i64 };
     let merged_count = count(&WELDED.replace("FORMULATION", "absolute").replace("STEP", "1e-3"));
     assert_eq!(merged.saves.unwrap().instructions, count(&kept) - merged_count);

@@ -126,7 +126,8 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     for text in ["Chebyshev, composed", "Scan", "HHT-I3, α = −0.1", "tolerance"] {
         assert!(svg.contains(text), "{text}");
     }
-    for what in ["too wide", "too narrow", "reference: Chebyshev, composed", "The cheapest within 2e-3 is ", "cost.csv"]
+    for what in
+        ["too wide", "too narrow", "reference: Chebyshev, composed", "The cheapest setting within 2e-3 is ", "cost.csv"]
     {
         assert!(text.contains(what), "{what} in\n{text}");
     }
@@ -144,14 +145,17 @@ fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     };
     let (text, status) = run("cost certain.yaml --output here --tolerance 1e-4");
     assert_eq!(status, Some(0), "{text}");
-    assert!(!text.contains("too wide  ") && text.contains("The cheapest within 1e-4 is HHT-I3, α = −0.1, "), "{text}");
+    assert!(
+        !text.contains("too wide  ") && text.contains("The cheapest setting within 1e-4 is HHT-I3, α = −0.1, "),
+        "{text}"
+    );
     assert!(place.path().join("here/cost.csv").exists() && place.path().join("here/cost.svg").exists());
     let (text, status) = run("cost certain.yaml --tolerance 1e-12 --quiet");
     assert_eq!((text.as_str(), status), ("", Some(0)));
     fs::write(place.path().join("uncertain.yaml"), OSCILLATOR).unwrap();
     let (text, status) = run("cost uncertain.yaml --budget 1e-6 --tolerance 0.9");
     assert_eq!(status, Some(0), "{text}");
-    for told in ["left out: Taylor: 18 of its settings", "No setting tried has come to its end"] {
+    for told in ["left out: Taylor: 18 of its settings", "No setting was finished"] {
         assert!(text.contains(told), "{told} in\n{text}");
     }
     for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {

@@ -1,5 +1,5 @@
-//! What `docs/guides/effects.md` shows is so: every example is assembled, every effect and picture is there, and what effects
-//! cost is about what is written.
+//! What `docs/guides/effects.md` shows is so: every example is assembled, every effect and picture is there; and the reference of
+//! effects is that of the code.
 
 use std::path::Path;
 
@@ -52,32 +52,14 @@ fn every_effect_has_an_example_and_a_picture() {
     }
 }
 
-/// Numbers of a row of the page's table of costs: an iteration, a factorisation, a step, and the same apart.
-fn written(keyword: &str) -> Option<Vec<i64>> {
-    let cells = PAGE.lines().filter_map(|line| line.strip_prefix(&format!("| `{keyword}` |")));
-    let numbers = cells.filter_map(|cells| {
-        let numbers = cells.split(['|', ',']).map(str::trim).filter(|cell| !cell.is_empty());
-        numbers.map(|number| number.parse().ok()).collect::<Option<Vec<i64>>>()
-    });
-    numbers.into_iter().next()
-}
-
-/// The table is counted, not estimated; a few instructions more or less come and go with the order of elimination.
+/// `MBINT_UPDATE_REFERENCE=1 cargo test --test docs_effects` writes the page.
 #[test]
-fn the_costs_of_effects_are_about_as_written() {
-    let mut table = String::new();
-    let mut wrong = Vec::new();
-    for (keyword, cost) in study::language_costs().unwrap() {
-        let numbers = |part: mbint::results::StepInstructions| [part.iteration, part.factor, part.step];
-        let counted = [Some(cost.acting), cost.apart].into_iter().flatten().flat_map(numbers).collect::<Vec<_>>();
-        let cells: Vec<String> = counted.iter().map(i64::to_string).collect();
-        table += &format!("| `{keyword}` | {} | {} |\n", cells[..3].join(" | "), cells[3..].join(", "));
-        let near = |written: &i64, counted: &i64| (written - counted).abs() <= 5 + counted.abs() / 10;
-        match written(keyword) {
-            Some(numbers)
-                if numbers.len() == counted.len() && numbers.iter().zip(&counted).all(|(a, b)| near(a, b)) => {}
-            found => wrong.push((keyword, found, counted)),
-        }
+fn the_reference_of_effects_is_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/effects.md");
+    let current = mbint::export::effects_page(&study::language_costs().unwrap());
+    if std::env::var_os("MBINT_UPDATE_REFERENCE").is_some() {
+        std::fs::write(&path, &current).unwrap();
     }
-    assert!(wrong.is_empty(), "{wrong:?}\nThe table should be\n{table}");
+    let committed = std::fs::read_to_string(&path).unwrap();
+    assert!(committed == current, "write it anew: MBINT_UPDATE_REFERENCE=1 cargo test --test docs_effects");
 }

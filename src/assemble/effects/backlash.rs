@@ -42,7 +42,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gear: &Backlash) -> 
     let torque = torque.only_where(bearing_at);
     let potential = (stiffness * (ahead.integral + behind.integral)).only_where(bearing_at);
     loads.add_potential(g, m, &[stiffness, play, corner, ratio, offset].map(Scalar::expr), potential.expr());
-    for (measure, value) in [(Measure::Angle, place), (Measure::Rate, rate), (Measure::Torque, torque)] {
+    for (measure, value) in [(Measure::ANGLE, place), (Measure::RATE, rate), (Measure::TORQUE, torque)] {
         loads.measure(measure, value.expr());
     }
     Ok(())

@@ -91,8 +91,8 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, beam: &Beam) -> Resu
     let potential = g.add(stretched, bent);
     loads.add_potential(g, m, &[axial, bending, free], potential);
     let at_start = g.neg(moments[0]);
-    let torques = [(Measure::Torque, moments[1]), (Measure::StartTorque, at_start)];
-    for (measure, value) in [(Measure::Length, length), (Measure::Force, tension)].into_iter().chain(torques) {
+    let torques = [(Measure::TORQUE, moments[1]), (Measure::START_TORQUE, at_start)];
+    for (measure, value) in [(Measure::LENGTH, length), (Measure::FORCE, tension)].into_iter().chain(torques) {
         loads.measure(measure, value);
     }
     Ok(())

@@ -22,19 +22,19 @@ use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::rotation;
 use crate::assemble::space::{self, Vector};
-use crate::model::PointRef;
+use crate::model::Bushing;
 
 use super::Loads;
 
 /// Stiffness or damping: by axis and, where there is one, the full matrix.
-pub struct Law {
+struct Law {
     straight: Vector,
     torsional: Vector,
     full: Option<[[Expr; 6]; 6]>,
 }
 
 impl Law {
-    pub fn new(
+    fn new(
         g: &Builder,
         m: &Mechanism,
         [straight, torsional]: [&[Formula; 3]; 2],
@@ -71,15 +71,11 @@ impl Law {
     }
 }
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    between: [PointRef; 2],
-    stiffness: &Law,
-    damping: &Law,
-) -> Result<(), BuildError> {
-    let pair = m.pair(g, between);
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &Bushing) -> Result<(), BuildError> {
+    let full = [&effect.stiffness_matrix, &effect.damping_matrix].map(|full| full.as_ref().map(|full| &*full.0));
+    let stiffness = Law::new(g, m, [&effect.stiffness, &effect.torsional_stiffness], full[0])?;
+    let damping = Law::new(g, m, [&effect.damping, &effect.torsional_damping], full[1])?;
+    let pair = m.pair(g, effect.between);
     let axes: [Vector; 3] = std::array::from_fn(|axis| {
         let unit = space::along(g, axis);
         pair.outward(g, unit)

@@ -37,7 +37,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, cable: &Cable) -> Re
     let tension = tension.only_where(tight);
     let potential = (stiffness * taut.integral).only_where(tight);
     loads.add_potential(g, m, &[stiffness, free, corner].map(Scalar::expr), potential.expr());
-    for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
+    for (measure, value) in [(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)] {
         loads.measure(measure, value.expr());
     }
     Ok(())

@@ -115,13 +115,13 @@ impl<'g> Touch<'g> {
                 // Along n turned clockwise: x on a floor.
                 normal.perpendicular().dot(drag)
             };
-            loads.measure(Measure::Friction, felt.only_where(overlap).expr());
+            loads.measure(Measure::FRICTION, felt.only_where(overlap).expr());
         }
         loads.add_force_pair(g, &first, &second, force.exprs());
         let push = push.only_where(overlap);
         let potential = self.impact.potential(depth).only_where(depth);
         loads.add_potential(g, m, &[self.impact.stiffness.expr()], potential.expr());
-        for (measure, value) in [(Measure::Gap, gap), (Measure::Rate, parting), (Measure::Force, push)] {
+        for (measure, value) in [(Measure::GAP, gap), (Measure::RATE, parting), (Measure::FORCE, push)] {
             loads.measure(measure, value.expr());
         }
     }

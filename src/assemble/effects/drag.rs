@@ -30,6 +30,6 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, drag: &Drag) -> Resu
     let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
     let resistance = linear + quadratic * speed;
     loads.add_force(g, &point, (-resistance * u).exprs());
-    loads.measure(Measure::Force, (resistance * speed).expr());
+    loads.measure(Measure::FORCE, (resistance * speed).expr());
     Ok(())
 }

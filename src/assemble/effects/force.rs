@@ -6,11 +6,12 @@
 //!
 //! It acts from outside the mechanism: nothing feels the reaction, and it has no potential.
 
-use symdiff::{Builder, Formula};
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::PointRef;
+use crate::model::Force;
+use crate::model::force::Frame;
 
 use super::Loads;
 
@@ -18,15 +19,13 @@ pub fn apply(
     g: &Builder,
     m: &Mechanism,
     loads: &mut Loads,
-    on: PointRef,
-    value: &[Formula; 3],
-    in_body: bool,
+    effect: &Force,
 ) -> Result<(), BuildError> {
-    let mut force = m.vector(g, value, Context::Motion)?;
-    if in_body {
-        force = m.bodies[on.body].rotate(g, force);
+    let mut force = m.vector(g, &effect.value, Context::Motion)?;
+    if effect.frame == Frame::Body {
+        force = m.bodies[effect.on.body].rotate(g, force);
     }
-    let point = m.point(g, on);
+    let point = m.point(g, effect.on);
     loads.add_force(g, &point, force);
     Ok(())
 }

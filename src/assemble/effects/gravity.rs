@@ -7,16 +7,17 @@
 //! and on the mass along beams (`flexible`).
 //! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
 
-use symdiff::{Builder, Formula};
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
 use crate::assemble::space;
+use crate::model::Gravity;
 
 use super::Loads;
 
-pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, acceleration: &[Formula; 3]) -> Result<(), BuildError> {
-    let acceleration = m.vector(g, acceleration, Context::Motion)?;
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, gravity: &Gravity) -> Result<(), BuildError> {
+    let acceleration = m.vector(g, &gravity.acceleration, Context::Motion)?;
     for (index, body) in m.bodies.iter().enumerate() {
         let weight = space::scale(g, body.mass, acceleration);
         let center = m.point_at(g, index, body.center);

@@ -61,7 +61,7 @@ pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, friction: &JointFric
             vec![(JointCoordinate::Displacement, against[0]), (JointCoordinate::Angle, radius * against[1])]
         }
     };
-    loads.measure(Measure::Load, load.expr());
+    loads.measure(Measure::LOAD, load.expr());
     for (coordinate, effort) in efforts {
         loads.add_joint_effort(g, m, OnJoint { joint, coordinate }, effort.expr())?;
         loads.measure(Measure::of_effort(coordinate), effort.expr());

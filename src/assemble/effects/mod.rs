@@ -4,35 +4,18 @@
 //! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion, which [`Loads`] sees to. Values may depend on
 //! parameters, t, positions, velocities and reactions.
 //!
-//! To add an effect: its file in `elements::effects`, and its line here.
+//! Each file has the `apply` of the effect of the same name in `elements::effects`, whose registry lists them.
 
-mod backlash;
-mod beam;
-mod bushing;
-mod cable;
-mod clearance_joint;
-mod contact;
-mod drag;
 mod dry_friction;
-mod force;
-mod gravity;
 mod impact;
-mod joint_friction;
 mod positive_part;
-mod preload;
-mod servo;
-mod spring_damper;
-mod stop;
-mod torque;
-mod torsional_spring_damper;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::{Builder, Expr, Formula, Scalar};
 
-use crate::model::force::Frame;
-use crate::model::torque::TorqueOn;
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, SpringDamper, TimeOrder};
+use crate::elements::effects::registry;
+use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, TimeOrder};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
@@ -40,51 +23,21 @@ use super::joints;
 use super::mechanism::{Context, Mechanism};
 use super::space::{self, Vector};
 
-/// Applies an effect.
-pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
-    match kind {
-        EffectKind::Gravity(gravity) => gravity::apply(g, m, loads, &gravity.acceleration),
-        EffectKind::Force(force) => force::apply(g, m, loads, force.on, &force.value, force.frame == Frame::Body),
-        EffectKind::Torque(torque) => match torque.on {
-            TorqueOn::Body(on) => {
-                torque::apply(g, m, loads, on, torque.reaction_on(), &torque.value.0, torque.frame == Frame::Body)
+/// The modules of the effects, and the dispatch to them.
+macro_rules! physics {
+    ($($file:ident::$name:ident),* $(,)?) => {
+        $(mod $file;)*
+
+        /// Applies an effect.
+        pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
+            match kind {
+                $(EffectKind::$name(effect) => $file::apply(g, m, loads, effect),)*
             }
-            TorqueOn::Joint(joint) => torque::apply_at_joint(g, m, loads, joint, &torque.value.0[2]),
-        },
-        EffectKind::SpringDamper(spring) => {
-            let SpringDamper { between, along, stiffness, damping, free_length, force } = spring;
-            let spring = spring_damper::Spring { stiffness, damping, free_length };
-            spring_damper::apply(g, m, loads, *between, along.as_deref(), spring, force.as_ref())
         }
-        EffectKind::TorsionalSpringDamper(spring) => torsional_spring_damper::apply(
-            g,
-            m,
-            loads,
-            spring,
-            [&spring.stiffness, &spring.damping, &spring.free_angle],
-            spring.torque.as_ref(),
-        ),
-        EffectKind::Bushing(bushing) => {
-            let full = [&bushing.stiffness_matrix, &bushing.damping_matrix];
-            let [full_stiffness, full_damping] = full.map(|matrix| matrix.as_ref().map(|matrix| &*matrix.0));
-            let stiffness =
-                bushing::Law::new(g, m, [&bushing.stiffness, &bushing.torsional_stiffness], full_stiffness)?;
-            let damping = bushing::Law::new(g, m, [&bushing.damping, &bushing.torsional_damping], full_damping)?;
-            bushing::apply(g, m, loads, bushing.between, &stiffness, &damping)
-        }
-        EffectKind::JointFriction(friction) => joint_friction::apply(g, m, loads, friction),
-        EffectKind::Stop(stop) => stop::apply(g, m, loads, stop),
-        EffectKind::Contact(contact) => contact::apply(g, m, loads, contact),
-        EffectKind::ClearanceJoint(joint) => clearance_joint::apply(g, m, loads, joint),
-        EffectKind::Servo(servo) => servo::apply(g, m, loads, servo),
-        EffectKind::Drag(drag) => drag::apply(g, m, loads, drag),
-        EffectKind::Cable(cable) => cable::apply(g, m, loads, cable),
-        EffectKind::Backlash(backlash) => backlash::apply(g, m, loads, backlash),
-        EffectKind::Preload(preload) => preload::apply(g, m, loads, preload),
-        EffectKind::Beam(beam) => beam::apply(g, m, loads, beam),
-    }
+    };
 }
 
+registry!(physics);
 impl Mechanism<'_> {
     /// A formula of parameters, t and the motion, to compute with.
     fn value<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {

@@ -13,50 +13,42 @@
 //! A further tension is a formula of the spring's own length ℓ (or s) and rate, and whatever else a formula may refer to.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Builder, Formula, Scalar};
+use symdiff::{Builder, Scalar};
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
-use crate::model::{Measure, PointRef};
+use crate::model::{Measure, SpringDamper};
 use crate::multibody::Vector;
 
 use super::Loads;
 
 /// Its numbers.
 #[derive(Clone, Copy)]
-pub struct Spring<T> {
+struct Spring<'g> {
     /// k, N/m
-    pub stiffness: T,
+    stiffness: Scalar<'g>,
     /// c, N s/m
-    pub damping: T,
+    damping: Scalar<'g>,
     /// ℓ₀, m
-    pub free_length: T,
+    free_length: Scalar<'g>,
 }
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    between: [PointRef; 2],
-    along: Option<&[Formula; 3]>,
-    spring: Spring<&Formula>,
-    further: Option<&Formula>,
-) -> Result<(), BuildError> {
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &SpringDamper) -> Result<(), BuildError> {
     let spring = Spring {
-        stiffness: m.value(g, spring.stiffness)?,
-        damping: m.value(g, spring.damping)?,
-        free_length: m.value(g, spring.free_length)?,
+        stiffness: m.value(g, &effect.stiffness)?,
+        damping: m.value(g, &effect.damping)?,
+        free_length: m.value(g, &effect.free_length)?,
     };
-    let [a, b] = between.map(|point| m.point(g, point));
-    let axis = along.map(|axis| m.vector(g, axis, Context::Motion)).transpose()?;
+    let [a, b] = effect.between.map(|point| m.point(g, point));
+    let axis = effect.along.as_ref().map(|axis| m.vector(g, axis, Context::Motion)).transpose()?;
     let line = Vector::of(g, b.position) - Vector::of(g, a.position);
     let growth = Vector::of(g, b.velocity) - Vector::of(g, a.velocity);
     let Stretched { mut pull, direction, length, rate, mut tension } = match axis {
         Some(axis) => along_axis(line, growth, Vector::of(g, axis), spring),
         None => along_line(line, growth, spring),
     };
-    if let Some(further) = further {
-        let own = [(Measure::Length, length.expr()), (Measure::Rate, rate.expr())];
+    if let Some(further) = &effect.force {
+        let own = [(Measure::LENGTH, length.expr()), (Measure::RATE, rate.expr())];
         let further = g.scalar(m.own_formula(g, further, &own)?);
         pull += further * direction;
         tension += further;
@@ -65,10 +57,10 @@ pub fn apply(
     loads.add_force_pair(g, &b, &a, pull.exprs());
     let stretch = length - spring.free_length;
     let potential = 0.5 * (spring.stiffness * (stretch * stretch));
-    if further.is_none() {
+    if effect.force.is_none() {
         loads.add_potential(g, m, &[spring.stiffness.expr(), spring.free_length.expr()], potential.expr());
     }
-    for (measure, value) in [(Measure::Length, length), (Measure::Rate, rate), (Measure::Force, tension)] {
+    for (measure, value) in [(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)] {
         loads.measure(measure, value.expr());
     }
     Ok(())
@@ -89,7 +81,7 @@ struct Stretched<'g> {
 }
 
 /// By d and ḋ.
-fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Spring<Scalar<'g>>) -> Stretched<'g> {
+fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Spring<'g>) -> Stretched<'g> {
     let square = line.dot(line);
     let length = square.sqrt();
     let elastic = spring.stiffness * (1.0 - spring.free_length / length);
@@ -100,7 +92,7 @@ fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Spring<Scalar<'g
 }
 
 /// By d and ḋ.
-fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring: Spring<Scalar<'g>>) -> Stretched<'g> {
+fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring: Spring<'g>) -> Stretched<'g> {
     let direction = axis.unit();
     let (length, rate) = (direction.dot(line), direction.dot(growth));
     let tension = spring.stiffness * (length - spring.free_length) + spring.damping * rate;

@@ -8,38 +8,29 @@
 //! In the plane value is about z, counter-clockwise. A motor between two bodies; from the ground, the reaction is the
 //! ground's. It has no potential.
 
-use symdiff::{Builder, Formula};
+use symdiff::Builder;
 
 use crate::assemble::error::BuildError;
 use crate::assemble::mechanism::{Context, Mechanism};
+use crate::model::Torque;
+use crate::model::force::Frame;
+use crate::model::torque::TorqueOn;
 
 use super::Loads;
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    on: usize,
-    from: usize,
-    value: &[Formula; 3],
-    in_body: bool,
-) -> Result<(), BuildError> {
-    let mut torque = m.vector(g, value, Context::Motion)?;
-    if in_body {
-        torque = m.bodies[on].rotate(g, torque);
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, effect: &Torque) -> Result<(), BuildError> {
+    match effect.on {
+        TorqueOn::Body(on) => {
+            let mut torque = m.vector(g, &effect.value.0, Context::Motion)?;
+            if effect.frame == Frame::Body {
+                torque = m.bodies[on].rotate(g, torque);
+            }
+            loads.add_torque_pair(g, effect.reaction_on(), on, torque);
+            Ok(())
+        }
+        TorqueOn::Joint(joint) => {
+            let torque = m.formula(g, &effect.value.0[2], Context::Motion)?;
+            loads.add_joint_torque(g, m, joint, torque)
+        }
     }
-    loads.add_torque_pair(g, from, on, torque);
-    Ok(())
-}
-
-/// The torque of a motor at a joint.
-pub fn apply_at_joint(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    joint: usize,
-    value: &Formula,
-) -> Result<(), BuildError> {
-    let torque = m.formula(g, value, Context::Motion)?;
-    loads.add_joint_torque(g, m, joint, torque)
 }

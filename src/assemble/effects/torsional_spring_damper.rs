@@ -8,7 +8,7 @@
 //! Angles are never wrapped: the spring winds up over many turns. A further torque is a formula of the spring's own angle φ
 //! and rate. With one, or where k or φ₀ depend on the motion, there is no potential and none is counted.
 
-use symdiff::{Builder, Formula};
+use symdiff::Builder;
 
 use crate::assemble::body::ANGLE;
 use crate::assemble::error::BuildError;
@@ -17,17 +17,10 @@ use crate::model::{JointCoordinate, Measure, OnJoint, TorsionalSpringDamper};
 
 use super::Loads;
 
-pub fn apply(
-    g: &Builder,
-    m: &Mechanism,
-    loads: &mut Loads,
-    spring: &TorsionalSpringDamper,
-    [stiffness, damping, free_angle]: [&Formula; 3],
-    further: Option<&Formula>,
-) -> Result<(), BuildError> {
-    let stiffness = m.value(g, stiffness)?;
-    let damping = m.value(g, damping)?;
-    let free_angle = m.value(g, free_angle)?;
+pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, spring: &TorsionalSpringDamper) -> Result<(), BuildError> {
+    let stiffness = m.value(g, &spring.stiffness)?;
+    let damping = m.value(g, &spring.damping)?;
+    let free_angle = m.value(g, &spring.free_angle)?;
     let bodies = spring.between.map(|bodies| bodies.map(|body| body.0));
     let [angle, rate] = match (bodies, spring.on) {
         (Some([first, second]), None) => {
@@ -43,11 +36,11 @@ pub fn apply(
     };
     let twist = angle - free_angle;
     let mut torque = stiffness * twist + damping * rate;
-    if let Some(further) = further {
-        let own = [(Measure::Angle, angle.expr()), (Measure::Rate, rate.expr())];
+    if let Some(further) = &spring.torque {
+        let own = [(Measure::ANGLE, angle.expr()), (Measure::RATE, rate.expr())];
         torque += g.scalar(m.own_formula(g, further, &own)?);
     }
-    for (measure, value) in [(Measure::Angle, angle), (Measure::Rate, rate), (Measure::Torque, torque)] {
+    for (measure, value) in [(Measure::ANGLE, angle), (Measure::RATE, rate), (Measure::TORQUE, torque)] {
         loads.measure(measure, value.expr());
     }
     match (bodies, spring.on) {
@@ -59,7 +52,7 @@ pub fn apply(
         (None, None) => {}
     }
     let potential = 0.5 * (stiffness * (twist * twist));
-    if further.is_none() {
+    if spring.torque.is_none() {
         loads.add_potential(g, m, &[stiffness.expr(), free_angle.expr()], potential.expr());
     }
     Ok(())

@@ -59,9 +59,9 @@ pub struct Backlash {
 
 impl ForceElement for Backlash {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Angle, Dimension::ANGLE),
-        (Measure::Rate, Dimension::ANGULAR_VELOCITY),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::ANGLE, Dimension::ANGLE),
+        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {

@@ -75,10 +75,10 @@ impl Flexible {
 
 impl ForceElement for Beam {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Force, Dimension::FORCE),
-        (Measure::Torque, Dimension::TORQUE),
-        (Measure::StartTorque, Dimension::TORQUE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::FORCE, Dimension::FORCE),
+        (Measure::TORQUE, Dimension::TORQUE),
+        (Measure::START_TORQUE, Dimension::TORQUE),
     ];
 
     fn inertia(&self) -> Option<LineMass<'_>> {

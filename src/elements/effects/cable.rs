@@ -51,8 +51,8 @@ pub struct Cable {
 
 impl ForceElement for Cable {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Rate, Dimension::VELOCITY),
-        (Measure::Force, Dimension::FORCE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::RATE, Dimension::VELOCITY),
+        (Measure::FORCE, Dimension::FORCE),
     ];
 }

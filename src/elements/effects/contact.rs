@@ -57,10 +57,10 @@ pub struct Contact {
 
 /// What two surfaces measure.
 pub(super) const SENSORS: &[Sensor] = &[
-    (Measure::Gap, Dimension::LENGTH),
-    (Measure::Rate, Dimension::VELOCITY),
-    (Measure::Force, Dimension::FORCE),
-    (Measure::Friction, Dimension::FORCE),
+    (Measure::GAP, Dimension::LENGTH),
+    (Measure::RATE, Dimension::VELOCITY),
+    (Measure::FORCE, Dimension::FORCE),
+    (Measure::FRICTION, Dimension::FORCE),
 ];
 
 impl ForceElement for Contact {

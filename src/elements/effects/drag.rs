@@ -61,7 +61,7 @@ impl Drag {
 }
 
 impl ForceElement for Drag {
-    const SENSORS: &'static [Sensor] = &[(Measure::Force, Dimension::FORCE)];
+    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE)];
 }
 
 impl Checked for Drag {

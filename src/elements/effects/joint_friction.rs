@@ -68,15 +68,15 @@ pub struct FrictionJoint {
 
 impl ForceElement for JointFriction {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Load, Dimension::FORCE),
-        (Measure::Force, Dimension::FORCE),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::LOAD, Dimension::FORCE),
+        (Measure::FORCE, Dimension::FORCE),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn sensors(&self) -> Vec<Sensor> {
         let measured = |measure: Measure| match self.on.mode {
-            FrictionMode::Turning => measure != Measure::Force,
-            FrictionMode::Sliding => measure != Measure::Torque,
+            FrictionMode::Turning => measure != Measure::FORCE,
+            FrictionMode::Sliding => measure != Measure::TORQUE,
             FrictionMode::Both => true,
         };
         Self::SENSORS.iter().copied().filter(|(measure, _)| measured(*measure)).collect()

@@ -1,7 +1,7 @@
 //! Effects: what moves bodies.
 //!
-//! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
-//! what it refers to, what it costs.
+//! To add one: its file here, its forces in the file of the same name in `assemble::effects`, and its line in the registry. All else
+//! follows from the file: keys, schema, documentation, what it refers to, what it costs.
 
 mod dry_friction;
 mod impact;
@@ -13,27 +13,11 @@ use symdiff::Formula;
 pub use self::dry_friction::{DryFriction, Friction};
 pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
+pub(crate) use self::registry::registry;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Element, Measure, OnJoint, PointRef};
+use crate::grammar::{Element, ElementDocs, Measure, OnJoint, PointRef};
 
-effects! {
-    gravity::Gravity,
-    force::Force,
-    torque::Torque,
-    spring_damper::SpringDamper,
-    torsional_spring_damper::TorsionalSpringDamper,
-    bushing::Bushing,
-    joint_friction::JointFriction,
-    stop::Stop,
-    contact::Contact,
-    clearance_joint::ClearanceJoint,
-    servo::Servo,
-    drag::Drag,
-    cable::Cable,
-    backlash::Backlash,
-    preload::Preload,
-    beam::Beam,
-}
+registry!(effects);
 
 /// Something that an effect measures, and what it is.
 pub type Sensor = (Measure, Dimension);
@@ -97,4 +81,10 @@ pub struct LineMass<'a> {
 fn effort(on: OnJoint) -> Sensor {
     let [_, _, dimension] = crate::grammar::motions::dimensions_of(on.coordinate);
     (Measure::of_effort(on.coordinate), dimension)
+}
+
+/// What people are told of an effect.
+fn with_sensors<E: ForceElement>() -> ElementDocs {
+    let sensors = E::SENSORS.iter().map(|(measure, dimension)| (measure.name(), dimension.unit())).collect();
+    ElementDocs { sensors, ..ElementDocs::of::<E>() }
 }

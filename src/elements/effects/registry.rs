@@ -1,6 +1,31 @@
 //! The registry: from a list of files and structs, the enum of all effects and what is asked of each.
 
-/// `effects! { file::Struct, … }`
+/// Hands every effect, `file::Struct`, to a macro.
+macro_rules! registry {
+    ($to:ident) => {
+        $to! {
+            gravity::Gravity,
+            force::Force,
+            torque::Torque,
+            spring_damper::SpringDamper,
+            torsional_spring_damper::TorsionalSpringDamper,
+            bushing::Bushing,
+            joint_friction::JointFriction,
+            stop::Stop,
+            contact::Contact,
+            clearance_joint::ClearanceJoint,
+            servo::Servo,
+            drag::Drag,
+            cable::Cable,
+            backlash::Backlash,
+            preload::Preload,
+            beam::Beam,
+            belt::Belt,
+        }
+    };
+}
+
+/// Their modules, the enum of them, and what is asked of each.
 macro_rules! effects {
     ($($file:ident::$name:ident),* $(,)?) => {
         $(pub mod $file;)*
@@ -56,7 +81,7 @@ macro_rules! effects {
 
             /// Of every effect, in the order of the registry.
             pub fn docs() -> Vec<$crate::grammar::ElementDocs> {
-                vec![$($crate::grammar::ElementDocs::of::<$name>()),*]
+                vec![$(with_sensors::<$name>()),*]
             }
 
             /// The word for it in a model file.
@@ -138,3 +163,4 @@ macro_rules! effects {
 }
 
 pub(super) use effects;
+pub(crate) use registry;

@@ -42,7 +42,7 @@ pub struct Servo {
 }
 
 impl ForceElement for Servo {
-    const SENSORS: &'static [Sensor] = &[(Measure::Force, Dimension::FORCE), (Measure::Torque, Dimension::TORQUE)];
+    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE), (Measure::TORQUE, Dimension::TORQUE)];
 
     fn sensors(&self) -> Vec<Sensor> {
         vec![effort(self.on)]

@@ -52,9 +52,9 @@ pub struct SpringDamper {
 
 impl ForceElement for SpringDamper {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Length, Dimension::LENGTH),
-        (Measure::Rate, Dimension::VELOCITY),
-        (Measure::Force, Dimension::FORCE),
+        (Measure::LENGTH, Dimension::LENGTH),
+        (Measure::RATE, Dimension::VELOCITY),
+        (Measure::FORCE, Dimension::FORCE),
     ];
 }
 

@@ -38,7 +38,7 @@ pub struct Stop {
 }
 
 impl ForceElement for Stop {
-    const SENSORS: &'static [Sensor] = &[(Measure::Force, Dimension::FORCE), (Measure::Torque, Dimension::TORQUE)];
+    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE), (Measure::TORQUE, Dimension::TORQUE)];
 
     fn sensors(&self) -> Vec<Sensor> {
         vec![effort(self.on)]

@@ -46,9 +46,9 @@ pub struct TorsionalSpringDamper {
 
 impl ForceElement for TorsionalSpringDamper {
     const SENSORS: &'static [Sensor] = &[
-        (Measure::Angle, Dimension::ANGLE),
-        (Measure::Rate, Dimension::ANGULAR_VELOCITY),
-        (Measure::Torque, Dimension::TORQUE),
+        (Measure::ANGLE, Dimension::ANGLE),
+        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
+        (Measure::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {

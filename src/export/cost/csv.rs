@@ -1,4 +1,4 @@
-//! `cost.csv`: a row a setting.
+//! `cost.csv`: one row for each setting.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use csv::WriterBuilder;
 use super::plot::cost_svg;
 use crate::export::csv::number;
 use crate::export::files::ExportError;
-use crate::export::folder::Together;
+use crate::export::folder::AtomicFiles;
 use crate::model::Stepping;
 use crate::results::{CostPoint, CostStudy, Deviation};
 
@@ -80,7 +80,7 @@ fn record(of: &str, point: &CostPoint) -> [String; COLUMNS.len()] {
 /// # Errors
 /// At the first file that cannot be written.
 pub fn write_cost(dir: &Path, study: &CostStudy) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = Together::in_folder(dir)?;
+    let mut files = AtomicFiles::in_folder(dir)?;
     let plot = cost_svg(study).map_err(|message| ExportError::Plot { output: "cost".to_owned(), message })?;
     files.add("cost.csv", &cost_csv(study)?)?;
     files.add("cost.svg", plot.as_bytes())?;

@@ -1,4 +1,4 @@
-//! What accuracy costs in time, as a table (`csv`) and as a `plot`.
+//! Error against computing time, as a table (`csv`) and as a `plot`.
 
 mod csv;
 mod log_axis;

@@ -1,7 +1,7 @@
 //! `cost.svg`: error against seconds, both logarithmic; bounds on the left, nominal trajectories on the right.
 //!
-//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings
-//! that none of its own betters; the thick grey line, those that none of all does (Pareto's front).
+//! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings on
+//! its own Pareto front; the thick grey line is the front of all methods.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -135,8 +135,8 @@ impl Panel<'_, '_> {
         self.text(label, (x - 4.0, self.bottom - 6.0), HPos::Right, VPos::Bottom)
     }
 
-    /// The common front below every method's dots and line, and the legend above. What is below the reference's own error
-    /// is shown at it.
+    /// The common front below every method's dots and line, and the legend above. Errors below the reference's own error are
+    /// shown at that error.
     fn curves(&self, points: &[CostPoint], reference: f64) -> Drawn {
         let all = || points.iter().filter(|point| is_shown(point));
         self.front(&all().map(|point| point.place(reference)).collect::<Vec<Point>>(), FRONT, 7.0)?;
@@ -177,7 +177,7 @@ impl Panel<'_, '_> {
         (across, self.bottom - self.y.place(seconds) * (self.bottom - self.top))
     }
 
-    /// A line through those points that no other betters.
+    /// A line through the points on the Pareto front.
     fn front(&self, points: &[Point], color: RGBColor, width: f64) -> Drawn {
         let line: Vec<Point> = pareto(points).into_iter().map(|place| self.place(points[place])).collect();
         self.line(&line, color, width)

@@ -1,7 +1,7 @@
-//! Frames for what a state's polynomials miss, which turn with ξ.
+//! Frames for the remainder of a state's polynomials; they rotate with ξ.
 //!
 //! A state's remainder d = (δq̂, δv̂, δw) is carried in coordinates z, |zᵢ| ≤ rᵢ, of a frame that each step chooses anew:
-//! boxes in fixed coordinates would grow at every step by what their turned corners stick out (the wrapping effect). The
+//! boxes in fixed coordinates would grow at every step, because a box must cover its rotated corners (the wrapping effect). The
 //! scheme moves d in two ways. 2f directions are slow: changed independent coordinates and velocities, with all else
 //! consistent. The others are fast: they break the constraints and their derivatives, in velocities by h and in accelerations by h² times
 //! as large as in positions, and fade (by 0.82 a step for α = −0.1). A frame that is not right for every ξ mixes both, a
@@ -29,7 +29,7 @@ use super::{EnclosureError, Gains};
 /// Independent coordinates are chosen anew when another moves this many times as much.
 const OUTRUN: f64 = 2.0;
 
-/// What V leaves above the diagonal.
+/// Largest entry that V leaves above the diagonal.
 const OFF_DIAGONAL: f64 = 0.05;
 
 /// Units in which frames are made.
@@ -248,7 +248,7 @@ impl Frame {
 /// Adds |Δ x| to `to`, for x = (what is bounded by `rough`) + Δ x.
 fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) -> Result<(), EnclosureError> {
     let norm = skew.row_norm(space);
-    // Not a number is not small.
+    // NaN is not small.
     let small = norm < 0.5;
     if !small {
         return Err(EnclosureError::Unproven);

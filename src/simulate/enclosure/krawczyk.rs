@@ -5,14 +5,14 @@ use symdiff::taylor_model::up;
 use super::EnclosureError;
 use super::matrix::{apply_bounds, larger};
 
-/// Attempts at a box that is mapped into itself.
+/// Most attempts to find a box that is mapped into itself.
 const ATTEMPTS: usize = 12;
 
-/// How much larger than its image the next box is tried.
+/// Factor by which the next box is larger than the image of the last one.
 const INFLATION: f64 = 1.25;
 
-/// What the operator is for a box of corrections |y| ≤ g: a bound of |−C (what is missed)|, and one of |I − C J| with the
-/// derivatives J over the solutions in the box, row by row.
+/// The operator for a box of corrections |y| ≤ g: a bound of |C times the residual|, and one of |I − C J| with the derivatives J
+/// over the solutions in the box, row by row.
 pub(super) struct Image {
     pub missed: Vec<f64>,
     pub contraction: Vec<f64>,
@@ -31,9 +31,9 @@ pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -
             apply_bounds(&contraction, y).iter().zip(&missed).map(|(moved, missed)| up(moved + missed)).collect()
         };
         let mapped = apply(&box_of);
-        // Written so that not a number is no proof.
+        // Written so that NaN is no proof.
         if norm < 1.0 && mapped.iter().zip(&box_of).all(|(mapped, y)| mapped <= y) {
-            // The image holds the solution too, and so does the image's.
+            // The image contains the solution too, and so does the image of the image.
             return Ok(apply(&mapped));
         }
         if mapped.iter().any(|y| !y.is_finite()) {

@@ -128,7 +128,7 @@ impl Models {
         product
     }
 
-    /// The polynomials of `self · other`, without what is lost.
+    /// The polynomials of `self · other`, without bounds of their errors.
     pub fn approximate_times(&self, space: &ModelSpace, other: &Self) -> Self {
         let mut product = Self::zero(space, self.rows, other.columns);
         let length = self.size - 1;
@@ -197,7 +197,7 @@ impl Models {
         Some(Self::constant(space, &inverse))
     }
 
-    /// Makes `self` a better inverse of a matrix: C ← C + (I − C J) C (Schulz). Whether it is one.
+    /// Makes `self` a better inverse of a matrix: C ← C + (I − C J) C (Schulz). Returns whether it is an inverse.
     pub fn refine_inverse_of(&mut self, space: &ModelSpace, matrix: &Self) -> bool {
         let mut last = f64::INFINITY;
         for _ in 0..MAX_REFINEMENTS {
@@ -214,7 +214,7 @@ impl Models {
     }
 }
 
-/// The larger; not a number if either is not.
+/// The larger of two; NaN if either is.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }

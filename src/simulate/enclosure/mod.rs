@@ -1,6 +1,6 @@
-//! Certified motions: what the scheme's equations yield, enclosed for a whole box of parameters at once.
+//! Certified motions: the solution of the scheme's equations, enclosed for a whole box of parameters at once.
 //!
-//! With q̂ and v̂ for what is known of q₊ and v₊ when a step begins (`program/newton_matrix.rs`), a step takes (q̂, v̂, w) to
+//! With q̂ and v̂ for the parts of q₊ and v₊ that do not depend on w₊ (`compile/newton_matrix.rs`), a step takes (q̂, v̂, w) to
 //! the next by
 //!
 //! ```text
@@ -20,7 +20,7 @@
 //! ```
 //!
 //! Brouwer's theorem gives a solution where the right side maps a box |y| ≤ g into itself, ‖I − C J‖ < 1 that there is
-//! but one. C, X, Y and A need no proof: what they miss is in the bounds. The next z takes up the z before, turned into
+//! but one. C, X, Y and A need no proof: their errors are in the bounds. The next z contains the z before, transformed into
 //! the next frame, and y.
 
 mod frame;
@@ -38,13 +38,13 @@ use crate::compile::{Coefficients, EquationsProgram, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
 
-/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder hangs on it.
+/// Time that the motion's velocities are measured in, beside positions, s: only the shape of the remainder depends on it.
 const MOTION_TIME: f64 = 0.1;
 
-/// Why an enclosure ends.
+/// Why an enclosure fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EnclosureError {
-    /// The start is not determined, or over-determined, by what the model keeps.
+    /// The given start values determine too few or too many unknowns.
     #[error("the start is not the solution of as many equations as unknowns")]
     Undetermined,
     /// Krawczyk's operator does not contract.
@@ -52,7 +52,7 @@ pub enum EnclosureError {
     Unproven,
 }
 
-/// What an enclosure needs that does not depend on the box.
+/// The equations of a mechanism, compiled for enclosures over any box.
 #[derive(Clone, Debug)]
 pub struct Certifier<'s> {
     simulator: &'s Simulator,

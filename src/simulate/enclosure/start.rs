@@ -12,9 +12,9 @@ use crate::simulate::simulator::Simulator;
 
 /// A square system of equations among a program's slots.
 struct Equations<'p> {
-    /// What is solved for.
+    /// Slots of the unknowns.
     unknowns: Vec<usize>,
-    /// What is to be zero after `residual`.
+    /// Slots of the residuals, after `residual`.
     residuals: Vec<usize>,
     residual: [&'p Tape; 2],
     slopes: &'p Tape,
@@ -22,7 +22,7 @@ struct Equations<'p> {
     entries: Vec<(usize, usize, usize)>,
 }
 
-/// Leaves the start's q, v, a, w, λ in the memory at t = 0; `shift` is αh. The nominal start says which solution is meant.
+/// Leaves the start's q, v, a, w, λ in the memory at t = 0; `shift` is αh. The nominal start selects the solution.
 pub(super) fn assemble(
     simulator: &Simulator,
     program: &EquationsProgram,
@@ -164,7 +164,7 @@ impl Equations<'_> {
         }
         self.set_radii(space, memory, None);
         let mut inverse = self.matrix(space, memory).inverse_at_centre(space).ok_or(EnclosureError::Unproven)?;
-        // Each correction at least makes one more order right, and doubles them where C follows.
+        // Each correction makes at least one more order exact, and doubles their number where C is exact too.
         for _ in 0..space.jets().monomials().order().max(1).ilog2() + 5 {
             let matrix = self.matrix(space, memory);
             if !inverse.refine_inverse_of(space, &matrix) {

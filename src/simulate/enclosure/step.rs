@@ -1,4 +1,4 @@
-//! One step of an enclosure: see the head of the module.
+//! One step of an enclosure, as described in the parent module.
 
 use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
@@ -7,7 +7,7 @@ use super::krawczyk::{self, Image};
 use super::matrix::{Models, apply_bounds, larger};
 use super::{Enclosure, EnclosureError};
 
-/// Corrections of X before its residual is taken as it is: what is left is bounded in any case.
+/// Most corrections of X; the residual that is left is bounded in any case.
 const MAX_CORRECTIONS: usize = 4;
 
 /// A correction below this (of a position, in its unit) is rounding.
@@ -75,7 +75,7 @@ impl<'s> Enclosure<'s> {
         sum
     }
 
-    /// What (q̂, v̂, w) and x become at the step's end: q₊, v₊, and the next q̂, v̂. Linear, so it serves states and columns.
+    /// (q̂, v̂, w) and x at the step's end: q₊, v₊, and the next q̂, v̂. The map is linear and serves states and columns.
     fn advance_coordinate(&self, position: &[f64], velocity: &[f64], w: &[f64], x: &[f64]) -> [Vec<f64>; 4] {
         let gains = &self.gains;
         let q = self.combine(&[(None, position), (Some(gains.b), x)]);
@@ -94,7 +94,7 @@ impl<'s> Enclosure<'s> {
         self.place(&solution, None);
         let missed = self.residual().bounds(space);
 
-        // How the solution follows the remainder, Y, at the polynomials.
+        // Y: the derivative of the solution by the remainder, at the polynomials.
         let columns = self.columns();
         let of_state = columns.part(space, 0..2 * n, 0..3 * n);
         let Slopes { by_state, .. } = self.slopes();
@@ -105,7 +105,7 @@ impl<'s> Enclosure<'s> {
         let sizes = inverse.bounds(space);
         let follow_sizes = follows.bounds(space);
 
-        // What A z and Y z do to each coordinate: q₊, v₊, q̂₊, v̂₊, w₊.
+        // The effect of A z and Y z on each coordinate: q₊, v₊, q̂₊, v̂₊, w₊.
         let (turned, moved) = self.turn(&columns, &follows);
         let moved_sizes = moved.bounds(space);
         let mut memory = self.take_memory();
@@ -142,7 +142,7 @@ impl<'s> Enclosure<'s> {
         self.place_in(&mut memory, &solution, Some(&spread_of(&found)));
         self.memory = memory;
 
-        // y = −C η + (I − C J) y, |η| ≤ `forcing`: what the first part does is known, of the second only how large it is.
+        // y = −C η + (I − C J) y, |η| ≤ `forcing`: the first part is a known map, of the second only a bound is known.
         let forced = self.force(&inverse);
         let push = inverse.part(space, 0..n, n..count);
         let rest = apply_bounds(&rest, &found);
@@ -200,12 +200,12 @@ impl<'s> Enclosure<'s> {
         sum
     }
 
-    /// The memory, to be put back: what fills it reads all else of `self`.
+    /// Takes the memory out, so that it can be filled while the rest of `self` is read.
     fn take_memory(&mut self) -> ModelMemory<'s> {
         std::mem::replace(&mut self.memory, ModelMemory::new(self.space, 0, &[]))
     }
 
-    /// Sets q₊, v₊, w₊, λ₊ in the memory from x and λ₊, with further radii (n, n, n + m) or as polynomials.
+    /// Sets q₊, v₊, w₊, λ₊ in the memory from x and λ₊, with added radii (n, n, n + m) or as polynomials.
     fn place(&mut self, solution: &Models, radii: Option<&[f64]>) {
         let mut memory = self.take_memory();
         self.place_in(&mut memory, solution, radii);
@@ -235,7 +235,7 @@ impl<'s> Enclosure<'s> {
         }
     }
 
-    /// F at what the memory holds.
+    /// F at the values in the memory.
     fn residual(&mut self) -> Models {
         let (n, space) = (self.coordinates(), self.space);
         self.memory.run(self.program.residual());
@@ -257,7 +257,7 @@ impl<'s> Enclosure<'s> {
         slopes
     }
 
-    /// ∂F at what the memory holds.
+    /// ∂F at the values in the memory.
     fn slopes_in(&self, memory: &mut ModelMemory) -> Slopes {
         let (n, space, gains) = (self.coordinates(), self.space, &self.gains);
         let program = self.program;
@@ -315,7 +315,7 @@ impl<'s> Enclosure<'s> {
         (turned, moved)
     }
 
-    /// What corrections C η of x do to the next q̂, v̂, w, in units of `scale`: 3n × (n + m).
+    /// The effect of corrections C η of x on the next q̂, v̂, w, in units of `scale`: 3n × (n + m).
     fn force(&self, inverse: &Models) -> Models {
         let (n, space) = (self.coordinates(), self.space);
         let mut forced = Models::zero(space, 3 * n, inverse.columns);
@@ -335,7 +335,7 @@ impl<'s> Enclosure<'s> {
         forced
     }
 
-    /// The next state's polynomials, frame and radii; |yᵢ| ≤ `found` apart from what `turned` has, n.
+    /// The next state's polynomials, frame and radii; |yᵢ| ≤ `found` (n) besides the part in `turned`.
     fn finish(
         &mut self,
         solution: &Models,
@@ -347,7 +347,7 @@ impl<'s> Enclosure<'s> {
         let (n, space) = (self.coordinates(), self.space);
         let radius = space.size() - 1;
         let gains = self.gains;
-        // What y does to the next q̂, v̂, w.
+        // The effect of y on the next q̂, v̂, w.
         let of_velocity = gains.c + gains.v_a * gains.a_x - gains.v_w;
         let of_position = gains.b + gains.h * gains.c + gains.q_a * gains.a_x - gains.q_w;
         let effect = [of_position.magnitude(), of_velocity.magnitude(), 1.0];

@@ -1,9 +1,9 @@
 //! Newton's iteration of one step, all lanes of a tile in lockstep.
 //!
-//! The iteration starts from w and λ extrapolated; with what the lane's first corrections were last seen to leave, one is
-//! mostly enough. The matrix is factorised at the step's beginning and kept for the first corrections; where they do not
-//! suffice, it is factorised anew for each further one. Every decision is a lane's own or counts steps and iterations, so
-//! that a sample's numbers do not depend on which others share its tile.
+//! The iteration starts from extrapolated w and λ. One correction is mostly enough, because the contraction that was last
+//! observed of the lane's first corrections is taken into account. The matrix is factorised at the step's beginning and kept
+//! for the first corrections; where they do not suffice, it is factorised again for each further one. Every decision is a
+//! lane's own or counts steps and iterations, so that a sample's numbers do not depend on the samples that share its tile.
 
 use symdiff::{Tile, Vectorise, vectorised};
 
@@ -21,25 +21,25 @@ const MAX_CORRECTIONS: usize = 12;
 /// units times the observed contraction.
 const TOLERANCE: f64 = 1e-11;
 
-/// The same for a first correction, whose contraction is only expected. What it leaves is noise in the response as a
-/// function of the parameters. Against a run that always takes two, the slider crank's Chebyshev bounds over 2 s change by
-/// 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
+/// The same for a first correction, whose contraction is only estimated. The remaining error is noise in the response as a
+/// function of the parameters. Against a run that always takes two corrections, the slider crank's Chebyshev bounds over
+/// 2 s change by 2e-12 m at 1e-15, 3e-11 at 1e-14, 2e-9 at 1e-13; those of Taylor by 2e-9 at 1e-14.
 const FIRST_TOLERANCE: f64 = 1e-14;
 
-/// Contraction that is assumed of a first correction where nothing is known about it.
+/// Contraction that is assumed of a first correction where none was observed.
 const FIRST_CONTRACTION: f64 = 0.1;
 
-/// A first correction is taken to contract no better than this times what was last seen of its lane, nor than the least.
+/// The estimated contraction of a first correction is this times the one last observed of its lane, and at least the least.
 const CONTRACTION_SAFETY: f64 = 10.0;
 const LEAST_CONTRACTION: f64 = 1e-9;
 
-/// Every so many steps nothing is taken as known, so that it is seen again.
+/// After this many steps the observed contraction is discarded, so that it is observed again.
 const STEPS_BETWEEN_LOOKS: u64 = 16;
 
 /// Corrections below this (relative positions) are round-off, whatever their contraction.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// What the iteration did; counters of the whole life of the solver.
+/// Work of the iteration, summed over all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Corrections, summed over lanes.
@@ -55,7 +55,7 @@ pub struct Newton {
     singular: Vec<bool>,
     last: Vec<f64>,
     norm: Vec<f64>,
-    /// Contraction expected of each lane's first correction.
+    /// Estimated contraction of each lane's first correction.
     contraction: Vec<f64>,
     /// w and λ when the step began.
     start: Vec<f64>,
@@ -86,7 +86,7 @@ impl Newton {
         }
     }
 
-    /// Whether a lane's last step was solved whatever its rank.
+    /// Whether a lane's last step took the rank-revealing solve.
     pub fn is_singular(&self, lane: usize) -> bool {
         self.singular[lane]
     }
@@ -109,7 +109,7 @@ impl Newton {
         self.steps += 1;
         self.iterate(program, tile, h);
         if self.pending.contains(&true) {
-            // What did not converge starts again from its prediction, with the rank-revealing solve.
+            // Lanes that did not converge start again from their prediction, with the rank-revealing solve.
             self.singular.iter_mut().zip(&self.pending).for_each(|(singular, pending)| *singular |= pending);
             self.predict(program, tile, 0, h);
             self.iterate(program, tile, h);
@@ -130,9 +130,8 @@ impl Newton {
         self.size_before = h;
     }
 
-    /// w₊ and λ₊ on the parabola (line, constant) through their values now and at the `known` steps before, where the
-    /// iteration is still to run; a redundant constraint's λ₊ from zero: what has no unique value must not have a memory
-    /// either.
+    /// Predicts w₊ and λ₊ of pending lanes on the parabola (line, constant) through their values now and at the `known` steps
+    /// before. λ₊ of a redundant constraint starts from zero: a value that is not unique must not depend on earlier steps.
     fn predict(&mut self, program: &Program, tile: &mut Tile, known: usize, h: f64) {
         let [last, second_last] = &self.before;
         let (weights, last, second_last) = match known {
@@ -149,7 +148,7 @@ impl Newton {
         }
     }
 
-    /// λ as it was when the step began, for pending lanes.
+    /// Restores λ of the step's beginning in pending lanes.
     fn restore_multipliers(&self, program: &Program, tile: &mut Tile) {
         let width = tile.width();
         let saved = &self.start[program.layout.w.len() * width..];
@@ -188,9 +187,9 @@ impl Newton {
         }
     }
 
-    /// Corrections from the matrix's numbers, for the lanes that need it. Where the first few do not suffice, a constraint
-    /// that holds to rounding is not corrected any more: beside a singular position that would move the mechanism by ε over
-    /// the distance to it, and anew by as much each time. `gain` is that of positions.
+    /// Corrections by the rank-revealing solve, for singular lanes. After the first few corrections, a constraint that holds
+    /// to rounding is not corrected any more: near a singular position each such correction would move the mechanism by ε
+    /// over the distance to it. `gain` is that of positions.
     fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64, count: usize) {
         tile.run(program.matrix());
         let coordinates = program.scale.len();
@@ -216,8 +215,8 @@ impl Newton {
         }
     }
 
-    /// Lanes whose rank-revealing solve has settled without fulfilling the constraints have not converged: least squares
-    /// also settle where they cannot be fulfilled.
+    /// Marks lanes as not converged whose rank-revealing solve has settled without fulfilling the constraints: least squares
+    /// also settle where the constraints cannot be fulfilled.
     fn reject_open_constraints(&mut self, program: &Program, tile: &mut Tile, h: f64) {
         tile.run(program.matrix());
         let gain = program.coefficients.constraint_gain(h);
@@ -260,7 +259,7 @@ impl Vectorise for Predict<'_> {
     }
 }
 
-/// Lanes with a pivot that has become too small are solved by the rank-revealing solve.
+/// Marks lanes with a pivot that is too small as singular: they take the rank-revealing solve.
 struct Watch<'a> {
     watched: &'a [Watched],
     tile: &'a Tile,
@@ -282,7 +281,7 @@ impl Vectorise for Watch<'_> {
                         *singular |= lost(inverse, pivot.largest_inverse);
                     }
                 }),
-                // Factors of lanes that do not use them are anything.
+                // Lanes that do not use this version have arbitrary factors.
                 Some(mode) if tile.lane(mode.slot).iter().any(|&value| mode.holds(value)) => {
                     for pivot in pivots {
                         let lanes = singular.iter_mut().zip(tile.lane(pivot.slot)).zip(tile.lane(mode.slot));
@@ -297,7 +296,7 @@ impl Vectorise for Watch<'_> {
     }
 }
 
-/// Adds the correction to the iterate of pending lanes and measures it in relative positions.
+/// Adds the correction to the iterate of pending lanes; its norm is in relative positions.
 struct Apply<'a> {
     program: &'a Program,
     tile: &'a mut Tile,
@@ -343,7 +342,7 @@ fn add(chosen: &[bool], change: &[f64], to: &mut [f64]) {
     }
 }
 
-/// Which lanes are done.
+/// The convergence test: lanes whose estimated error is small enough are no longer pending.
 struct TestConvergence<'a> {
     count: usize,
     norm: &'a [f64],

@@ -11,8 +11,8 @@ const RANK_TOLERANCE: f64 = 1e-9;
 const SAFE: (f64, f64) = (1e-3, 0.1);
 
 /// Solution of `matrix · x = right` where the matrix may have lost rank: entries (row, column, value), scaled symmetrically
-/// by `scale`. Pivots that are safe are eliminated sparsely, and of what is left, which is small, the smallest
-/// least-squares solution is found through its singular values. `None` where the numbers are not finite.
+/// by `scale`. Safe pivots are eliminated sparsely; the small remainder has its smallest least-squares solution, by singular
+/// values. `None` where the numbers are not finite.
 pub fn solve_rank_deficient(entries: &[(usize, usize, f64)], right: &[f64], scale: &[f64]) -> Option<Vec<f64>> {
     let finite = entries.iter().map(|(_, _, value)| value).chain(right).all(|value| value.is_finite());
     let mut left = Remainder::new(entries, right, scale);
@@ -29,7 +29,7 @@ pub fn solve_rank_deficient(entries: &[(usize, usize, f64)], right: &[f64], scal
     Some(x)
 }
 
-/// A row that has been used, with what it says about its pivot's column.
+/// An eliminated row, which gives the unknown of its pivot's column.
 struct Eliminated {
     column: usize,
     pivot: f64,
@@ -63,7 +63,7 @@ impl Remainder {
         Self { rows, columns, right, sparsest, largest }
     }
 
-    /// Takes the sparsest row with a safe pivot, on the one whose column is sparsest, out of the others.
+    /// Eliminates with the sparsest row that has a safe pivot, on the pivot whose column is sparsest.
     fn eliminate(&mut self) -> Option<Eliminated> {
         let (row, column) = loop {
             let (_, row) = self.sparsest.pop_first()?;
@@ -93,7 +93,7 @@ impl Remainder {
         Some(Eliminated { column, pivot, row: entries.into_iter().collect(), right: self.right[row] })
     }
 
-    /// Of the rows and columns left, through singular values; zero in the columns that are gone.
+    /// The solution of the remaining rows and columns by singular values; zero in the eliminated columns.
     fn smallest_solution(&self) -> Option<Vec<f64>> {
         let columns: BTreeSet<usize> = self.rows.iter().flat_map(|row| row.keys().copied()).collect();
         let columns: Vec<usize> = columns.into_iter().collect();

@@ -101,3 +101,12 @@ fn the_examples_can_be_assembled() {
         study::prepare(&description).unwrap();
     }
 }
+
+#[test]
+fn the_lists_of_the_language_are_those_of_the_program() {
+    for page in ["units", "functions", "outputs", "exit-codes"] {
+        let list = format!("--{page}");
+        let printed = Command::new(BINARY).args(["explain", &list, "--page"]).output().unwrap().stdout;
+        expect_page(&docs().join(format!("reference/{page}.md")), std::str::from_utf8(&printed).unwrap());
+    }
+}

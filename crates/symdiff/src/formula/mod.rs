@@ -17,24 +17,57 @@ use std::ops::Range;
 
 use crate::expr::{Binary, Builder, Expr, Scalar, Spline, Unary};
 
-/// Every function's name and what it is.
-pub const FUNCTIONS: [(&str, Function); 15] = [
-    ("sin", Function::Unary(Unary::Sin)),
-    ("cos", Function::Unary(Unary::Cos)),
-    ("tan", Function::Unary(Unary::Tan)),
-    ("asin", Function::Unary(Unary::Asin)),
-    ("acos", Function::Unary(Unary::Acos)),
-    ("atan", Function::Unary(Unary::Atan)),
-    ("atan2", Function::Binary(Binary::Atan2)),
-    ("sqrt", Function::Unary(Unary::Sqrt)),
-    ("exp", Function::Unary(Unary::Exp)),
-    ("log", Function::Unary(Unary::Log)),
-    ("abs", Function::Unary(Unary::Abs)),
-    ("tanh", Function::Unary(Unary::Tanh)),
-    ("sign", Function::Unary(Unary::Sign)),
-    ("min", Function::Binary(Binary::Min)),
-    ("max", Function::Binary(Binary::Max)),
+/// The functions of the language.
+pub const FUNCTIONS: [NamedFunction; 15] = [
+    NamedFunction::new("sin", Function::Unary(Unary::Sin), "x", "all x, rad", "sine"),
+    NamedFunction::new("cos", Function::Unary(Unary::Cos), "x", "all x, rad", "cosine"),
+    NamedFunction::new("tan", Function::Unary(Unary::Tan), "x", "x ≠ π/2 + kπ, rad", "tangent"),
+    NamedFunction::new("asin", Function::Unary(Unary::Asin), "x", "−1 ≤ x ≤ 1", "angle with this sine, −π/2 to π/2"),
+    NamedFunction::new("acos", Function::Unary(Unary::Acos), "x", "−1 ≤ x ≤ 1", "angle with this cosine, 0 to π"),
+    NamedFunction::new("atan", Function::Unary(Unary::Atan), "x", "all x", "angle with this tangent, −π/2 to π/2"),
+    NamedFunction::new(
+        "atan2",
+        Function::Binary(Binary::Atan2),
+        "y, x",
+        "not both 0",
+        "angle of the point (x, y), −π to π",
+    ),
+    NamedFunction::new("sqrt", Function::Unary(Unary::Sqrt), "x", "x ≥ 0", "square root"),
+    NamedFunction::new("exp", Function::Unary(Unary::Exp), "x", "all x", "exponential"),
+    NamedFunction::new("log", Function::Unary(Unary::Log), "x", "x > 0", "natural logarithm"),
+    NamedFunction::new("abs", Function::Unary(Unary::Abs), "x", "all x", "magnitude"),
+    NamedFunction::new("tanh", Function::Unary(Unary::Tanh), "x", "all x", "hyperbolic tangent"),
+    NamedFunction::new("sign", Function::Unary(Unary::Sign), "x", "all x", "−1, 0 or 1"),
+    NamedFunction::new("min", Function::Binary(Binary::Min), "a, b", "all a, b", "the smaller of two"),
+    NamedFunction::new("max", Function::Binary(Binary::Max), "a, b", "all a, b", "the larger of two"),
 ];
+
+/// A function as formulas call it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedFunction {
+    /// Its name.
+    pub name: &'static str,
+    /// What it computes.
+    pub function: Function,
+    /// Its arguments.
+    pub arguments: &'static str,
+    /// The arguments for which it has a value.
+    pub domain: &'static str,
+    /// Its value in words.
+    pub value: &'static str,
+}
+
+impl NamedFunction {
+    const fn new(
+        name: &'static str,
+        function: Function,
+        arguments: &'static str,
+        domain: &'static str,
+        value: &'static str,
+    ) -> Self {
+        Self { name, function, arguments, domain, value }
+    }
+}
 
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

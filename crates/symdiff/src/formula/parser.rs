@@ -220,9 +220,7 @@ impl Parser<'_> {
         if name == "pi" {
             return Ok(self.push(Term::Number(std::f64::consts::PI), span));
         }
-        if FUNCTIONS.iter().any(|(function, _)| *function == name)
-            || self.tables.iter().any(|(table, _)| *table == name)
-        {
+        if FUNCTIONS.iter().any(|known| known.name == name) || self.tables.iter().any(|(table, _)| *table == name) {
             return Err(SyntaxError {
                 message: format!("`{name}` is a function"),
                 span,
@@ -236,11 +234,11 @@ impl Parser<'_> {
         let table = self.tables.iter().find(|(known, _)| *known == name);
         let function = match table {
             Some((_, spline)) => Some(Function::Unary(Unary::Spline(*spline, 0))),
-            None => FUNCTIONS.iter().find(|(known, _)| *known == name).map(|(_, function)| *function),
+            None => FUNCTIONS.iter().find(|known| known.name == name).map(|known| known.function),
         };
         let Some(function) = function else {
             let known: Vec<&str> =
-                FUNCTIONS.iter().map(|(known, _)| *known).chain(self.tables.iter().map(|(known, _)| *known)).collect();
+                FUNCTIONS.iter().map(|known| known.name).chain(self.tables.iter().map(|(known, _)| *known)).collect();
             return Err(SyntaxError {
                 message: format!("unknown function `{name}`"),
                 span,

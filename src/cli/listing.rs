@@ -1,0 +1,191 @@
+//! `mbint explain --units`, `--functions`, `--outputs`, `--exit-codes`: what the language offers, from the tables of the code.
+
+use super::Failure;
+use super::console::to_json;
+use super::status::{Status, StatusDocs};
+use super::table::{Align, Table};
+use crate::elements::effects::EffectKind;
+use crate::grammar::reference::{self, FunctionDocs, OutputDocs, UnitDocs};
+
+/// A list of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Listing {
+    Units,
+    Functions,
+    Outputs,
+    ExitCodes,
+}
+
+impl Listing {
+    /// The list for people.
+    pub fn text(self) -> String {
+        match self {
+            Self::Units => text(&reference::units()),
+            Self::Functions => text(&reference::functions()),
+            Self::Outputs => text(&outputs()),
+            Self::ExitCodes => text(&Status::ALL.map(Status::docs)),
+        }
+    }
+
+    /// The list as a JSON array.
+    ///
+    /// # Errors
+    /// As [`to_json`].
+    pub fn json(self) -> Result<String, Failure> {
+        match self {
+            Self::Units => to_json(&reference::units()),
+            Self::Functions => to_json(&reference::functions()),
+            Self::Outputs => to_json(&outputs()),
+            Self::ExitCodes => to_json(&Status::ALL.map(Status::docs)),
+        }
+    }
+
+    /// The list as a page of the book.
+    pub fn page(self) -> String {
+        match self {
+            Self::Units => page(&reference::units()),
+            Self::Functions => page(&reference::functions()),
+            Self::Outputs => page(&outputs()),
+            Self::ExitCodes => page(&Status::ALL.map(Status::docs)),
+        }
+    }
+}
+
+/// The outputs of the language, those of every effect included.
+fn outputs() -> Vec<OutputDocs> {
+    let mut outputs = reference::outputs();
+    for effect in EffectKind::docs() {
+        outputs.extend(effect.sensors.into_iter().map(|(name, unit)| OutputDocs {
+            of: effect.keyword,
+            output: format!("EFFECT.{name}"),
+            unit,
+            meaning: "value and sign as in the effect's equation".to_owned(),
+        }));
+    }
+    outputs
+}
+
+/// Something listed, a row each.
+trait Row<const N: usize> {
+    const TITLE: &'static str;
+    const INTRODUCTION: &'static str;
+    const HEADINGS: [(&'static str, Align); N];
+    fn cells(&self) -> [String; N];
+}
+
+fn text<const N: usize, T: Row<N>>(rows: &[T]) -> String {
+    let mut table = Table::new(T::HEADINGS);
+    rows.iter().for_each(|row| table.row(row.cells()));
+    table.render(0)
+}
+
+/// A page of the book, which a test keeps current.
+fn page<const N: usize, T: Row<N>>(rows: &[T]) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let mut page = format!("# {}\n\n{}\n\n", T::TITLE, T::INTRODUCTION);
+    page += &line(&T::HEADINGS.map(|(heading, _)| heading.to_owned()));
+    page += &line(&T::HEADINGS.map(|(_, align)| if align == Align::Left { "---" } else { "---:" }.to_owned()));
+    rows.iter().for_each(|row| page += &line(&row.cells().map(|cell| cell.replace('|', "\\|"))));
+    page
+}
+
+/// The shortest decimal with a readable exponent: `0.001`, `1e-6`, `3.14159…` in full.
+fn number(value: f64) -> String {
+    if (1e-3..1e5).contains(&value) { value.to_string() } else { format!("{value:e}") }
+}
+
+impl Row<4> for UnitDocs {
+    const TITLE: &'static str = "Units";
+    const INTRODUCTION: &'static str = "Units are combined by `*`, `/` and `^`: `N*s/m`, `kg*m^2`, `1/s`. A percentage is \
+        only a tolerance: `2%`. `mbint explain --units` prints this list.";
+    const HEADINGS: [(&'static str, Align); 4] =
+        [("unit", Align::Left), ("in SI units", Align::Right), ("SI unit", Align::Left), ("quantity", Align::Left)];
+
+    fn cells(&self) -> [String; 4] {
+        [self.unit.to_owned(), number(self.value), self.si.clone(), self.quantity.clone()]
+    }
+}
+
+impl Row<3> for FunctionDocs {
+    const TITLE: &'static str = "Functions of formulas";
+    const INTRODUCTION: &'static str = "Formulas have `+`, `-`, `*`, `/`, `^`, parentheses, the number `pi`, and these \
+        functions. Tables of the model are functions of one argument. `mbint explain --functions` prints this list.";
+    const HEADINGS: [(&'static str, Align); 3] =
+        [("function", Align::Left), ("domain", Align::Left), ("value", Align::Left)];
+
+    fn cells(&self) -> [String; 3] {
+        [self.function.clone(), self.domain.to_owned(), self.value.to_owned()]
+    }
+}
+
+impl Row<4> for OutputDocs {
+    const TITLE: &'static str = "Outputs";
+    const INTRODUCTION: &'static str = "An output is a formula of the following names and of parameters. Names in capitals \
+        are the model's own. A body has the names that its coordinates allow: `angle` in the plane, Euler parameters in \
+        space; a joint those of its coordinates; an effect those that its own page lists. `mbint explain --outputs` prints \
+        this list.";
+    const HEADINGS: [(&'static str, Align); 4] =
+        [("of", Align::Left), ("name", Align::Left), ("unit", Align::Left), ("value, sign and frame", Align::Left)];
+
+    fn cells(&self) -> [String; 4] {
+        [self.of.to_owned(), self.output.clone(), self.unit.clone(), self.meaning.clone()]
+    }
+}
+
+impl Row<3> for StatusDocs {
+    const TITLE: &'static str = "Exit codes";
+    const INTRODUCTION: &'static str = "`mbint --help` prints the same codes. With several models or scenes the code is \
+        that of the worst. A pipe that its reader closes is no error.\n\n\
+        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file \
+        show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors \
+        are printed.";
+    const HEADINGS: [(&'static str, Align); 3] =
+        [("code", Align::Right), ("meaning", Align::Left), ("results' folder", Align::Left)];
+
+    fn cells(&self) -> [String; 3] {
+        [self.code.to_string(), self.meaning.to_owned(), self.results.to_owned()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model;
+
+    /// A spatial and a planar mechanism with everything that has outputs but effects.
+    const SPACE: &str = "
+bodies:
+  BODY: { mass: 1, inertia: [1, 1, 1], points: { POINT: [0.1, 0, 0] } }
+joints:
+  JOINT: { cylindrical: { between: [ground, BODY.POINT], axis: z } }
+outputs: { OUTPUTS }
+simulation: { duration: 0.1, step: 1e-2 }
+";
+    const PLANE: &str = "
+bodies:
+  BODY: { mass: 1, inertia: 1, points: { POINT: [0.1, 0] } }
+joints:
+  JOINT: { revolute: [ground, BODY.POINT] }
+outputs: { OUTPUTS }
+simulation: { duration: 0.1, step: 1e-2 }
+";
+
+    #[test]
+    fn every_listed_output_has_a_model_that_has_it() {
+        for OutputDocs { output, of, .. } in reference::outputs() {
+            let is_accepted = |model: &str| {
+                let text = model.replace("OUTPUTS", &format!("o: {output}"));
+                model::load_str("listing.yaml", &text, &[]).is_ok()
+            };
+            assert!(is_accepted(SPACE) || is_accepted(PLANE), "{of} {output}");
+        }
+    }
+
+    #[test]
+    fn units_have_their_values() {
+        let listed = Listing::Units.page();
+        for row in ["| mm | 0.001 | m | length |", "| rpm | 0.10471975511965977 | rad/s | angular velocity |"] {
+            assert!(listed.contains(row), "{listed}");
+        }
+    }
+}

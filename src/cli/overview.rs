@@ -1,0 +1,228 @@
+//! The overview of a run for people: methods, errors, tolerances that matter, singular configurations, files.
+
+use std::path::{Path, PathBuf};
+
+use super::console::{BOLD, count, file_names};
+use super::table::{Align, Table};
+use crate::results::{Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
+
+/// The largest width and error of each band.
+fn errors(errors: &[ErrorSummary]) -> String {
+    /// Rows that fit a screen.
+    const MOST: usize = 24;
+    let mut table = Table::new([
+        ("bounds", Align::Left),
+        ("largest width", Align::Right),
+        ("error", Align::Right),
+        ("of the surrogate", Align::Right),
+        ("of the steps", Align::Right),
+    ]);
+    for error in errors.iter().take(MOST) {
+        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
+        let name = format!("{}.{}", error.output, error.method);
+        table.row([name, number(error.width), number(error.error), number(error.surrogate), number(error.time)]);
+    }
+    match errors.len() {
+        0 => String::new(),
+        n if n > MOST => format!("{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
+        _ => format!("{}\n", table.render(2)),
+    }
+}
+
+/// The three parameters that contribute most to each output.
+fn contributions(contributions: &[ContributionSummary]) -> String {
+    const MOST: usize = 3;
+    let mut text = String::new();
+    let varies = |contribution: &&ContributionSummary| contribution.total > 0.0;
+    for of_output in contributions.chunk_by(|a, b| a.output == b.output) {
+        let share = |contribution: &ContributionSummary| {
+            format!("{} {:.0} %", contribution.parameter, 100.0 * contribution.total)
+        };
+        let shares: Vec<String> = of_output.iter().filter(varies).take(MOST).map(share).collect();
+        // A single parameter has all of the variance.
+        if of_output.len() > 1 && !shares.is_empty() {
+            text += &format!("  tolerances that matter for {}: {}\n", of_output[0].output, shares.join(", "));
+        }
+    }
+    if text.is_empty() { text } else { text + "\n" }
+}
+
+/// Which bounds are unreliable, and from when.
+pub(super) fn unreliable(summary: &Summary) -> Option<String> {
+    const MOST: usize = 4;
+    let mut bands: Vec<(f64, String)> = summary
+        .errors
+        .iter()
+        .filter_map(|error| Some((error.unresolved_from?, format!("{}.{}", error.output, error.method))))
+        .collect();
+    let total = bands.len();
+    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    bands.truncate(MOST);
+    let (from, first) = bands.first()?;
+    let others: String = bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {time} s")).collect();
+    let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
+    let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
+    Some(format!("bounds of `{first}` are unreliable from {from} s{others}{more}: {help}"))
+}
+
+/// Singular configurations, and reactions that equilibrium does not determine.
+fn singular(summary: &Summary) -> String {
+    const MOST: usize = 4;
+    let mut text = String::new();
+    let passes = &summary.singular_configurations;
+    if !passes.is_empty() {
+        let times: Vec<String> = passes.iter().take(MOST).map(|pass| format!("{:.6}", pass.time)).collect();
+        let more = if passes.len() > MOST { ", …" } else { "" };
+        let passed = count(passes.len(), "singular configuration", "singular configurations");
+        text += &format!(
+            "  {passed}, at t = {}{more} s: {} depend on other constraints there\n",
+            times.join(", "),
+            named(&passes[0].constraints)
+        );
+    }
+    if !summary.undetermined_outputs.is_empty() {
+        text += &format!(
+            "  not unique: {}. Equilibrium does not determine these reactions, because {} are redundant; \
+             their multipliers are set to 0\n",
+            named(&summary.undetermined_outputs),
+            named(&summary.redundant_constraints)
+        );
+    }
+    text
+}
+
+/// The first names, and the number of the others.
+fn named(names: &[String]) -> String {
+    const MOST: usize = 6;
+    let more = if names.len() > MOST { format!(" and {} more", names.len() - MOST) } else { String::new() };
+    format!("{}{more}", names[..names.len().min(MOST)].join(", "))
+}
+
+/// The part of the box that the bounds cover, if it is not all of it.
+pub(super) fn excluded(bounds: &Bounds, summary: &Summary) -> Option<String> {
+    let least = bounds.covered.iter().copied().fold(1.0, f64::min);
+    if least == 1.0 {
+        return None;
+    }
+    let hull = |(place, parameter): (usize, &ParameterSummary)| {
+        let ends = summary.pieces.iter().map(|piece| (piece.lower[place], piece.upper[place]));
+        let (lower, upper) = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+        let narrower = lower > parameter.lower || upper < parameter.upper;
+        narrower.then(|| format!(", with {} from {lower} to {upper}", parameter.name))
+    };
+    let hulls: String = summary.parameters.iter().enumerate().filter_map(hull).collect();
+    let pieces = count(summary.pieces.len(), "piece", "pieces");
+    let times = bounds.times.iter().zip(&bounds.covered);
+    let ended: Vec<&f64> =
+        times.filter(|(_, share)| **share < bounds.covered[0]).map(|(time, _)| time).take(1).collect();
+    let first = 100.0 * bounds.covered[0];
+    let later = ended
+        .first()
+        .map_or(String::new(), |time| format!(", and less from {time} s on, {:.3} % at the end", 100.0 * least));
+    Some(format!("the bounds cover {first:.3} % of the box ({pieces}{hulls}){later}: see the column `covered`"))
+}
+
+/// What was run, how reliable the results are and where they are, for people.
+pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> String {
+    let mut table = Table::new([
+        ("method", Align::Left),
+        ("simulations", Align::Right),
+        ("steps", Align::Right),
+        ("Newton iterations", Align::Right),
+        ("seconds", Align::Right),
+    ]);
+    for method in &summary.methods {
+        table.row([
+            method.method.clone(),
+            method.simulations.to_string(),
+            method.steps.to_string(),
+            method.newton_iterations.to_string(),
+            method.seconds.map_or_else(|| "–".to_owned(), |seconds| format!("{seconds:.3}")),
+        ]);
+    }
+    let mut text = format!(
+        "{BOLD}{}{BOLD:#}: {}, {}, {}\n\n{}\n",
+        summary.model,
+        count(summary.coordinates, "coordinate", "coordinates"),
+        count(summary.constraints, "constraint", "constraints"),
+        count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
+        table.render(2),
+    );
+    text += &errors(&summary.errors);
+    text += &contributions(&summary.contributions);
+    for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
+        let times = match method.rank_revealing_solves {
+            1 => "once".to_owned(),
+            times => format!("{times} times"),
+        };
+        text += &format!("  {}: passed a singular configuration {times}\n", method.method);
+    }
+    text += &singular(summary);
+    text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::MethodSummary;
+
+    #[test]
+    fn the_overview_is_aligned() {
+        let method = |method: &str, simulations, seconds, rank_revealing_solves| MethodSummary {
+            method: method.into(),
+            simulations,
+            steps: 2000 * simulations,
+            newton_iterations: 4013 * simulations as u64,
+            rank_revealing_solves,
+            order: None,
+            boxes: None,
+            seconds,
+        };
+        let summary = Summary {
+            model: "slider_crank".into(),
+            mbint: "0.1.0".into(),
+            coordinates: 7,
+            constraints: 6,
+            degrees_of_freedom: 1,
+            redundant_constraints: vec![],
+            undetermined_outputs: vec![],
+            singular_at_start: vec![],
+            singular_configurations: vec![],
+            alpha: -0.1,
+            duration: 2.0,
+            parameters: vec![],
+            methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
+            errors: vec![ErrorSummary {
+                output: "x3".into(),
+                method: "scan".into(),
+                width: 0.2,
+                error: 2e-3,
+                surrogate: f64::NAN,
+                time: 1.5e-3,
+                unresolved_from: None,
+            }],
+            contributions: vec![],
+            pieces: vec![],
+            not_simulated: vec![],
+            subsystems: vec![],
+            failure: None,
+        };
+        let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
+        let text = overview(&summary, Path::new("results/slider_crank"), &files);
+        let plain = anstream::adapter::strip_str(&text).to_string();
+        insta::assert_snapshot!(plain, @r"
+        slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
+
+          method   simulations    steps  Newton iterations  seconds
+          nominal            1     2000               4013    0.004
+          scan             900  1800000            3611700        –
+
+          bounds   largest width    error  of the surrogate  of the steps
+          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3
+
+          scan: passed a singular configuration 12 times
+          results/slider_crank: bounds.csv, x3.svg
+        ");
+    }
+}

@@ -1,0 +1,69 @@
+//! Exit codes: one table, from which the process' status, `--help` and the reference page follow.
+
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+/// How a command ended; the worse, the greater.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Status {
+    Done,
+    Unresolved,
+    Failed,
+    Interrupted,
+    Wrong,
+}
+
+/// An exit code, its meaning and what the results' folder then contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub(super) struct StatusDocs {
+    pub code: u8,
+    pub meaning: &'static str,
+    pub results: &'static str,
+}
+
+impl Status {
+    /// All of them, by their codes.
+    pub const ALL: [Self; 5] = [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::Interrupted];
+
+    pub const fn docs(self) -> StatusDocs {
+        let (code, meaning, results) = match self {
+            Self::Done => (0, "success", "all results"),
+            Self::Failed => (
+                1,
+                "a run failed, or a bound ended early; the message says where",
+                "finished results; the rest is `NaN`",
+            ),
+            Self::Wrong => (2, "the command or a model has errors; nothing was run", "nothing is written"),
+            Self::Unresolved => (
+                3,
+                "success, but at some time no method gives reliable bounds of an output",
+                "all results; unreliable rows are marked",
+            ),
+            // 128 and SIGINT's number, as a shell reports it.
+            Self::Interrupted => (
+                130,
+                "interrupted by Ctrl-C; a second Ctrl-C ends the program at once",
+                "finished results; the rest is `NaN`",
+            ),
+        };
+        StatusDocs { code, meaning, results }
+    }
+
+    pub const fn code(self) -> u8 {
+        self.docs().code
+    }
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(status.code())
+    }
+}
+
+/// The exit codes for `--help`.
+pub(super) fn help() -> String {
+    let line = |status: Status| format!("  {}  {}\n", status.code(), status.docs().meaning);
+    let lines: String = Status::ALL.map(line).concat();
+    format!("Exit codes:\n{lines}\nBegin with `mbint new NAME`, which writes a small model to change.")
+}

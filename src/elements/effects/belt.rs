@@ -1,0 +1,123 @@
+//! An endless belt or chain between two pulleys: two strands that pull, and do not push.
+//!
+//! ```text
+//! u = r₁ θ₁ − σ r₂ (θ₂ − offset)          m, σ = 1 of an open belt, −1 of a crossed one
+//! x₁ = F₀/k + ΔL + u,   x₂ = F₀/k + ΔL − u          stretch of the strand that pulls against θ₁, and of the other
+//! Tᵢ = ⟨k p(xᵢ) + c p'(xᵢ) ẋᵢ⟩,   V = k Σ ∫p dx          N, J
+//! τ₁ = −r₁ (T₁ − T₂),   τ₂ = σ r₂ (T₁ − T₂)          N m
+//! ```
+//!
+//! p is the positive part with its corner rounded (`positive_part`). The belt does not slip: while both strands are taut and at rest,
+//! T₁ − T₂ is the torque over the radius, T₁ + T₂ = 2 F₀, and θ₂ follows σ (r₁/r₂) θ₁ but for the stretch u. With `centers` the
+//! strands also pull the shafts together, and stretch as the centres part:
+//!
+//! ```text
+//! L = √(d² − (r₁ − σ r₂)²),   ΔL = L(d) − L(distance),   F = (T₁ + T₂) d/L along the line of centres          m, N
+//! ```
+//!
+//! Angles are those of two bodies about z, or of two joints: then the line of centres may turn with the joints' first bodies.
+
+use mbint_derive::{Choice, Element};
+use symdiff::{Binary, Formula};
+
+use super::{ForceElement, Sensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::{Checked, Fields, JointCoordinate, Measure, OnJoint, PointRef, Reader, SymbolTable, Turning};
+
+/// Stretch over which a strand becomes taut, over the first radius.
+const TAUT: f64 = 1e-4;
+
+/// An endless belt or chain between two pulleys, without slip.
+#[derive(Clone, Debug, Element)]
+#[element(
+    keyword = "belt",
+    what = "a belt",
+    equation = "Tᵢ = ⟨k p(xᵢ) + c p'(xᵢ) ẋᵢ⟩, x = F₀/k + ΔL ± (r₁ θ₁ − σ r₂ (θ₂ − offset))",
+    equation = "τ₁ = −r₁ (T₁ − T₂), τ₂ = σ r₂ (T₁ − T₂), σ = 1 of an open belt, −1 of a crossed one",
+    source = "Johnson, Contact Mechanics (1985), ch. 8; without slip",
+    example = "{ between: [pinion, wheel], first_radius: 20 mm, second_radius: 50 mm, stiffness: 1e5, damping: 20, preload: 200 N }",
+    checked
+)]
+pub struct Belt {
+    /// Two bodies (their angles about z) or two joints.
+    pub between: [Turning; 2],
+    /// Of the first pulley.
+    #[quantity(unit = "m", constant, positive)]
+    pub first_radius: Formula,
+    /// Of the second pulley.
+    #[quantity(unit = "m", constant, positive)]
+    pub second_radius: Formula,
+    /// How the strands run.
+    #[key(default = Run::Open)]
+    pub run: Run,
+    /// Angle of the second where that of the first is zero.
+    #[quantity(unit = "rad", constant, default = 0)]
+    pub offset: Formula,
+    /// Of each strand: tension by stretch.
+    #[quantity(unit = "N/m", constant, positive)]
+    pub stiffness: Formula,
+    /// Of each strand while taut: tension by rate of stretch.
+    #[quantity(unit = "N*s/m", default = 0)]
+    pub damping: Formula,
+    /// Tension of both strands where no torque is carried.
+    #[quantity(unit = "N", constant, nonnegative, default = 0)]
+    pub preload: Formula,
+    /// Centres of the pulleys, which the strands pull together; each `body.point` or `body`.
+    #[key(otherwise = "the shafts do not feel the belt, and their distance does not change it")]
+    pub centers: Option<[PointRef; 2]>,
+    /// Of the centres, where the preload holds; goes with `centers`.
+    #[quantity(unit = "m", constant, positive)]
+    pub distance: Option<Formula>,
+    /// Stretch over which a strand becomes taut, either way.
+    #[quantity(
+        unit = "m",
+        constant,
+        positive,
+        default_with("a ten-thousandth of `first_radius`", Formula::number(TAUT).combined(Binary::Mul, &first_radius))
+    )]
+    pub transition: Formula,
+}
+
+/// How the strands of a belt run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Choice)]
+pub enum Run {
+    /// Outside: both pulleys turn the same way.
+    Open,
+    /// Crossed between the pulleys: they turn against one another.
+    Crossed,
+}
+
+impl Belt {
+    /// Tension of the strand that pulls against the first angle.
+    pub const FIRST_TENSION: Measure = Measure::of_force("first_tension");
+    /// Tension of the other strand.
+    pub const SECOND_TENSION: Measure = Measure::of_force("second_tension");
+}
+
+impl ForceElement for Belt {
+    const SENSORS: &'static [Sensor] =
+        &[(Self::FIRST_TENSION, Dimension::FORCE), (Self::SECOND_TENSION, Dimension::FORCE)];
+
+    fn coordinates(&self) -> Vec<OnJoint> {
+        let joint = |turning: &Turning| match turning {
+            Turning::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
+            Turning::Body(_) => None,
+        };
+        self.between.iter().filter_map(joint).collect()
+    }
+}
+
+impl Checked for Belt {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        match ["centers", "distance"].map(|key| fields.get(key).is_some()) {
+            [true, false] => {
+                reader.required(fields, "distance");
+            }
+            [false, true] => {
+                let message = "`distance` goes with `centers`, the centres of the pulleys";
+                reader.error(fields.key_span("distance"), message, None);
+            }
+            _ => {}
+        }
+    }
+}
