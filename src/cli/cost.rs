@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::args::CostArgs;
 use super::console::{BOLD, Console, count, file_names};
-use super::progress::Progress;
 use super::job::set_once;
+use super::progress::Progress;
 use super::run::results_of;
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};

@@ -9,7 +9,7 @@ use super::error::ExportError;
 use super::files::unique_stems;
 use super::folder::AtomicFiles;
 use super::overlay::{SceneBounds, overlay_svg};
-use crate::results::{Bounds, OutputBounds};
+use crate::results::OutputBounds;
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
 ///
@@ -79,7 +79,7 @@ fn shared<'a>(scenes: &[SceneBounds<'a>]) -> Vec<&'a str> {
 mod tests {
     use super::*;
     use crate::numerics::BandError;
-    use crate::results::{Band, Method};
+    use crate::results::{Band, Bounds, Method};
 
     fn output(name: &str, nominal: &[f64], bands: Vec<Band>) -> OutputBounds {
         OutputBounds { name: name.into(), unit: "m".into(), nominal: nominal.to_vec(), bands }
