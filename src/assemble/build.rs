@@ -5,8 +5,9 @@ use symdiff::{Binary, Builder, Expr};
 
 use crate::model::{Description, Formulation};
 
+use super::acting::Acting;
+use super::applied_forces::AppliedForces;
 use super::body::{Body, EULER, Turn};
-use super::effects::{self, Loads};
 use super::error::BuildError;
 use super::joints;
 use super::mechanism::Mechanism;
@@ -106,15 +107,15 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         }
     }
 
-    let mut loads = Loads::new(g, mechanism.bodies.len());
+    let mut applied = AppliedForces::new(g, mechanism.bodies.len());
     let mut effects = Vec::new();
     for (index, effect) in description.effects.iter().enumerate() {
         let nodes = g.len();
-        loads.begin();
-        effects::apply(g, &mechanism, &mut loads, &effect.kind)?;
-        let measured = loads.measured().iter().map(|&(measure, value)| ((index, measure), value));
+        applied.begin();
+        effect.kind.apply(&mut Acting { g, m: &mechanism, applied: &mut applied })?;
+        let measured = applied.measured().iter().map(|&(measure, value)| ((index, measure), value));
         mechanism.measures.extend(measured);
-        let forces = loads.coordinates_touched(&mechanism);
+        let forces = applied.coordinates_touched(&mechanism);
         if forces == 0 {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
@@ -124,12 +125,12 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         effects.push(EffectInfo { name, kind, forces, expressions: g.len() - nodes, enclosed });
     }
     let mut mass = Vec::new();
-    let mut force = loads.generalised(g, &mechanism);
+    let mut force = applied.generalised(g, &mechanism);
     // What acts only sometimes is summed apart, so that nothing of it is computed where nothing acts.
-    let touching = loads.conditions().into_iter().reduce(|a, b| g.binary(Binary::Max, a, b));
+    let touching = applied.conditions().into_iter().reduce(|a, b| g.binary(Binary::Max, a, b));
     let mut sometimes = vec![g.constant(0.0); force.len()];
     if let Some(touching) = touching {
-        let guarded = loads.guarded(g).generalised(g, &mechanism);
+        let guarded = applied.guarded(g).generalised(g, &mechanism);
         sometimes = g.assume(&guarded, touching, true);
         for (total, &part) in force.iter_mut().zip(&sometimes) {
             let part = g.only_where(touching, part);
@@ -145,8 +146,8 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         inertia[row] = g.add(inertia[row], part);
     }
     if !mechanism.tree.is_absolute() {
-        let carried = recursion::inertial_forces(g, &mechanism, loads.field);
-        let all = loads.with_guarded(g);
+        let carried = recursion::inertial_forces(g, &mechanism, applied.field);
+        let all = applied.with_guarded(g);
         mechanism.react(g, &all, &carried, &closures);
         for (total, part) in inertia.iter_mut().zip(carried.generalised) {
             *total = g.add(*total, part);
@@ -160,7 +161,7 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
         mass = mass_matrix(g, &inertia, &mechanism.w);
         mechanism.bending = mechanism.kinetic_energy_of_beams(g)?;
     }
-    mechanism.potentials = loads.potentials;
+    mechanism.potentials = applied.potentials;
     mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
 
     let outputs = mechanism.outputs(g)?;

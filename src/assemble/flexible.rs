@@ -24,8 +24,8 @@ use symdiff::{Builder, Expr};
 
 use crate::model::{Coordinate, LineMass, StartValue, TimeOrder};
 
+use super::applied_forces::AppliedForces;
 use super::body::MaterialPoint;
-use super::effects::Loads;
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism};
 use super::space::{self, Vector};
@@ -80,7 +80,7 @@ impl Mechanism<'_> {
 
     /// Generalised inertial forces of all beams, n: their part of M w, with what depends on velocities.
     pub fn inertia_of_beams(&self, g: &Builder) -> Result<Vec<Expr>, BuildError> {
-        let mut loads = Loads::new(g, self.bodies.len());
+        let mut applied = AppliedForces::new(g, self.bodies.len());
         for element in self.elements(g)? {
             let accelerations = element.end_values(g, |g, element, end| {
                 let (point, axis) = (&element.ends[end], element.axes[end]);
@@ -93,10 +93,10 @@ impl Mechanism<'_> {
             });
             let momenta = element.momenta(g, &accelerations);
             for end in 0..2 {
-                element.push(g, &mut loads, end, momenta[2 * end], momenta[2 * end + 1]);
+                element.push(g, &mut applied, end, momenta[2 * end], momenta[2 * end + 1]);
             }
         }
-        Ok(loads.generalised(g, self))
+        Ok(applied.generalised(g, self))
     }
 
     /// T of all beams, J.
@@ -119,7 +119,7 @@ impl Mechanism<'_> {
     }
 
     /// Adds the weights of all beams in a uniform field, with their potential energy.
-    pub fn weigh_beams(&self, g: &Builder, loads: &mut Loads, field: Vector) -> Result<(), BuildError> {
+    pub fn weigh_beams(&self, g: &Builder, applied: &mut AppliedForces, field: Vector) -> Result<(), BuildError> {
         for element in self.elements(g)? {
             let square = g.mul(element.length, element.length);
             let (whole, bent) = (g.mul(element.mass, element.length), g.mul(element.mass, square));
@@ -130,12 +130,12 @@ impl Mechanism<'_> {
                 let lever = g.scale(side, twelfth);
                 let turning = space::scale(g, lever, field);
                 let lever = space::dot(g, turning, element.axes[end]);
-                element.push_by(g, loads, end, weight, turning);
+                element.push_by(g, applied, end, weight, turning);
                 let height = space::dot(g, weight, element.ends[end].position);
                 let sum = g.add(height, lever);
                 potential = g.sub(potential, sum);
             }
-            loads.add_potential(g, self, &field, potential);
+            applied.add_potential(g, self, &field, potential);
         }
         Ok(())
     }
@@ -202,16 +202,16 @@ impl Element {
     }
 
     /// What does F · δr + G · L δt for every motion of an end.
-    fn push(&self, g: &Builder, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
+    fn push(&self, g: &Builder, applied: &mut AppliedForces, end: usize, force: Vector, turning: Vector) {
         let turning = space::scale(g, self.length, turning);
-        self.push_by(g, loads, end, force, turning);
+        self.push_by(g, applied, end, force, turning);
     }
 
     /// What does F · δr + G · δt.
-    fn push_by(&self, g: &Builder, loads: &mut Loads, end: usize, force: Vector, turning: Vector) {
+    fn push_by(&self, g: &Builder, applied: &mut AppliedForces, end: usize, force: Vector, turning: Vector) {
         let across = space::perpendicular(g, self.axes[end]);
         let (zero, moment) = (g.constant(0.0), space::dot(g, across, turning));
-        loads.add_force(g, &self.ends[end], force);
-        loads.add_torque_pair(g, 0, self.ends[end].body, [zero, zero, moment]);
+        applied.add_force(g, &self.ends[end], force);
+        applied.add_torque_pair(g, 0, self.ends[end].body, [zero, zero, moment]);
     }
 }

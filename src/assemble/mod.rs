@@ -1,7 +1,7 @@
 //! Description → [`System`]: the equations of motion as expressions.
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `body`), constraints
-//! (`joints`), applied forces (`effects`), inertia, outputs, and where the motion starts (`start`, `placement` in the plane,
+//! (`joints`), applied forces (`applied_forces`), inertia, outputs, and where the motion starts (`start`, `placement` in the plane,
 //! `pose` in space).
 //!
 //! | symbol  | meaning                                   | unit                       |
@@ -13,11 +13,12 @@
 //! | s, R s  | point in the body's, in the ground's axes | m                          |
 //! | ã b, a⊥ | a × b;  (−a_y, aₓ), a turned by π/2       |                            |
 
+mod acting;
+mod applied_forces;
 mod body;
 mod build;
 mod carried;
 mod coordinates;
-mod effects;
 mod flexible;
 mod formulation;
 mod inertia;

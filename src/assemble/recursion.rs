@@ -23,8 +23,8 @@ use symdiff::{Builder, Expr};
 
 use crate::grammar::JointCoordinate;
 
+use super::applied_forces::AppliedForces;
 use super::body::{Body, EULER, Turn};
-use super::effects::Loads;
 use super::joints::Reaction;
 use super::mechanism::Mechanism;
 use super::rotation;
@@ -208,19 +208,19 @@ impl Mechanism<'_> {
     /// The reactions of the joints that carry, in the ground's axes: what moves a body and all that it carries, less the
     /// forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates a joint
     /// has none.
-    pub fn react(&mut self, g: &Builder, loads: &Loads, forces: &InertialForces, closures: &[usize]) {
-        let mut loads = loads.clone();
+    pub fn react(&mut self, g: &Builder, applied: &AppliedForces, forces: &InertialForces, closures: &[usize]) {
+        let mut applied = applied.clone();
         for &joint in closures {
             let Reaction { force, torque, .. } = self.reactions[joint];
             let Some([first, second]) = self.description.joints[joint].kind.between() else { continue };
             let place = self.point(g, second);
-            loads.add_force(g, &place, force);
+            applied.add_force(g, &place, force);
             let at_first = self.carried_along(g, first.body, place.position);
             let opposite = space::neg(g, force);
-            loads.add_force(g, &at_first, opposite);
-            loads.add_torque_pair(g, first.body, second.body, torque);
+            applied.add_force(g, &at_first, opposite);
+            applied.add_torque_pair(g, first.body, second.body, torque);
         }
-        let applied = loads.carried_on(g, self);
+        let applied = applied.carried_on(g, self);
         for &index in self.tree.order.iter().filter(|&&index| !self.tree.merges(index)) {
             let body = &self.bodies[index];
             let (Some(carried), Some(carrier)) = (&body.carried, self.tree.carriers[index]) else { continue };

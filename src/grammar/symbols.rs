@@ -238,6 +238,13 @@ pub struct OnJoint {
     pub coordinate: JointCoordinate,
 }
 
+impl OnJoint {
+    /// The angle of a joint.
+    pub fn angle(joint: usize) -> Self {
+        Self { joint, coordinate: JointCoordinate::Angle }
+    }
+}
+
 /// Something that an effect measures, by its name; elements may have their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Measure {

@@ -13,9 +13,11 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
-use super::{ForceElement, Sensor};
+use super::positive_part::PositivePart;
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{JointCoordinate, Measure, OnJoint, Turning};
+use crate::grammar::{JointCoordinate, Measure, OnJoint, TimeOrder, Turning};
+use crate::multibody::BuildError;
 
 /// Angle over which teeth come to bear, over the play.
 const BEARING: f64 = 1e-2;
@@ -70,5 +72,31 @@ impl ForceElement for Backlash {
             Turning::Body(_) => None,
         };
         self.between.iter().filter_map(joint).collect()
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let (ratio, offset) = (forces.value(&self.ratio)?, forces.value(&self.offset)?);
+        let (play, corner) = (forces.value(&self.backlash)?, forces.value(&self.transition)?);
+        let (stiffness, damping) = (forces.value(&self.stiffness)?, forces.value(&self.damping)?);
+        let [place, rate] = [TimeOrder::Position, TimeOrder::Velocity].map(|order| {
+            let [first, second] = self.between.map(|of| forces.angle(of, order));
+            second - ratio * first
+        });
+        let place = place - offset;
+        let half = 0.5 * play;
+        let (ahead, behind) = (place - half, -place - half);
+        // |x| − b/2 + ε
+        let bearing_at = place.abs() - (half - corner);
+        forces.only_where(bearing_at);
+        let [ahead, behind] = [ahead, behind].map(|depth| PositivePart::of(depth, corner));
+        let torque = stiffness * (ahead.value - behind.value) + damping * (ahead.slope + behind.slope) * rate;
+        let (back, forth) = (-torque, ratio * torque);
+        forces.torque_about(self.between[0], forth)?;
+        forces.torque_about(self.between[1], back)?;
+        let torque = torque.only_where(bearing_at);
+        let potential = (stiffness * (ahead.integral + behind.integral)).only_where(bearing_at);
+        forces.potential(&[stiffness, play, corner, ratio, offset], potential);
+        forces.sensors([(Measure::ANGLE, place), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
+        Ok(())
     }
 }

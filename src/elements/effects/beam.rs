@@ -16,11 +16,12 @@
 //! and π. A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, LineMass, Sensor};
+use super::{ForceElement, Forces, LineMass, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::multibody::{BuildError, Vector};
 
 /// A massless beam of the plane that bends between two bodies.
 #[derive(Clone, Debug, Element)]
@@ -85,6 +86,88 @@ impl ForceElement for Beam {
         let Flexible { body, mass_per_length } = self.flexible.as_ref()?;
         Some(LineMass { body, between: self.between, axis: &self.axis, length: &self.length, mass_per_length })
     }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let (free, damping) = (forces.value(&self.length)?, forces.value(&self.damping)?);
+        let (axial, bending) = (forces.value(&self.axial_stiffness)?, forces.value(&self.bending_stiffness)?);
+        let (axial, bending) = (axial / free, bending / free);
+        let [a, b] = self.between.map(|point| forces.point(point));
+        let (line, growth) = (b.position - a.position, b.velocity - a.velocity);
+        let length = line.norm();
+        let chord = line / length;
+        let across = chord.perpendicular();
+        let rate = chord.dot(growth);
+        let turning = across.dot(growth) / length;
+
+        let ends = self.between.map(|end| self.bent(forces, end, line, turning));
+        let [first, second] = ends;
+        let [first, second] = [first?, second?];
+        // ∂e/∂φ₁, ∂e/∂φ₂
+        let thirtieth = 1.0 / 30.0 * free;
+        let gradient = [(first, second), (second, first)].map(|(own, other)| thirtieth * (4.0 * own.angle - other.angle));
+        // A form of second degree is half of its gradient times what it is of.
+        let bow = 0.5 * sum_of_products(gradient, [first.angle, second.angle]);
+        let stretch = length - free + bow;
+        let stretching = rate + sum_of_products(gradient, [first.rate, second.rate]);
+        let tension = axial * (stretch + damping * stretching);
+        let felt = [first, second].map(|end| end.angle + damping * end.rate);
+        let mut moments = [[4.0, 2.0], [2.0, 4.0]].map(|row| bending * (row[0] * felt[0] + row[1] * felt[1]));
+        for (moment, slope) in moments.iter_mut().zip(gradient) {
+            *moment += tension * slope;
+        }
+
+        let shear = (moments[0] + moments[1]) / length;
+        let (pull, lift) = (tension * chord, shear * across);
+        forces.between(&a, &b, lift - pull);
+        let zero = forces.graph().number(0.0);
+        for (point, moment) in self.between.into_iter().zip(moments) {
+            forces.torque(0, point.body, [zero, zero, -moment].into());
+        }
+
+        let stretched = 0.5 * (axial * (stretch * stretch));
+        let both = first.angle + second.angle;
+        let (whole, mixed) = (both * both, first.angle * second.angle);
+        let bent = 2.0 * (bending * (whole - mixed));
+        forces.potential(&[axial, bending, free], stretched + bent);
+        let at_start = -moments[0];
+        forces.sensors([
+            (Measure::LENGTH, length),
+            (Measure::FORCE, tension),
+            (Measure::TORQUE, moments[1]),
+            (Measure::START_TORQUE, at_start),
+        ]);
+        Ok(())
+    }
+}
+
+/// The rotation of an end against the chord.
+#[derive(Clone, Copy)]
+struct End<'g> {
+    /// φ, rad
+    angle: Scalar<'g>,
+    /// φ̇, rad/s
+    rate: Scalar<'g>,
+}
+
+impl Beam {
+    /// An end against the chord, which turns at a rate.
+    fn bent<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+        end: PointRef,
+        line: Vector<'g>,
+        turning: Scalar<'g>,
+    ) -> Result<End<'g>, BuildError> {
+        let axis = forces.rotated(end.body, forces.prescribed_vector(&self.axis)?);
+        let (along, beside) = (line.dot(axis), line.cross(axis)[2]);
+        let angle = beside.atan2(along);
+        Ok(End { angle, rate: forces.angular_velocity(end.body)[2] - turning })
+    }
+}
+
+/// a₁ b₁ + a₂ b₂
+fn sum_of_products<'g>(a: [Scalar<'g>; 2], b: [Scalar<'g>; 2]) -> Scalar<'g> {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 impl Checked for Beam {

@@ -20,9 +20,11 @@
 use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};
 
-use super::{ForceElement, Sensor};
+use super::positive_part::{PositivePart, clipped};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Fields, JointCoordinate, Measure, OnJoint, PointRef, Reader, SymbolTable, Turning};
+use crate::grammar::{Checked, Fields, JointCoordinate, Measure, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Turning};
+use crate::multibody::BuildError;
 
 /// Stretch over which a strand becomes taut, over the first radius.
 const TAUT: f64 = 1e-4;
@@ -104,6 +106,61 @@ impl ForceElement for Belt {
             Turning::Body(_) => None,
         };
         self.between.iter().filter_map(joint).collect()
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let radius = [forces.value(&self.first_radius)?, forces.value(&self.second_radius)?];
+        let (stiffness, damping) = (forces.value(&self.stiffness)?, forces.value(&self.damping)?);
+        let (preload, corner) = (forces.value(&self.preload)?, forces.value(&self.transition)?);
+        // −σ r₂
+        let opposite = match self.run {
+            Run::Open => -radius[1],
+            Run::Crossed => radius[1],
+        };
+        let [first, second] =
+            self.between.map(|pulley| [TimeOrder::Position, TimeOrder::Velocity].map(|order| forces.angle(pulley, order)));
+        let shift = radius[0] * first[0] + opposite * (second[0] - forces.value(&self.offset)?);
+        let rate = radius[0] * first[1] + opposite * second[1];
+
+        let mut parting = preload / stiffness;
+        let mut parting_rate = forces.graph().number(0.0);
+        let mut line = None;
+        if let (Some(centers), Some(distance)) = (self.centers, &self.distance) {
+            let [a, b] = centers.map(|point| forces.point(point));
+            let offset = b.position - a.position;
+            let across = (radius[0] + opposite) * (radius[0] + opposite);
+            let strand = (offset.dot(offset) - across).sqrt();
+            let distance = forces.value(distance)?;
+            parting += strand - (distance * distance - across).sqrt();
+            // ∂L/∂r_B
+            let direction = offset / strand;
+            parting_rate = direction.dot(b.velocity - a.velocity);
+            line = Some((a, b, direction));
+        }
+        // The longer strand is taut.
+        let taut = parting + shift.abs() + corner;
+        forces.only_where(taut);
+        let strand = |stretch, rate| {
+            let taut = PositivePart::of(stretch, corner);
+            (clipped(stiffness * taut.value + damping * taut.slope * rate), stiffness * taut.integral)
+        };
+        let (first, first_energy) = strand(parting + shift, parting_rate + rate);
+        let (second, second_energy) = strand(parting - shift, parting_rate - rate);
+
+        let carried = second - first;
+        for (pulley, arm) in self.between.into_iter().zip([radius[0], opposite]) {
+            forces.torque_about(pulley, arm * carried)?;
+        }
+        if let Some((a, b, direction)) = line {
+            forces.between(&b, &a, (first + second) * direction);
+        }
+        let coefficients = [stiffness, preload, corner, radius[0], radius[1]];
+        forces.potential(&coefficients, (first_energy + second_energy).only_where(taut));
+        forces.sensors([
+            (Self::FIRST_TENSION, first.only_where(taut)),
+            (Self::SECOND_TENSION, second.only_where(taut)),
+        ]);
+        Ok(())
     }
 }
 

@@ -19,11 +19,13 @@
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
-use symdiff::Formula;
+use symdiff::{Builder, Expr, Formula, Scalar};
 
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, MovingPoint, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
+use crate::multibody::space::{self, Vector};
+use crate::multibody::{BuildError, Vector as Handle, rotation};
 use crate::syntax::yaml;
 
 /// Springs and dampers between two frames.
@@ -60,6 +62,136 @@ pub struct Bushing {
 
 impl ForceElement for Bushing {
     const SENSORS: &'static [Sensor] = &[];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let g = forces.graph();
+        let stiffness =
+            Law::of(forces, [&self.stiffness, &self.torsional_stiffness], self.stiffness_matrix.as_ref())?;
+        let damping = Law::of(forces, [&self.damping, &self.torsional_damping], self.damping_matrix.as_ref())?;
+        let pair = forces.pair(self.between);
+        let axes: [Vector; 3] = std::array::from_fn(|axis| {
+            let unit = space::along(g, axis);
+            pair.outward(g, unit)
+        });
+        let (first, second) = (pair.first.point, pair.second.point);
+        let omega = [first, second].map(|point| forces.angular_velocity(point.body).exprs());
+        let turning = space::sub(g, omega[1], omega[0]);
+        let q = pair.relative(g);
+        let e = rotation::vector_part(q);
+
+        let offset = pair.offset(g);
+        let carried = space::cross(g, omega[0], offset);
+        let rate = space::sub(g, second.velocity, first.velocity);
+        let rate = space::sub(g, rate, carried);
+        let displacement = axes.map(|axis| space::dot(g, axis, offset));
+        let elastic = weighted(g, stiffness.straight, displacement);
+        let doubled = space::dot(g, displacement, elastic);
+        let rate = axes.map(|axis| space::dot(g, axis, rate));
+        let viscous = weighted(g, damping.straight, rate);
+        let mut pull = space::add(g, elastic, viscous);
+
+        let twisted = weighted(g, stiffness.torsional, e);
+        let half = conjugate(g, q[0], e, twisted);
+        let elastic = half.map(|component| g.scale(2.0, component));
+        let spin = axes.map(|axis| space::dot(g, axis, turning));
+        let viscous = weighted(g, damping.torsional, spin);
+        let mut torque = space::add(g, elastic, viscous);
+
+        let halved = space::dot(g, e, twisted);
+        let (straight, twisting) = (g.scale(0.5, doubled), g.scale(2.0, halved));
+        let mut potential = g.add(straight, twisting);
+        let rotation = e.map(|component| g.scale(2.0, component));
+        if let Some([force, moment]) = stiffness.full_times(g, displacement, rotation) {
+            pull = space::add(g, pull, force);
+            let moment_here = conjugate(g, q[0], e, moment);
+            torque = space::add(g, torque, moment_here);
+            let (straight, twisting) = (space::dot(g, displacement, force), space::dot(g, rotation, moment));
+            let doubled = g.add(straight, twisting);
+            let stored = g.scale(0.5, doubled);
+            potential = g.add(potential, stored);
+        }
+        if let Some([force, moment]) = damping.full_times(g, rate, spin) {
+            pull = space::add(g, pull, force);
+            torque = space::add(g, torque, moment);
+        }
+        let pull = in_ground(g, axes, pull);
+        let there = forces.point_at(first.body, Handle::of(g, second.position));
+        forces.between(&MovingPoint::of(g, second), &there, Handle::of(g, pull));
+        let torque = in_ground(g, axes, torque);
+        forces.torque(second.body, first.body, Handle::of(g, torque));
+        if stiffness.is_symmetric() {
+            let coefficients: Vec<Scalar> = stiffness.coefficients().into_iter().map(|part| g.scalar(part)).collect();
+            forces.potential(&coefficients, g.scalar(potential));
+        }
+        Ok(())
+    }
+}
+
+/// Stiffness or damping: by axis and, where there is one, the full matrix.
+struct Law {
+    straight: Vector,
+    torsional: Vector,
+    full: Option<[[Expr; 6]; 6]>,
+}
+
+impl Law {
+    fn of(
+        forces: &dyn Forces<'_>,
+        [straight, torsional]: [&PerAxis; 2],
+        full: Option<&SixBySix>,
+    ) -> Result<Self, BuildError> {
+        let g = forces.graph();
+        let straight = forces.vector(straight)?.exprs();
+        let torsional = forces.vector(torsional)?.exprs();
+        let mut matrix = full.map(|_| [[g.constant(0.0); 6]; 6]);
+        if let (Some(matrix), Some(full)) = (&mut matrix, full) {
+            for (entry, formula) in matrix.iter_mut().flatten().zip(full.0.iter().flatten()) {
+                *entry = forces.value(formula)?.expr();
+            }
+        }
+        Ok(Self { straight, torsional, full: matrix })
+    }
+
+    /// The full matrix times (displacement, rotation): a force and a torque.
+    fn full_times(&self, g: &Builder, displacement: Vector, rotation: Vector) -> Option<[Vector; 2]> {
+        let along = [displacement, rotation].concat();
+        let matrix = self.full?;
+        let product = matrix.map(|row| g.dot(&row, &along));
+        Some([[product[0], product[1], product[2]], [product[3], product[4], product[5]]])
+    }
+
+    /// All its numbers.
+    fn coefficients(&self) -> Vec<Expr> {
+        let full = self.full.iter().flatten().flatten().copied();
+        self.straight.into_iter().chain(self.torsional).chain(full).collect()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let symmetric = |m: &[[Expr; 6]; 6]| (0..6).all(|i| (0..i).all(|j| m[i][j] == m[j][i]));
+        self.full.as_ref().is_none_or(symmetric)
+    }
+}
+
+
+/// The torque q₀ y + e × y that does the work y · d(2 e).
+fn conjugate(g: &Builder, q0: Expr, e: Vector, y: Vector) -> Vector {
+    let (straight, across) = (space::scale(g, q0, y), space::cross(g, e, y));
+    space::add(g, straight, across)
+}
+
+/// Component by component.
+fn weighted(g: &Builder, weights: Vector, a: Vector) -> Vector {
+    std::array::from_fn(|i| g.mul(weights[i], a[i]))
+}
+
+/// A vector along given axes.
+fn in_ground(g: &Builder, axes: [Vector; 3], a: Vector) -> Vector {
+    let mut sum = space::zero(g);
+    for (axis, component) in axes.into_iter().zip(a) {
+        let part = space::scale(g, component, axis);
+        sum = space::add(g, sum, part);
+    }
+    sum
 }
 
 /// Rows of forces, then torques, by displacements, then rotations, or by their rates.

@@ -11,9 +11,11 @@
 use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
-use super::{ForceElement, Sensor};
+use super::positive_part::{PositivePart, clipped};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Measure, PointRef};
+use crate::multibody::BuildError;
 
 /// Stretch over which a cable becomes taut, over its length.
 const TAUT: f64 = 1e-4;
@@ -55,4 +57,27 @@ impl ForceElement for Cable {
         (Measure::RATE, Dimension::VELOCITY),
         (Measure::FORCE, Dimension::FORCE),
     ];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let (free, corner) = (forces.value(&self.free_length)?, forces.value(&self.transition)?);
+        let (stiffness, damping) = (forces.value(&self.stiffness)?, forces.value(&self.damping)?);
+        let [a, b] = self.between.map(|point| forces.point(point));
+        let line = b.position - a.position;
+        let length = line.norm();
+        let direction = line / length;
+        let rate = direction.dot(b.velocity - a.velocity);
+        let stretch = length - free;
+        // ℓ > ℓ₀ − ε, by squares.
+        let slack = clipped(free - corner);
+        let tight = line.dot(line) - slack * slack;
+        forces.only_where(tight);
+        let taut = PositivePart::of(stretch, corner);
+        let tension = clipped(stiffness * taut.value + damping * taut.slope * rate);
+        forces.between(&b, &a, tension * direction);
+        let tension = tension.only_where(tight);
+        let potential = (stiffness * taut.integral).only_where(tight);
+        forces.potential(&[stiffness, free, corner], potential);
+        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
+        Ok(())
+    }
 }

@@ -11,8 +11,11 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Friction, Impact, Sensor, contact};
+use super::contact::{Shape, Touch};
+use super::impact::Push;
+use super::{ForceElement, Forces, Friction, Impact, Sensor, contact};
 use crate::grammar::{Axis, PointRef};
+use crate::multibody::BuildError;
 
 /// A journal that is loose in its bearing.
 #[derive(Clone, Debug, Element)]
@@ -44,4 +47,16 @@ pub struct ClearanceJoint {
 
 impl ForceElement for ClearanceJoint {
     const SENSORS: &'static [Sensor] = contact::SENSORS;
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let clearance = forces.prescribed(&self.clearance)?.expr();
+        let radius = forces.prescribed(&self.radius)?.expr();
+        let axis = forces.prescribed_vector(&self.axis)?;
+        let axis = forces.is_spatial().then(|| axis.unit().exprs());
+        let impact = Push::of(forces, &self.impact)?;
+        let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
+        let shape = Shape::Hollow(clearance);
+        Touch { between: self.between, shape, radius, axis, impact, friction }.apply(forces);
+        Ok(())
+    }
 }

@@ -15,11 +15,18 @@
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Builder, Expr, Formula};
 
-use super::{ForceElement, Friction, Impact, Sensor};
+use super::dry_friction::Resistance;
+use super::impact::Push;
+use super::{ForceElement, Forces, Friction, Impact, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Axis, Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::multibody::space::{self, Vector};
+use crate::multibody::{BuildError, Pair, Vector as Handle};
+
+/// ε over R − r.
+const CENTRED: f64 = 1e-4;
 
 /// Contact of a plane, circle, sphere or cylinder on one body with a circle, sphere, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
@@ -65,6 +72,23 @@ pub(super) const SENSORS: &[Sensor] = &[
 
 impl ForceElement for Contact {
     const SENSORS: &'static [Sensor] = SENSORS;
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let g = forces.graph();
+        let radius = forces.prescribed(&self.radius)?.expr();
+        let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(|vector| vector.unit().exprs());
+        let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
+        let shape = match (&self.plane, &self.circle, &self.hollow) {
+            (Some(normal), ..) => Shape::Plane(direction(normal)?),
+            (_, Some(outer), _) => Shape::Round(forces.prescribed(outer)?.expr()),
+            (.., Some(bore)) => Shape::Hollow(g.sub(forces.prescribed(bore)?.expr(), radius)),
+            (None, None, None) => return Ok(()),
+        };
+        let impact = Push::of(forces, &self.impact)?;
+        let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
+        Touch { between: self.between, shape, radius, axis, impact, friction }.apply(forces);
+        Ok(())
+    }
 }
 
 impl Checked for Contact {
@@ -81,5 +105,121 @@ impl Checked for Contact {
                 reader.error(fields.key_span(second), message, None);
             }
         }
+    }
+}
+
+/// The first body's surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shape {
+    /// A unit normal, in the first frame.
+    Plane(Vector),
+    /// R, m
+    Round(Expr),
+    /// R − r, m
+    Hollow(Expr),
+}
+
+/// Two surfaces and what they do to one another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch<'g> {
+    pub between: [PointRef; 2],
+    pub shape: Shape,
+    /// r, m
+    pub radius: Expr,
+    /// A unit vector in the first frame across which centres are apart.
+    pub axis: Option<Vector>,
+    pub impact: Push<'g>,
+    pub friction: Option<Resistance<'g>>,
+}
+
+/// Where two surfaces are to one another.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    /// How far they are apart, m.
+    gap: Expr,
+    /// The direction in which the second is pushed.
+    normal: Vector,
+    /// Positive where they overlap; as few operations as tell.
+    overlap: Expr,
+}
+
+impl<'g> Touch<'g> {
+    /// Adds the forces.
+    pub fn apply(&self, forces: &mut dyn Forces<'g>) {
+        let g = forces.graph();
+        let pair = forces.pair(self.between);
+        let Gap { gap, normal, overlap } = self.gap(g, &pair);
+        let (gap, overlap, normal) = (g.scalar(gap), g.scalar(overlap), Handle::of(g, normal));
+        let place = Handle::of(g, pair.second.point.position) - g.scalar(self.radius) * normal;
+        let [first, second] = self.between.map(|point| forces.point_at(point.body, place));
+        let velocity = second.velocity - first.velocity;
+        let parting = normal.dot(velocity);
+        let (depth, approach) = (-gap, -parting);
+        forces.only_where(overlap);
+        let push = self.impact.force(depth, approach).only_where(depth);
+        let mut force = push * normal;
+        if let Some(friction) = &self.friction {
+            let sliding = velocity - parting * normal;
+            let resistance = friction.by_speed(sliding.dot(sliding));
+            let drag = friction.coefficient * push * resistance * sliding;
+            force = force - drag;
+            let felt = if forces.is_spatial() {
+                drag.norm()
+            } else {
+                // Along n turned clockwise: x on a floor.
+                normal.perpendicular().dot(drag)
+            };
+            forces.sensor(Measure::FRICTION, felt.only_where(overlap));
+        }
+        forces.between(&first, &second, force);
+        let push = push.only_where(overlap);
+        let potential = self.impact.potential(depth).only_where(depth);
+        forces.potential(&[self.impact.stiffness], potential);
+        forces.sensors([(Measure::GAP, gap), (Measure::RATE, parting), (Measure::FORCE, push)]);
+    }
+
+    fn gap(&self, g: &Builder, pair: &Pair) -> Gap {
+        let offset = pair.offset(g);
+        match self.shape {
+            Shape::Plane(normal) => {
+                let normal = pair.outward(g, normal);
+                let height = space::dot(g, normal, offset);
+                let gap = g.sub(height, self.radius);
+                Gap { gap, normal, overlap: g.sub(self.radius, height) }
+            }
+            Shape::Round(outer) => {
+                let (across, square) = self.across(g, pair, offset);
+                let distance = g.sqrt(square);
+                let normal = across.map(|component| g.div(component, distance));
+                let together = g.add(outer, self.radius);
+                let touching = g.mul(together, together);
+                Gap { gap: g.sub(distance, together), normal, overlap: g.sub(touching, square) }
+            }
+            Shape::Hollow(clearance) => {
+                let (across, square) = self.across(g, pair, offset);
+                let centred = g.scale(CENTRED, clearance);
+                let centred = g.mul(centred, centred);
+                let smooth = g.add(square, centred);
+                let distance = g.sqrt(smooth);
+                let outward = across.map(|component| g.div(component, distance));
+                let touching = g.mul(clearance, clearance);
+                let (gap, overlap) = (g.sub(clearance, distance), g.sub(smooth, touching));
+                Gap { gap, normal: space::neg(g, outward), overlap }
+            }
+        }
+    }
+
+    /// d, and its square.
+    fn across(&self, g: &Builder, pair: &Pair, offset: Vector) -> (Vector, Expr) {
+        let across = match self.axis {
+            Some(axis) => {
+                let axis = pair.outward(g, axis);
+                let along = space::dot(g, axis, offset);
+                let along = space::scale(g, along, axis);
+                space::sub(g, offset, along)
+            }
+            None => offset,
+        };
+        (across, space::dot(g, across, across))
     }
 }

@@ -9,9 +9,13 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Components, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::multibody::BuildError;
+
+/// ε, m/s
+const AT_REST: f64 = 1e-6;
 
 /// Resistance of a fluid.
 #[derive(Clone, Debug, Element)]
@@ -62,6 +66,22 @@ impl Drag {
 
 impl ForceElement for Drag {
     const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE)];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let point = forces.point(self.on);
+        let wind = forces.vector(&self.wind)?;
+        let linear = forces.value(&self.linear)?;
+        let mut quadratic = forces.graph().number(1.0);
+        for factor in &self.factors() {
+            quadratic *= forces.value(factor)?;
+        }
+        let u = point.velocity - wind;
+        let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
+        let resistance = linear + quadratic * speed;
+        forces.at(&point, -resistance * u);
+        forces.sensor(Measure::FORCE, resistance * speed);
+        Ok(())
+    }
 }
 
 impl Checked for Drag {

@@ -10,9 +10,11 @@
 //! of the friction that it could bear at u₀ κ/√(1 − κ²).
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
+use super::Forces;
 use crate::grammar::{Checked, Fields, Reader, Requirement, SymbolTable};
+use crate::multibody::BuildError;
 
 const AT_LEAST_SLIDING: Requirement = Requirement {
     holds: |value| value >= 1.0,
@@ -60,5 +62,47 @@ impl Checked for DryFriction {
             _ => return,
         };
         reader.error(fields.key_span(key), message, None);
+    }
+}
+
+impl Friction {
+    /// The law's numbers.
+    pub(super) fn resistance<'g>(&self, forces: &dyn Forces<'g>) -> Result<Resistance<'g>, BuildError> {
+        Resistance::of(forces, &self.coefficient, &self.speed)
+    }
+}
+
+/// The law's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Resistance<'g> {
+    /// μ
+    pub coefficient: Scalar<'g>,
+    breakaway: Scalar<'g>,
+    stribeck: Option<Scalar<'g>>,
+    transition: Scalar<'g>,
+}
+
+impl<'g> Resistance<'g> {
+    pub fn of(forces: &dyn Forces<'g>, coefficient: &Formula, law: &DryFriction) -> Result<Self, BuildError> {
+        let stribeck = law.stribeck_velocity.as_ref().map(|speed| forces.value(speed)).transpose()?;
+        Ok(Self {
+            coefficient: forces.value(coefficient)?,
+            breakaway: forces.value(&law.breakaway)?,
+            stribeck,
+            transition: forces.value(&law.transition_velocity)?,
+        })
+    }
+
+    /// s/√(|u|² + u₀²): dry friction by its bound and the velocity of sliding; `square` is |u|².
+    pub fn by_speed(&self, square: Scalar<'g>) -> Scalar<'g> {
+        let smooth = (square + self.transition * self.transition).sqrt();
+        let strength = match self.stribeck {
+            Some(speed) => {
+                let fading = (-(square / (speed * speed))).exp();
+                1.0 + (self.breakaway - 1.0) * fading
+            }
+            None => square.builder().number(1.0),
+        };
+        strength / smooth
     }
 }

@@ -8,8 +8,9 @@
 
 use mbint_derive::{Choice, Element};
 
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::{Components, PointRef};
+use crate::multibody::BuildError;
 
 /// A force at a point.
 #[derive(Clone, Debug, Element)]
@@ -42,4 +43,14 @@ pub enum Frame {
 
 impl ForceElement for Force {
     const SENSORS: &'static [Sensor] = &[];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let mut force = forces.vector(&self.value)?;
+        if self.frame == Frame::Body {
+            force = forces.rotated(self.on.body, force);
+        }
+        let point = forces.point(self.on);
+        forces.at(&point, force);
+        Ok(())
+    }
 }

@@ -9,8 +9,9 @@
 
 use mbint_derive::Element;
 
-use super::{ForceElement, Scope, Sensor};
+use super::{ForceElement, Forces, Scope, Sensor};
 use crate::grammar::Components;
+use crate::multibody::BuildError;
 
 /// The same acceleration on every body.
 #[derive(Clone, Debug, Element)]
@@ -32,5 +33,10 @@ impl ForceElement for Gravity {
 
     fn scope(&self) -> Scope {
         Scope::EveryBody
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let acceleration = forces.vector(&self.acceleration)?;
+        forces.weight(acceleration)
     }
 }

@@ -9,20 +9,23 @@
 //! e is the coefficient of restitution of an impact at the speed v. Hertz's n = 3/2 has a continuous slope where the
 //! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick: where
 //! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its slope: the law is written for
-//! δ > 0 alone, and whoever uses it sees to it that it is asked for nowhere else.
+//! δ > 0 alone, and the caller guards it by that condition.
 //!
 //! Whatever K and n, an impact at v ends with the speed e v of χ v − ln(1 + χ v) = −χ e v − ln(1 − χ e v) (Marhefka & Orin,
 //! IEEE Trans. Syst. Man Cybern. 29 (1999) 566). Both formulas for χ hold for e near 1: at e = 0.5, they leave 0.66 and 0.73.
 
 use mbint_derive::{Choice, Element};
 use schemars::{Schema, SchemaGenerator};
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
+use super::Forces;
+use super::positive_part::clipped;
 use crate::grammar::motions::dimensions_of;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
     Checked, Fields, JointCoordinate, Node, Quantity, Reader, Requirement, Span, SymbolTable, Value, values,
 };
+use crate::multibody::BuildError;
 
 const RESTITUTION: Requirement =
     Requirement { holds: |value| value > 0.0 && value <= 1.0, message: "must be above 0 and at most 1" };
@@ -110,4 +113,53 @@ impl Value for Exponent {
     fn to_json(&self) -> Option<serde_json::Value> {
         Some(self.0.into())
     }
+}
+
+/// The law's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push<'g> {
+    /// K, N/mⁿ
+    pub stiffness: Scalar<'g>,
+    exponent: f64,
+    dissipation: Scalar<'g>,
+}
+
+impl<'g> Push<'g> {
+    pub fn of(forces: &dyn Forces<'g>, impact: &Impact) -> Result<Self, BuildError> {
+        let stiffness = forces.value(&impact.stiffness)?;
+        let dissipation = match (&impact.restitution, &impact.impact_velocity, &impact.dissipation) {
+            (None, _, Some(dissipation)) => forces.value(dissipation)?,
+            (Some(restitution), Some(velocity), _) => {
+                let (restitution, velocity) = (forces.value(restitution)?, forces.value(velocity)?);
+                let (kept, factor) = match impact.law {
+                    RestitutionLaw::HuntCrossley => (restitution, 1.5),
+                    RestitutionLaw::LankaraniNikravesh => (restitution * restitution, 0.75),
+                };
+                factor * ((1.0 - kept) / velocity)
+            }
+            _ => forces.graph().number(0.0),
+        };
+        Ok(Self { stiffness, exponent: impact.exponent.0, dissipation })
+    }
+
+    /// f, by δ > 0 and δ̇.
+    pub fn force(&self, depth: Scalar<'g>, rate: Scalar<'g>) -> Scalar<'g> {
+        let damping = clipped(1.0 + self.dissipation * rate);
+        self.stiffness * power(depth, self.exponent) * damping
+    }
+
+    /// V, by δ > 0.
+    pub fn potential(&self, depth: Scalar<'g>) -> Scalar<'g> {
+        let exponent = self.exponent + 1.0;
+        1.0 / exponent * (self.stiffness * power(depth, exponent))
+    }
+}
+
+/// Half powers are products with a root, which are evaluated for whole tiles at once.
+fn power(depth: Scalar<'_>, exponent: f64) -> Scalar<'_> {
+    let whole = exponent.floor();
+    if exponent - whole == 0.5 {
+        return depth.powi(whole as i32) * depth.sqrt();
+    }
+    depth.pow(depth.builder().number(exponent))
 }

@@ -14,13 +14,18 @@
 
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator, json_schema};
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
-use super::{DryFriction, ForceElement, Sensor};
+use super::dry_friction::Resistance;
+use super::{DryFriction, ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
-    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Measure, Node, Reader, Reference, SymbolTable,
+    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Measure, Node, OnJoint, Reader, Reference, SymbolTable,
 };
+use crate::multibody::{BuildError, Vector};
+
+/// ε, N
+const NO_LOAD: f64 = 1e-6;
 
 /// Friction in a revolute, prismatic or cylindrical joint, proportional to the joint's reaction.
 #[derive(Clone, Debug, Element)]
@@ -85,6 +90,71 @@ impl ForceElement for JointFriction {
     fn loading_joint(&self) -> Option<(usize, &Formula)> {
         Some((self.on.joint, &self.coefficient))
     }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let joint = self.on.joint;
+        let dry = Resistance::of(forces, &self.coefficient, &self.dry)?;
+        let constant = forces.value(&self.coulomb)?;
+        let viscous = forces.value(&self.viscous)?;
+        let radius = match &self.radius {
+            Some(radius) => forces.value(radius)?,
+            None => forces.graph().number(0.0),
+        };
+        let load = self.load(forces)?;
+        let mut bound = dry.coefficient * load;
+        if self.on.mode == FrictionMode::Turning {
+            bound = radius * bound;
+        }
+        let bound = constant + bound;
+
+        let rate = |coordinate| forces.rate(OnJoint { joint, coordinate });
+        let velocity = match self.on.mode {
+            FrictionMode::Turning => vec![rate(JointCoordinate::Angle)?],
+            FrictionMode::Sliding => vec![rate(JointCoordinate::Displacement)?],
+            FrictionMode::Both => {
+                let turning = rate(JointCoordinate::Angle)?;
+                vec![rate(JointCoordinate::Displacement)?, radius * turning]
+            }
+        };
+        let square = velocity.iter().fold(forces.graph().number(0.0), |sum, &velocity| sum + velocity * velocity);
+        let resistance = bound * dry.by_speed(square) + viscous;
+        let against: Vec<Scalar> = velocity.iter().map(|&velocity| -(resistance * velocity)).collect();
+        let efforts = match self.on.mode {
+            FrictionMode::Turning => vec![(JointCoordinate::Angle, against[0])],
+            FrictionMode::Sliding => vec![(JointCoordinate::Displacement, against[0])],
+            FrictionMode::Both => {
+                vec![(JointCoordinate::Displacement, against[0]), (JointCoordinate::Angle, radius * against[1])]
+            }
+        };
+        forces.sensor(Measure::LOAD, load);
+        for (coordinate, effort) in efforts {
+            forces.effort(OnJoint { joint, coordinate }, effort)?;
+            forces.sensor(Measure::of_effort(coordinate), effort);
+        }
+        Ok(())
+    }
+}
+
+impl JointFriction {
+    /// N.
+    fn load<'g>(&self, forces: &dyn Forces<'g>) -> Result<Scalar<'g>, BuildError> {
+        let joint = self.on.joint;
+        let [force, torque] = forces.reaction(joint);
+        let Some(length) = &self.length else { return Ok(magnitude(force)) };
+        let length = forces.value(length)?;
+        let coordinate = match self.on.mode {
+            FrictionMode::Turning => JointCoordinate::Angle,
+            FrictionMode::Sliding | FrictionMode::Both => JointCoordinate::Displacement,
+        };
+        let couple = torque.cross(forces.axis(OnJoint { joint, coordinate })?) / length;
+        let half = 0.5 * force;
+        Ok(magnitude(half + couple) + magnitude(half - couple))
+    }
+}
+
+/// √(F² + ε²).
+fn magnitude(force: Vector<'_>) -> Scalar<'_> {
+    (force.dot(force) + NO_LOAD * NO_LOAD).sqrt()
 }
 
 impl Checked for JointFriction {

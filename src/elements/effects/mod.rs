@@ -1,31 +1,58 @@
 //! Effects: what moves bodies.
 //!
-//! To add one: its file here, its forces in the file of the same name in `assemble::effects`, and its line in the registry. All else
-//! follows from the file: keys, schema, documentation, what it refers to, what it costs.
+//! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
+//! what it refers to, its forces, what it costs.
 
 mod dry_friction;
+mod forces;
 mod impact;
+mod positive_part;
 mod registry;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
 
 pub use self::dry_friction::{DryFriction, Friction};
+pub use self::forces::{Forces, MovingPoint};
 pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
-pub(crate) use self::registry::registry;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, ElementDocs, Measure, OnJoint, PointRef};
+use crate::multibody::BuildError;
 
-registry!(effects);
+effects! {
+    gravity::Gravity,
+    force::Force,
+    torque::Torque,
+    spring_damper::SpringDamper,
+    torsional_spring_damper::TorsionalSpringDamper,
+    bushing::Bushing,
+    joint_friction::JointFriction,
+    stop::Stop,
+    contact::Contact,
+    clearance_joint::ClearanceJoint,
+    servo::Servo,
+    drag::Drag,
+    cable::Cable,
+    backlash::Backlash,
+    preload::Preload,
+    beam::Beam,
+    belt::Belt,
+}
 
 /// Something that an effect measures, and what it is.
 pub type Sensor = (Measure, Dimension);
 
-/// What an effect does beside its forces.
+/// What an effect does.
 pub trait ForceElement: Element {
     /// What it may measure; its own formulas may refer to what of this follows from the motion.
     const SENSORS: &'static [Sensor];
+
+    /// Adds its forces to a mechanism.
+    ///
+    /// # Errors
+    /// A formula with a name that cannot stand in it; the reader of model files lets none through.
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError>;
 
     /// What it measures.
     fn sensors(&self) -> Vec<Sensor> {

@@ -10,8 +10,9 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Sensor};
-use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, SymbolTable};
+use super::{ForceElement, Forces, Sensor};
+use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, SymbolTable, TimeOrder};
+use crate::multibody::BuildError;
 
 /// A constant tension between two points, or a constant force or torque of a joint.
 #[derive(Clone, Debug, Element)]
@@ -39,6 +40,26 @@ impl ForceElement for Preload {
 
     fn coordinates(&self) -> Vec<OnJoint> {
         self.on.into_iter().collect()
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let force = forces.value(&self.value)?;
+        let potential = match (self.between, self.on) {
+            (Some(between), None) => {
+                let [a, b] = between.map(|point| forces.point(point));
+                let line = b.position - a.position;
+                let length = line.norm();
+                forces.between(&b, &a, force / length * line);
+                force * length
+            }
+            (_, Some(on)) => {
+                forces.effort(on, force)?;
+                -(force * forces.coordinate(on, TimeOrder::Position))
+            }
+            (None, None) => return Ok(()),
+        };
+        forces.potential(&[force], potential);
+        Ok(())
     }
 }
 

@@ -1,31 +1,6 @@
 //! The registry: from a list of files and structs, the enum of all effects and what is asked of each.
 
-/// Hands every effect, `file::Struct`, to a macro.
-macro_rules! registry {
-    ($to:ident) => {
-        $to! {
-            gravity::Gravity,
-            force::Force,
-            torque::Torque,
-            spring_damper::SpringDamper,
-            torsional_spring_damper::TorsionalSpringDamper,
-            bushing::Bushing,
-            joint_friction::JointFriction,
-            stop::Stop,
-            contact::Contact,
-            clearance_joint::ClearanceJoint,
-            servo::Servo,
-            drag::Drag,
-            cable::Cable,
-            backlash::Backlash,
-            preload::Preload,
-            beam::Beam,
-            belt::Belt,
-        }
-    };
-}
-
-/// Their modules, the enum of them, and what is asked of each.
+/// `effects! { file::Struct, … }`
 macro_rules! effects {
     ($($file:ident::$name:ident),* $(,)?) => {
         $(pub mod $file;)*
@@ -123,6 +98,16 @@ macro_rules! effects {
                 }
             }
 
+            /// Adds its forces to a mechanism.
+            ///
+            /// # Errors
+            /// A formula with a name that cannot stand in it; the reader of model files lets none through.
+            pub fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), $crate::multibody::BuildError> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::apply(effect, forces),)*
+                }
+            }
+
             /// What it acts on.
             pub fn scope(&self) -> Scope {
                 match self {
@@ -163,4 +148,3 @@ macro_rules! effects {
 }
 
 pub(super) use effects;
-pub(crate) use registry;

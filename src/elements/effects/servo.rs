@@ -8,11 +8,15 @@
 //! sat is x well within the limit L (its slope there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Sensor, effort};
+use super::{ForceElement, Forces, Sensor, effort};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Measure, OnJoint};
+use crate::multibody::BuildError;
+
+/// ε over L.
+const CORNER: f64 = 0.01;
 
 /// A drive that controls a joint's coordinate, with a limit.
 #[derive(Clone, Debug, Element)]
@@ -51,4 +55,25 @@ impl ForceElement for Servo {
     fn coordinates(&self) -> Vec<OnJoint> {
         vec![self.on]
     }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let target = forces.prescribed(&self.target)?;
+        let proportional = forces.value(&self.proportional)?;
+        let derivative = forces.value(&self.derivative)?;
+        let target_rate = target.derivative(forces.time());
+        let [place, rate] = forces.coordinate_and_rate(self.on);
+        let mut effort = proportional * (target - place) + derivative * (target_rate - rate);
+        if let Some(limit) = &self.limit {
+            effort = saturated(effort, forces.value(limit)?);
+        }
+        forces.sensor(Measure::of_effort(self.on.coordinate), effort);
+        forces.effort(self.on, effort)
+    }
+}
+
+fn saturated<'g>(x: Scalar<'g>, limit: Scalar<'g>) -> Scalar<'g> {
+    let corner = CORNER * limit;
+    let corner = corner * corner;
+    let [above, below] = [x + limit, x - limit].map(|distance| (distance * distance + corner).sqrt());
+    0.5 * (above - below)
 }

@@ -9,16 +9,17 @@
 //!
 //! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
-//! ℓ = 0: the force is not a number there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
+//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
 //! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may depend on.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::multibody::{BuildError, Vector};
 
 /// A spring and damper between two points.
 #[derive(Clone, Debug, Element)]
@@ -56,6 +57,79 @@ impl ForceElement for SpringDamper {
         (Measure::RATE, Dimension::VELOCITY),
         (Measure::FORCE, Dimension::FORCE),
     ];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let spring = Coefficients {
+            stiffness: forces.value(&self.stiffness)?,
+            damping: forces.value(&self.damping)?,
+            free_length: forces.value(&self.free_length)?,
+        };
+        let [a, b] = self.between.map(|point| forces.point(point));
+        let axis = self.along.as_ref().map(|axis| forces.vector(axis)).transpose()?;
+        let (line, growth) = (b.position - a.position, b.velocity - a.velocity);
+        let Stretched { mut pull, direction, length, rate, mut tension } = match axis {
+            Some(axis) => along_axis(line, growth, axis, spring),
+            None => along_line(line, growth, spring),
+        };
+        if let Some(further) = &self.force {
+            let further = forces.value_with(further, &[(Measure::LENGTH, length), (Measure::RATE, rate)])?;
+            pull += further * direction;
+            tension += further;
+        }
+        // The tension pulls A towards B.
+        forces.between(&b, &a, pull);
+        let stretch = length - spring.free_length;
+        let potential = 0.5 * (spring.stiffness * (stretch * stretch));
+        if self.force.is_none() {
+            forces.potential(&[spring.stiffness, spring.free_length], potential);
+        }
+        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
+        Ok(())
+    }
+}
+
+/// The numbers of a spring and damper.
+#[derive(Clone, Copy)]
+struct Coefficients<'g> {
+    /// k, N/m
+    stiffness: Scalar<'g>,
+    /// c, N s/m
+    damping: Scalar<'g>,
+    /// ℓ₀, m
+    free_length: Scalar<'g>,
+}
+
+/// A spring in its place.
+struct Stretched<'g> {
+    /// F_A
+    pull: Vector<'g>,
+    /// Of F_A under tension.
+    direction: Vector<'g>,
+    /// ℓ or s
+    length: Scalar<'g>,
+    /// ℓ̇ or ṡ
+    rate: Scalar<'g>,
+    /// f
+    tension: Scalar<'g>,
+}
+
+/// By d and ḋ.
+fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>) -> Stretched<'g> {
+    let square = line.dot(line);
+    let length = square.sqrt();
+    let elastic = spring.stiffness * (1.0 - spring.free_length / length);
+    let growth = line.dot(growth);
+    let density = elastic + spring.damping * (growth / square);
+    let (pull, direction) = (density * line, line / length);
+    Stretched { pull, direction, length, rate: growth / length, tension: density * length }
+}
+
+/// By d and ḋ.
+fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring: Coefficients<'g>) -> Stretched<'g> {
+    let direction = axis.unit();
+    let (length, rate) = (direction.dot(line), direction.dot(growth));
+    let tension = spring.stiffness * (length - spring.free_length) + spring.damping * rate;
+    Stretched { pull: tension * direction, direction, length, rate, tension }
 }
 
 impl Checked for SpringDamper {

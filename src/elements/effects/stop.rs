@@ -7,11 +7,13 @@
 //! Between the stops nothing acts, and nothing is computed but where s is.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Impact, Sensor, effort};
+use super::impact::Push;
+use super::{ForceElement, Forces, Impact, Sensor, effort};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, Measure, OnJoint, Reader, SymbolTable};
+use crate::multibody::BuildError;
 
 /// Stops at the ends of a joint's range.
 #[derive(Clone, Debug, Element)]
@@ -46,6 +48,34 @@ impl ForceElement for Stop {
 
     fn coordinates(&self) -> Vec<OnJoint> {
         vec![self.on]
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let impact = Push::of(forces, &self.impact)?;
+        let [place, rate] = forces.coordinate_and_rate(self.on);
+        let back = -rate;
+        let mut push = forces.graph().number(0.0);
+        let mut ends: Vec<Scalar> = Vec::new();
+        if let Some(lower) = &self.lower {
+            let depth = forces.prescribed(lower)? - place;
+            push += impact.force(depth, back).only_where(depth);
+            ends.push(depth);
+        }
+        if let Some(upper) = &self.upper {
+            let depth = place - forces.prescribed(upper)?;
+            push -= impact.force(depth, rate).only_where(depth);
+            ends.push(depth);
+        }
+        if let Some(overlap) = ends.iter().copied().reduce(Scalar::max) {
+            forces.only_where(overlap);
+        }
+        forces.effort(self.on, push)?;
+        for depth in ends {
+            let potential = impact.potential(depth).only_where(depth);
+            forces.potential(&[impact.stiffness], potential);
+        }
+        forces.sensor(Measure::of_effort(self.on.coordinate), push);
+        Ok(())
     }
 }
 

@@ -13,10 +13,11 @@ use schemars::{Schema, SchemaGenerator};
 use symdiff::Formula;
 
 use super::force::Frame;
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::{
-    BodyRef, Checked, Fields, JointCoordinate, Node, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values,
+    BodyRef, Checked, Fields, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values,
 };
+use crate::multibody::BuildError;
 use crate::syntax::yaml;
 
 /// A torque on a body, or at a joint.
@@ -61,6 +62,23 @@ impl Torque {
 
 impl ForceElement for Torque {
     const SENSORS: &'static [Sensor] = &[];
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        match self.on {
+            TorqueOn::Body(on) => {
+                let mut torque = forces.vector(&self.value.0)?;
+                if self.frame == Frame::Body {
+                    torque = forces.rotated(on, torque);
+                }
+                forces.torque(self.reaction_on(), on, torque);
+                Ok(())
+            }
+            TorqueOn::Joint(joint) => {
+                let torque = forces.value(&self.value.0[2])?;
+                forces.effort(OnJoint::angle(joint), torque)
+            }
+        }
+    }
 }
 
 impl Checked for Torque {

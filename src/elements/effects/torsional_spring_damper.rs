@@ -11,9 +11,10 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Sensor};
+use super::{ForceElement, Forces, Sensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Measure, OnJoint, Reader, SymbolTable, TurningJoint};
+use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Measure, OnJoint, Reader, SymbolTable, TimeOrder, Turning, TurningJoint};
+use crate::multibody::BuildError;
 
 /// A spring and damper between the angles of two bodies, or on the angle of a joint.
 #[derive(Clone, Debug, Element)]
@@ -53,6 +54,38 @@ impl ForceElement for TorsionalSpringDamper {
 
     fn coordinates(&self) -> Vec<OnJoint> {
         self.on.iter().map(|joint| OnJoint { joint: joint.0, coordinate: JointCoordinate::Angle }).collect()
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let stiffness = forces.value(&self.stiffness)?;
+        let damping = forces.value(&self.damping)?;
+        let free_angle = forces.value(&self.free_angle)?;
+        let bodies = self.between.map(|bodies| bodies.map(|body| body.0));
+        let [angle, rate] = match (bodies, self.on) {
+            (Some([first, second]), None) => [TimeOrder::Position, TimeOrder::Velocity]
+                .map(|order| forces.angle(Turning::Body(second), order) - forces.angle(Turning::Body(first), order)),
+            (_, Some(joint)) => forces.coordinate_and_rate(OnJoint::angle(joint.0)),
+            (None, None) => return Ok(()),
+        };
+        let twist = angle - free_angle;
+        let mut torque = stiffness * twist + damping * rate;
+        if let Some(further) = &self.torque {
+            torque += forces.value_with(further, &[(Measure::ANGLE, angle), (Measure::RATE, rate)])?;
+        }
+        forces.sensors([(Measure::ANGLE, angle), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
+        match (bodies, self.on) {
+            (Some([first, second]), None) => {
+                let zero = forces.graph().number(0.0);
+                forces.torque(second, first, [zero, zero, torque].into());
+            }
+            (_, Some(joint)) => forces.effort(OnJoint::angle(joint.0), -torque)?,
+            (None, None) => {}
+        }
+        let potential = 0.5 * (stiffness * (twist * twist));
+        if self.torque.is_none() {
+            forces.potential(&[stiffness, free_angle], potential);
+        }
+        Ok(())
     }
 }
 

@@ -1,60 +1,18 @@
-//! Applied forces, one file each.
+//! The sum of the forces on a mechanism.
 //!
-//! An effect adds forces and torques on bodies, and potential energy where it has one. Their generalised forces follow
-//! from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion, which [`Loads`] sees to. Values may depend on
+//! Generalised forces follow from virtual power: Σ Qᵢ vᵢ = F · ṙ + τ · ω for every motion. Values may depend on
 //! parameters, t, positions, velocities and reactions.
-//!
-//! Each file has the `apply` of the effect of the same name in `elements::effects`, whose registry lists them.
-
-mod dry_friction;
-mod impact;
-mod positive_part;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use symdiff::{Builder, Expr, Formula, Scalar};
-
-use crate::elements::effects::registry;
-use crate::model::{EffectKind, JointCoordinate, Measure, OnJoint, TimeOrder};
+use symdiff::{Builder, Expr};
 
 use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
 use super::error::BuildError;
 use super::joints;
-use super::mechanism::{Context, Mechanism};
+use super::mechanism::Mechanism;
 use super::space::{self, Vector};
-
-/// The modules of the effects, and the dispatch to them.
-macro_rules! physics {
-    ($($file:ident::$name:ident),* $(,)?) => {
-        $(mod $file;)*
-
-        /// Applies an effect.
-        pub fn apply(g: &Builder, m: &Mechanism, loads: &mut Loads, kind: &EffectKind) -> Result<(), BuildError> {
-            match kind {
-                $(EffectKind::$name(effect) => $file::apply(g, m, loads, effect),)*
-            }
-        }
-    };
-}
-
-registry!(physics);
-impl Mechanism<'_> {
-    /// A formula of parameters, t and the motion, to compute with.
-    fn value<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        Ok(g.scalar(self.formula(g, formula, Context::Motion)?))
-    }
-
-    /// A formula of parameters and t, to compute with.
-    fn given<'g>(&self, g: &'g Builder, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        Ok(g.scalar(self.formula(g, formula, Context::Time)?))
-    }
-
-    /// A joint's coordinate and its rate, to compute with.
-    fn coordinate_and_rate<'g>(&self, g: &'g Builder, on: OnJoint) -> [Scalar<'g>; 2] {
-        let of = |order| g.scalar(self.joint_coordinate(g, on.joint, on.coordinate, order));
-        [of(TimeOrder::Position), of(TimeOrder::Velocity)]
-    }
-}
+use crate::grammar::{JointCoordinate, Measure, OnJoint};
 
 /// What is added to: a component of a body's force or torque (0 to 5), or a joint's own coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,7 +23,7 @@ enum Target {
 
 /// The forces on all bodies.
 #[derive(Clone)]
-pub struct Loads {
+pub struct AppliedForces {
     /// Force on each body, and torque about its frame's origin, in the ground's axes: N, N m.
     bodies: Vec<[Expr; 6]>,
     /// Generalised forces on joints' own coordinates, by their place in q.
@@ -74,7 +32,7 @@ pub struct Loads {
     pub field: Vector,
     /// Potential energies, J.
     pub potentials: Vec<Expr>,
-    /// What was added to since the last [`Loads::begin`].
+    /// What was added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
     /// What was measured since then.
     measured: Vec<(Measure, Expr)>,
@@ -84,7 +42,7 @@ pub struct Loads {
     guarded: Vec<(Expr, Target, Expr)>,
 }
 
-impl Loads {
+impl AppliedForces {
     /// No forces.
     pub fn new(g: &Builder, bodies: usize) -> Self {
         let zero = g.constant(0.0);
@@ -139,7 +97,7 @@ impl Loads {
     }
 
     /// Something that the effect measures, for outputs.
-    pub fn measure(&mut self, measure: Measure, value: Expr) {
+    pub fn sensor(&mut self, measure: Measure, value: Expr) {
         self.measured.push((measure, value));
     }
 
@@ -294,20 +252,6 @@ impl Loads {
             self.add_force_pair(g, &there, &at, force);
         }
         Ok(())
-    }
-
-    /// A force or torque that pushes a joint's coordinate up.
-    pub fn add_joint_effort(
-        &mut self,
-        g: &Builder,
-        m: &Mechanism,
-        on: OnJoint,
-        effort: Expr,
-    ) -> Result<(), BuildError> {
-        match on.coordinate {
-            JointCoordinate::Angle => self.add_joint_torque(g, m, on.joint, effort),
-            JointCoordinate::Displacement => self.add_joint_force(g, m, on.joint, effort),
-        }
     }
 
     /// Whether the joint's coordinate is one of its own, which the force then acts on.

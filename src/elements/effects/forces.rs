@@ -1,0 +1,122 @@
+//! The mechanism in motion, as effects see it, and the forces that they add to it.
+
+use symdiff::{Builder, Formula, Scalar};
+
+use crate::grammar::{Measure, OnJoint, PointRef, TimeOrder, Turning};
+use crate::multibody::{BuildError, MaterialPoint, Pair, Vector};
+
+/// A point fixed in a body, in the ground's axes.
+#[derive(Clone, Copy, Debug)]
+pub struct MovingPoint<'g> {
+    /// Index of the body.
+    pub body: usize,
+    /// From the origin of the body's frame to the point, m.
+    pub arm: Vector<'g>,
+    /// r, m
+    pub position: Vector<'g>,
+    /// ṙ, m/s
+    pub velocity: Vector<'g>,
+}
+
+impl<'g> MovingPoint<'g> {
+    /// A point of the kernel, to compute with.
+    pub fn of(g: &'g Builder, point: MaterialPoint) -> Self {
+        let [arm, position, velocity] =
+            [point.arm, point.position, point.velocity].map(|components| Vector::of(g, components));
+        Self { body: point.body, arm, position, velocity }
+    }
+
+    /// The kernel's form of it.
+    pub fn material(&self) -> MaterialPoint {
+        let Self { body, arm, position, velocity } = *self;
+        MaterialPoint { body, arm: arm.exprs(), position: position.exprs(), velocity: velocity.exprs() }
+    }
+}
+
+/// The motion of a mechanism as formulas of an effect may depend on it, and the sum of the forces on it.
+///
+/// # Errors
+/// Methods that evaluate formulas fail where a name cannot stand in one; the reader of model files lets none through.
+pub trait Forces<'g> {
+    /// The graph that expressions are added to.
+    fn graph(&self) -> &'g Builder;
+    /// Whether the mechanism leaves the plane.
+    fn is_spatial(&self) -> bool;
+    /// t, s.
+    fn time(&self) -> Scalar<'g>;
+    /// A formula of parameters, t, positions, velocities and reactions.
+    fn value(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
+    /// The same of a formula that may refer to what the effect itself measures.
+    fn value_with(&self, formula: &Formula, own: &[(Measure, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError>;
+    /// A formula of parameters and t.
+    fn prescribed(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
+    /// Three formulas of parameters, t, positions, velocities and reactions.
+    fn vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
+    /// Three formulas of parameters and t.
+    fn prescribed_vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
+
+    /// A named point.
+    fn point(&self, point: PointRef) -> MovingPoint<'g>;
+    /// The point of a body that is now at a position in the ground's frame.
+    fn point_at(&self, body: usize, position: Vector<'g>) -> MovingPoint<'g>;
+    /// The frames at two points.
+    fn pair(&self, between: [PointRef; 2]) -> Pair;
+    /// A vector of a body's frame, in the ground's axes.
+    fn rotated(&self, body: usize, vector: Vector<'g>) -> Vector<'g>;
+    /// ω of a body in the ground's axes, rad/s.
+    fn angular_velocity(&self, body: usize) -> Vector<'g>;
+    /// The angle of a body about z or of a joint, rad, or its rate, rad/s.
+    fn angle(&self, of: Turning, order: TimeOrder) -> Scalar<'g>;
+    /// A coordinate of a joint, rad or m, or its rate.
+    fn coordinate(&self, on: OnJoint, order: TimeOrder) -> Scalar<'g>;
+    /// The rate of a joint's coordinate, rad/s or m/s, by the velocities of its bodies.
+    fn rate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError>;
+    /// The unit vector about or along which a joint's coordinate is counted, in the ground's axes.
+    fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError>;
+    /// A joint's reaction on its second body, in the ground's axes: force, N, and torque about the second point, N m.
+    fn reaction(&self, joint: usize) -> [Vector<'g>; 2];
+
+    /// From now on the effect acts only where the condition is positive, whatever its expressions are elsewhere. They are not
+    /// computed where no sample of a tile needs them, so they have to vanish continuously as the condition does.
+    fn only_where(&mut self, condition: Scalar<'g>);
+    /// A force at a point, N.
+    fn at(&mut self, point: &MovingPoint<'g>, force: Vector<'g>);
+    /// A force at one point and its opposite at another, N.
+    fn between(&mut self, from: &MovingPoint<'g>, to: &MovingPoint<'g>, force: Vector<'g>);
+    /// A torque on a body and its opposite on another, N m.
+    fn torque(&mut self, from: usize, on: usize, torque: Vector<'g>);
+    /// A force or torque that pushes a joint's coordinate up, N or N m.
+    fn effort(&mut self, on: OnJoint, effort: Scalar<'g>) -> Result<(), BuildError>;
+    /// The weight of every body in a uniform field of acceleration, m/s², with its potential energy.
+    fn weight(&mut self, field: Vector<'g>) -> Result<(), BuildError>;
+    /// A potential energy, J, if it is one: where a coefficient depends on the motion, its gradient is not the force.
+    fn potential(&mut self, coefficients: &[Scalar<'g>], energy: Scalar<'g>);
+    /// Something that the effect measures, for outputs.
+    fn sensor(&mut self, measure: Measure, value: Scalar<'g>);
+}
+
+impl<'g> dyn Forces<'g> + '_ {
+    /// A coordinate of a joint and its rate.
+    pub fn coordinate_and_rate(&self, on: OnJoint) -> [Scalar<'g>; 2] {
+        [TimeOrder::Position, TimeOrder::Velocity].map(|order| self.coordinate(on, order))
+    }
+
+    /// A torque about z on what has an angle: on a body from the ground, or on a joint's second body from its first, N m.
+    pub fn torque_about(&mut self, on: Turning, torque: Scalar<'g>) -> Result<(), BuildError> {
+        match on {
+            Turning::Body(body) => {
+                let zero = self.graph().number(0.0);
+                self.torque(0, body, [zero, zero, torque].into());
+                Ok(())
+            }
+            Turning::Joint(joint) => self.effort(OnJoint::angle(joint), torque),
+        }
+    }
+
+    /// Several things that the effect measures.
+    pub fn sensors<const N: usize>(&mut self, measured: [(Measure, Scalar<'g>); N]) {
+        for (measure, value) in measured {
+            self.sensor(measure, value);
+        }
+    }
+}
