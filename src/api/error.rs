@@ -1,12 +1,14 @@
 //! What can go wrong between a file and its bounds.
 
+use std::fmt;
+
 use crate::export::ExportError;
 use crate::model::UnknownScene;
 use crate::study::RunError;
 use crate::syntax::Diagnostics;
 
 /// Why there is no model, or nothing of it could be run.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The model has errors: all of them, each with its place.
@@ -21,6 +23,13 @@ pub enum Error {
     /// The files could not be written.
     #[error(transparent)]
     Write(#[from] ExportError),
+}
+
+/// As it is displayed, so that `fn main() -> Result<(), Error>` prints what people can read.
+impl fmt::Debug for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, formatter)
+    }
 }
 
 impl From<Diagnostics> for Error {

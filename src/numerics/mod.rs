@@ -1,4 +1,4 @@
-//! Trajectories → [`Bounds`]: which parameters to run, and what their responses say of the whole box.
+//! Trajectories → `Bounds`: which parameters to run, and what their responses say of the whole box.
 //!
 //! A method asks for samples of a [`ParameterBox`] in the coordinates ξ ∈ [−1, 1]^k and bounds what comes back:
 //!
