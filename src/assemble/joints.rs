@@ -3,7 +3,7 @@
 use symdiff::{Builder, Expr, Formula, Scalar, Unary};
 
 use crate::elements::joints::{Joint, Kinematics, Row};
-use crate::grammar::{JointCoordinate, OnJoint, PointRef, TimeOrder};
+use crate::grammar::{JointCoordinate, OfAngle, OnJoint, PointRef, TimeOrder};
 use crate::multibody::{Pair, Vector as Handle};
 
 use super::body::ANGLE;
@@ -52,6 +52,22 @@ impl<'g> Kinematics<'g> for Position<'g, '_, '_> {
 
     fn of_positions(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
         self.m.formula(self.g, formula, Context::Positions).map(|expr| self.g.scalar(expr))
+    }
+
+    fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
+        // A name that no file can give to anything else.
+        let variable = self.g.variable("own:angle");
+        let value = formula.0.build(self.g, |name| match self.m.description.referent(name) {
+            _ if name == OfAngle::VARIABLE => Ok(variable),
+            Some(referent) if Context::of(referent) <= Context::Time => {
+                Ok(self.g.scalar(self.m.observe(self.g, referent)))
+            }
+            _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Time }),
+        })?;
+        let roots = [value.expr(), value.derivative(variable).expr()];
+        let at = std::iter::once((variable.expr(), angle.expr())).collect();
+        let substituted = self.g.with(|graph| graph.substitute(&roots, &at));
+        Ok([self.g.scalar(substituted[0]), self.g.scalar(substituted[1])])
     }
 
     fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Handle<'g>, BuildError> {

@@ -21,7 +21,7 @@ pub use crate::multibody::{Context, Frame};
 
 impl Context {
     /// The smallest context in which something is known.
-    fn of(referent: Referent) -> Self {
+    pub(super) fn of(referent: Referent) -> Self {
         match referent {
             Referent::Parameter(_) => Self::Parameters,
             Referent::Time => Self::Time,

@@ -7,6 +7,7 @@ use symdiff::Formula;
 
 use super::element::{FromNumber, Group, Key, Quantity, Value, number_as_json};
 use super::plane;
+use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, SymbolTable, Turning};
 use super::values;
@@ -34,6 +35,32 @@ impl Value for Formula {
 impl FromNumber for Formula {
     fn from_number(value: f64) -> Self {
         Self::number(value)
+    }
+}
+
+/// A formula of parameters and of the element's own `angle`, rad.
+#[derive(Clone, Debug)]
+pub struct OfAngle(pub Formula);
+
+impl OfAngle {
+    /// The name of the angle in the formula.
+    pub const VARIABLE: &'static str = "angle";
+}
+
+impl Value for OfAngle {
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span, quantity: &Quantity) -> Option<Self> {
+        reader.variable = Some((Self::VARIABLE, Dimension::ANGLE));
+        let formula = reader.quantity(node, quantity);
+        reader.variable = None;
+        formula.map(Self)
+    }
+
+    fn schema(generator: &mut SchemaGenerator) -> Schema {
+        Formula::schema(generator)
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        found.push(&self.0);
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Reader<'d, S> {
     /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
     /// the others had errors.
     pub unread: Vec<(String, Vec<(Measure, Dimension)>)>,
+    /// A name of its own that the formula being read may use, and its dimension.
+    pub variable: Option<(&'static str, Dimension)>,
     /// Dimension of each parameter.
     pub kinds: Vec<Kind>,
     /// Parameter values at which requirements are checked.
@@ -320,7 +322,8 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// Whether every name of the formula may stand in the context; `offset` is where the formula begins in the scalar.
     pub fn check_names(&mut self, node: &Node, formula: &Formula, offset: usize, context: Context) -> bool {
         let mut all_known = true;
-        for (name, span) in formula.names() {
+        let own = self.variable.map(|(name, _)| name);
+        for (name, span) in formula.names().filter(|(name, _)| Some(*name) != own) {
             match self.resolve(name, context) {
                 Ok(Referent::Parameter(index)) => {
                     if let Some(used) = self.used.get_mut(index) {
@@ -375,7 +378,10 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The formula's dimension; what does not go together in it is reported.
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
-        let name = |name: &str| self.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent));
+        let name = |name: &str| match self.variable {
+            Some((own, dimension)) if own == name => Kind::motion(dimension),
+            _ => self.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent)),
+        };
         let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
         for mismatch in mismatches {
             let part = offset + mismatch.span.start..offset + mismatch.span.end;

@@ -204,6 +204,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
     Reader {
         diagnostics,
         model,
+        variable: None,
         unread: Vec::new(),
         kinds: Vec::new(),
         corners: Vec::new(),

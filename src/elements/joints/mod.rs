@@ -31,6 +31,7 @@ joints! {
     point_on_line::PointOnLine,
     point_on_plane::PointOnPlane,
     distance::Distance,
+    cam::Cam,
     gear::Gear,
     rack::Rack,
     motor::Motor,

@@ -13,7 +13,7 @@
 
 use symdiff::{Builder, Formula, Scalar};
 
-use crate::grammar::{OnJoint, PointRef};
+use crate::grammar::{OfAngle, OnJoint, PointRef};
 use crate::multibody::{BuildError, Pair, Vector, rotation};
 
 /// One scalar constraint.
@@ -44,6 +44,8 @@ pub trait Kinematics<'g> {
     fn number(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
     /// A formula of parameters, t and positions.
     fn of_positions(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
+    /// A formula of parameters, t and an angle, and its derivative by that angle.
+    fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError>;
     /// A direction of parameters and t, of length 1.
     fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
     /// Positions of two points in the ground's frame, m.
@@ -94,6 +96,11 @@ impl<'g, 'k> Frames<'g, 'k> {
         Vector::of(self.g, self.pair.outward_of_second(self.g, direction.exprs()))
     }
 
+    /// r_B − r_A, in the ground's axes.
+    pub fn offset(&self) -> Vector<'g> {
+        Vector::of(self.g, self.pair.offset(self.g))
+    }
+
     /// a · (r_B − r_A) with a direction of the first frame.
     pub fn displacement(&self, direction: Vector<'g>) -> Scalar<'g> {
         self.g.scalar(self.pair.displacement(self.g, direction.exprs()))
@@ -103,7 +110,7 @@ impl<'g, 'k> Frames<'g, 'k> {
     /// on the second body and the opposite on the first, at the same place.
     pub fn normal_row(&self, name: &'static str, normal: Vector<'g>) -> Row<'g> {
         let normal = self.outward(normal);
-        let offset = Vector::of(self.g, self.pair.offset(self.g));
+        let offset = self.offset();
         Row { name, value: normal.dot(offset), force: -normal, torque: Vector::zero(self.g) }
     }
 
