@@ -169,8 +169,8 @@ fn natural_frequencies_are_those_of_the_textbook() {
             })
             .collect();
         for errors in &errors {
-            let told: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
-            println!("{name}: off by {}", told.join(", "));
+            let shown: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
+            println!("{name}: off by {}", shown.join(", "));
         }
         let last: Vec<f64> = errors[3].iter().zip(&errors[4]).map(|(coarse, fine)| order(*coarse, *fine)).collect();
         println!("orders {last:.2?}");
@@ -356,7 +356,7 @@ fn instructions_grow_with_the_elements() {
 }
 
 /// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730² √(EI/μL⁴).
-/// Clamps that are too near to one another are told.
+/// Clamps that are too near to one another are reported.
 #[test]
 fn a_beam_starts_straight_or_says_why_not() {
     let clamped = |apart: f64| {
