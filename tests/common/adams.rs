@@ -92,3 +92,22 @@ impl Case {
         findings.none();
     }
 }
+
+/// The two tests of a [`Case`]: against numbers that stand in it, and against the third party's files.
+#[allow(unused_macros, reason = "the tests of elements alone use it")]
+macro_rules! compared_with_adams {
+    ($case:expr) => {
+        #[test]
+        fn after_a_second_it_is_where_adams_has_it() {
+            $case.at_one_second();
+        }
+
+        #[test]
+        #[ignore = "third-party results: MBINT_REFERENCE=folder"]
+        fn it_moves_as_in_adams() {
+            $case.over_five_seconds();
+        }
+    };
+}
+#[allow(unused_imports, reason = "the tests of elements alone use it")]
+pub(crate) use compared_with_adams;

@@ -46,9 +46,9 @@ pub fn load(path: &Path) -> Description {
 #[track_caller]
 pub fn load_all(path: &Path) -> Vec<Description> {
     let reading = model::read(path, &[]);
-    let told = reading.diagnostics.clone();
+    let report = reading.diagnostics.clone();
     let chosen = reading.chosen(&[]).unwrap();
-    assert!(!chosen.is_empty(), "{told}");
+    assert!(!chosen.is_empty(), "{report}");
     chosen.into_iter().map(|(_, description)| description).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Cylindrical joints: MSC Adams.
 
 use crate::common::power::{assert_balance, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 
 const ADAMS: Case = Case {
     name: "cylindrical_joint/Cylindrical",
@@ -13,16 +13,7 @@ initial: { j.displacement: 0, j.angle: 0 }",
     at_one: [2.0, 0.0, -4.90332, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {

@@ -1,7 +1,7 @@
 //! Rods of fixed length: the conical pendulum, and MSC Adams.
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 use crate::common::{Vary, curve, distance_from, nominal, order, read};
 
 /// A bob on a string goes round at ω² = g / (L cos 30°), also where it only turns about z, and as a whole body.
@@ -51,16 +51,7 @@ guess: { a.y: 2 }",
     at_one: [0.0, -0.956545, -1.756423, 1.0, 0.0, 0.0, 0.0, 0.0, 12.35703, 22.69017, 0.0, 0.0, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {

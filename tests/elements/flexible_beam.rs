@@ -169,8 +169,8 @@ fn natural_frequencies_are_those_of_the_textbook() {
             })
             .collect();
         for errors in &errors {
-            let told: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
-            println!("{name}: off by {}", told.join(", "));
+            let shown: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
+            println!("{name}: off by {}", shown.join(", "));
         }
         let last: Vec<f64> = errors[3].iter().zip(&errors[4]).map(|(coarse, fine)| order(*coarse, *fine)).collect();
         println!("orders {last:.2?}");
@@ -356,7 +356,7 @@ fn instructions_grow_with_the_elements() {
 }
 
 /// A beam between two clamps: the start's conditions and the constraints say the same of it, and it swings with 4.730² √(EI/μL⁴).
-/// Clamps that are too near to one another are told.
+/// Clamps that are too near to one another are reported.
 #[test]
 fn a_beam_starts_straight_or_says_why_not() {
     let clamped = |apart: f64| {
@@ -386,7 +386,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
     let failure = mbint::study::run(&clamped(0.99), mbint::study::Options::default()).unwrap_err().to_string();
     println!("{failure}");
-    assert!(failure.contains("beam `rod`, which starts straight unless `initial` has x, y and angle of all its nodes"));
+    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives x, y and angle of all its nodes)"));
 }
 
 /// Joint coordinates do not carry what bends.

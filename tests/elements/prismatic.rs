@@ -1,7 +1,7 @@
 //! Prismatic joints: a slope, and MSC Adams.
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
 use crate::common::{nominal, read};
 
@@ -46,16 +46,7 @@ initial: { j.displacement: 0 }",
     at_one: [2.0, 0.0, -4.90332, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {

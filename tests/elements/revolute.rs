@@ -4,7 +4,7 @@ use mbint::model::Formulation;
 use mbint::results::Bounds;
 
 use crate::common::power::{assert_balance, pair, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_converges, assert_exact_force};
 use crate::common::{Vary, curve, distance_from, nominal, order, read, row};
 
@@ -80,16 +80,7 @@ initial: { a.orientation: { axis: x, angle: -90 deg } }",
     at_one: [-0.892381, 0.0, -1.78988, 0.372092, -0.372092, 0.601288, 0.601288, 11.4612, 0.0, 23.2273, 0.0, 2.92614, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {

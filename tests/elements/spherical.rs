@@ -1,7 +1,7 @@
 //! Spherical joints: MSC Adams.
 
 use crate::common::power::{assert_balance, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 
 const ADAMS: Case = Case {
     name: "spherical_joint/Spherical",
@@ -13,16 +13,7 @@ initial: { a.orientation: { axis: x, angle: 0 } }",
     at_one: [-0.892369, 0.0, -1.78988, 0.52622, 0.0, 0.850348, 0.0, 11.4609, 0.0, 23.227, 0.0, 2.92608, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn its_reactions_do_no_work() {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::common::power::{APART, APART_IN_SPACE, assert_balance, pair, spatial_pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::assert_converges;
 use crate::common::{curve, distance_from, nominal, read};
 
@@ -91,16 +91,7 @@ initial: { a.orientation: { axis: x, angle: 0 }, a.x: 0, a.y: 0, a.z: 0 }",
     at_one: [0.0, 0.0, -1.74502, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn a_spring_stores_and_a_damper_takes() {

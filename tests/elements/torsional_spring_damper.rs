@@ -1,7 +1,7 @@
 //! Torsional springs and dampers: the torsional pendulum, and MSC Adams.
 
 use crate::common::power::{APART, assert_balance, pair};
-use crate::common::adams::Case;
+use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::assert_converges;
 use crate::common::{read};
 
@@ -38,16 +38,7 @@ initial: { a.orientation: { axis: x, angle: -90 deg } }",
         ],
 };
 
-#[test]
-fn after_a_second_it_is_where_adams_has_it() {
-    ADAMS.at_one_second();
-}
-
-#[test]
-#[ignore = "third-party results: MBINT_REFERENCE=folder"]
-fn it_moves_as_in_adams() {
-    ADAMS.over_five_seconds();
-}
+compared_with_adams!(ADAMS);
 
 #[test]
 fn a_spring_stores_and_a_damper_takes() {

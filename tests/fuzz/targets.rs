@@ -6,25 +6,25 @@ use mbint::study::{self, Options};
 
 /// Reads a model, and renders what is wrong with it.
 pub fn model(text: &str) {
-    told(&model::read_str("fuzz.yaml", text, &[]));
+    report(&model::read_str("fuzz.yaml", text, &[]));
 }
 
 /// Reads a URDF by itself, and renders what is wrong with it.
 pub fn robot(text: &str) {
     let path = std::env::temp_dir().join(format!("mbint-fuzz-{}.urdf", std::process::id()));
     std::fs::write(&path, text).expect("the folder for temporary files can be written");
-    told(&model::read(&path, &[]));
+    report(&model::read(&path, &[]));
     // What cannot be removed is written over.
     let _ = std::fs::remove_file(&path);
 }
 
-/// Whether errors are told where there is no model, and only there.
-fn told(reading: &model::Reading) {
+/// Whether errors are reported where there is no model, and only there.
+fn report(reading: &model::Reading) {
     if !reading.diagnostics.is_empty() {
         assert!(!reading.diagnostics.render(false).is_empty());
         assert!(reading.diagnostics.records().iter().all(|record| !record.message.is_empty()));
     }
-    assert_eq!(reading.description.is_none(), reading.diagnostics.has_errors(), "errors are told, and nothing else");
+    assert_eq!(reading.description.is_none(), reading.diagnostics.has_errors(), "errors are report, and nothing else");
 }
 
 /// Reads a formula, evaluates and differentiates it; and reads it as a setting of the command line.

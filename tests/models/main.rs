@@ -1,4 +1,4 @@
-//! The models of `models/`, and smaller mechanisms, held against what mbint did not compute: closed forms, invariants,
+//! The models of `models/`, and smaller mechanisms, compared with what mbint did not compute: closed forms, invariants,
 //! published problems, hard cases, and the laws that mechanics and bounds obey. What tests a single element is in `tests/elements`.
 //!
 //! One binary for all of them, so that the library is linked once. Every tolerance says where it comes from: rounding and

@@ -6,7 +6,7 @@ use mbint::results::Method;
 use crate::common::{load, load_all, model_files, run_methods};
 
 #[test]
-fn every_model_is_read_without_a_word() {
+fn every_model_is_read_without_diagnostics() {
     for path in model_files() {
         let reading = model::read(&path, &[]);
         assert!(reading.diagnostics.records().is_empty(), "{}", reading.diagnostics);

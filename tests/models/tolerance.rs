@@ -22,7 +22,7 @@ fn unresolved(bounds: &Bounds) -> usize {
     bands.map(|band| band.error.unresolved.iter().filter(|&&unresolved| unresolved).count()).sum()
 }
 
-/// `bounds: { tolerance: … }` is enough: the true error is within it, and so is the one that is told.
+/// `bounds: { tolerance: … }` is enough: the true error is within it, and so is the one that is reported.
 #[test]
 fn the_tolerance_is_met() {
     let rows = reference("slider_crank/bounds_l1_1pct.csv");
@@ -37,10 +37,10 @@ fn the_tolerance_is_met() {
             (error, band.error.total[row])
         });
         // x3 ranges over 0.303 m.
-        let (errors, told): (Vec<f64>, Vec<f64>) = errors.unzip();
+        let (errors, report): (Vec<f64>, Vec<f64>) = errors.unzip();
         let largest = errors.iter().copied().fold(0.0, f64::max);
         let covered =
-            errors.iter().zip(&told).filter(|(error, told)| error <= told).count() as f64 / errors.len() as f64;
+            errors.iter().zip(&report).filter(|(error, report)| error <= report).count() as f64 / errors.len() as f64;
         println!("{tolerance}: {largest:.2e}, covered {covered:.3}, {:?}", summary.methods.last().unwrap());
         assert!(largest <= tolerance * 0.303, "{tolerance}: {largest}");
         assert!(covered >= 0.99, "{tolerance}: {covered}");

@@ -370,7 +370,7 @@ fn robots_of_a_collection_run() {
                 count += 1;
                 let name = path.display();
                 match model::load(&path, &[]) {
-                    Err(told) => findings.check(false, format_args!("{name}: {told}")),
+                    Err(report) => findings.check(false, format_args!("{name}: {report}")),
                     Ok(description) => {
                         let description = description.duration(0.1);
                         let options = Options { methods: Some(Vec::new()), threads: Some(2), ..Options::default() };

@@ -41,7 +41,7 @@ fn lists_of_the_language_are_text_and_json() {
 }
 
 #[test]
-fn wrong_arguments_are_told_apart_and_end_with_2() {
+fn wrong_arguments_are_distinguished_and_end_with_2() {
     let place = Place::new();
     for (arguments, message) in [
         ("", "Usage: mbint"),
@@ -141,7 +141,7 @@ fn bounds_that_miss_their_tolerance_have_a_status_of_their_own() {
     let (heading, last) = (table.lines().next().unwrap(), table.lines().last().unwrap());
     assert!(heading.ends_with(",unresolved") && last.contains(".chebyshev"), "{last}");
     assert!(place.files("results/crank").iter().any(|name| name == "contributions.csv"));
-    // What cannot be asked for together is told.
+    // What cannot be asked for together is reported.
     let (_, errors) = place.run("run crank.yaml --method chebyshev --set nothing=1", 2);
     assert!(errors.contains("nothing"), "{errors}");
 }
@@ -164,7 +164,7 @@ fn several_models_have_a_folder_each() {
 }
 
 #[test]
-fn a_file_where_the_folder_should_be_is_told_before_the_run() {
+fn a_file_where_the_folder_should_be_is_reported_before_the_run() {
     let place = Place::new();
     place.model("crank");
     fs::write(place.path().join("taken"), "mine").unwrap();

@@ -1,4 +1,4 @@
-//! `mbint cost` on a small model: errors fall with order, points and step as they must, and too wide is told from too narrow.
+//! `mbint cost` on a small model: errors fall with order, points and step as they must, and too wide is distinguished from too narrow.
 
 use std::collections::HashMap;
 use std::fs;
@@ -155,8 +155,8 @@ fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     fs::write(place.path().join("uncertain.yaml"), OSCILLATOR).unwrap();
     let (text, status) = run("cost uncertain.yaml --budget 1e-6 --tolerance 0.9");
     assert_eq!(status, Some(0), "{text}");
-    for told in ["left out: Taylor: 18 of its settings", "No setting was finished"] {
-        assert!(text.contains(told), "{told} in\n{text}");
+    for line in ["left out: Taylor: 18 of its settings", "No setting was finished"] {
+        assert!(text.contains(line), "{line} in\n{text}");
     }
     for wrong in ["cost", "cost missing.yaml", "cost certain.yaml --budget 0", "cost certain.yaml --tolerance=-1"] {
         assert_eq!(run(wrong).1, Some(2), "{wrong}");
@@ -176,8 +176,8 @@ fn what_is_measured_before_an_interruption_is_kept() {
         cost(&model, &CostOptions { tolerance: 1e-2, budget: 60.0, threads: Some(2), progress, interrupted }).unwrap()
     };
     let [whole, half] = [f64::INFINITY, 0.6].map(study);
-    let told = |study: &CostStudy| study.left_out.iter().any(|line| line.contains("interrupted"));
-    assert_eq!((told(&whole), told(&half)), (false, true));
+    let interrupted = |study: &CostStudy| study.left_out.iter().any(|line| line.contains("interrupted"));
+    assert_eq!((interrupted(&whole), interrupted(&half)), (false, true));
     assert!(!half.bounds.is_empty() && half.bounds.len() < whole.bounds.len());
     assert!(half.bounds.iter().all(|point| point.failure.is_none() && point.seconds.is_finite()));
     assert!(half.trajectories.is_empty() && !whole.trajectories.is_empty());

@@ -37,7 +37,7 @@ fn the_examples_are_right() {
     assert!(models.len() >= 8);
     for text in models {
         let description =
-            model::load_str("effects.md", &text, &[]).unwrap_or_else(|told| panic!("{}", told.render(false)));
+            model::load_str("effects.md", &text, &[]).unwrap_or_else(|report| panic!("{}", report.render(false)));
         study::prepare(&description).unwrap_or_else(|error| panic!("{error}\n{text}"));
     }
 }

@@ -15,7 +15,7 @@ fn the_models_are_right() {
     assert_eq!(blocks("yaml").count(), 1);
     for text in blocks("yaml") {
         let description =
-            model::load_str("README.md", text, &[]).unwrap_or_else(|told| panic!("{}", told.render(false)));
+            model::load_str("README.md", text, &[]).unwrap_or_else(|report| panic!("{}", report.render(false)));
         study::prepare(&description).unwrap();
     }
 }

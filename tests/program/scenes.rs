@@ -59,9 +59,9 @@ const BOUNDS: &str = "bounds: { chebyshev: { order: 3 }, taylor: { order: 2 }, s
 
 fn scene(text: &str, name: &str) -> Description {
     let reading = model::read_str("test.yaml", text, &[]);
-    let told = reading.diagnostics.render(false);
+    let report = reading.diagnostics.render(false);
     let found = reading.scenes.into_iter().find(|scene| scene.name == name);
-    found.unwrap_or_else(|| panic!("no scene {name}\n{told}")).description
+    found.unwrap_or_else(|| panic!("no scene {name}\n{report}")).description
 }
 
 fn explained(place: &Place, arguments: &str) -> serde_json::Value {
@@ -71,8 +71,8 @@ fn explained(place: &Place, arguments: &str) -> serde_json::Value {
 
 /// Everything that was compiled: what `explain` tells, but for the model's name.
 fn compiled(mut explanation: serde_json::Value) -> serde_json::Value {
-    let told = explanation.as_object_mut().unwrap();
-    told.remove("model").unwrap();
+    let report = explanation.as_object_mut().unwrap();
+    report.remove("model").unwrap();
     explanation
 }
 
@@ -198,9 +198,9 @@ fn what_a_model_leaves_out_a_scene_can_put_in() {
 }
 
 #[test]
-fn what_is_left_out_is_told_where_it_is_spoken_of() {
+fn what_is_left_out_is_reported_where_it_is_named() {
     let text = format!("{CRANK}{EFFECTS}{ASKED}scenes: {{ open: {{ without: [wrist, x] }} }}\n");
-    let told = model::load_str("test.yaml", &text, &[]).unwrap_err();
+    let report = model::load_str("test.yaml", &text, &[]).unwrap_err();
     let expected = "\
 error: unknown joint `wrist`
   --> test.yaml:28:36
@@ -215,7 +215,7 @@ error: unknown joint `wrist`
    |
    = help: `wrist` is left out here: leave this out too, or put `wrist` in
 ";
-    assert_eq!(told.render(false), expected);
+    assert_eq!(report.render(false), expected);
 }
 
 /// A short model of two outputs, in three scenes.
@@ -553,7 +553,7 @@ fn the_examples_are_right() {
     let model = include_str!("../../models/door.yaml");
     assert!(model.contains(blocks[0].trim_end()), "the first example is a part of models/door.yaml");
     for text in &blocks[1..] {
-        let told = model::read_str("models/page.yaml", text, &[]).diagnostics;
-        assert!(!told.has_errors(), "{}", told.render(false));
+        let report = model::read_str("models/page.yaml", text, &[]).diagnostics;
+        assert!(!report.has_errors(), "{}", report.render(false));
     }
 }

@@ -216,8 +216,9 @@ impl Group for FrictionJoint {
     }
 
     fn units(read: Option<&Self>) -> Option<usize> {
-        let turns = read.is_some_and(|on| on.mode == FrictionMode::Turning);
-        let coordinate = if turns { JointCoordinate::Angle } else { JointCoordinate::Displacement };
+        // A joint that is unknown is taken for a revolute one, as in other effects on joints.
+        let slides = read.is_some_and(|on| on.mode != FrictionMode::Turning);
+        let coordinate = if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle };
         Some(coordinate.unit_choice())
     }
 

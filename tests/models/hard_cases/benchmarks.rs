@@ -268,7 +268,7 @@ fn loops_stay_parallel_through_their_singular_positions() {
 
 /// Bars lie on one line where the first one's end is at the height of its foot: in the reference between rows.
 #[test]
-fn singular_positions_on_the_way_are_told() {
+fn singular_configurations_on_the_path_are_reported() {
     let benchmark = two_loops();
     let (_, summary) = run_methods(&benchmark.description.clone().step(5e-4), Some(Vec::new()));
     let found: Vec<f64> = summary.singular_configurations.iter().map(|pass| pass.time).collect();
@@ -290,7 +290,7 @@ fn singular_positions_on_the_way_are_told() {
 }
 
 #[test]
-fn bricards_reactions_are_told_to_be_not_unique() {
+fn bricards_reactions_are_reported_as_not_unique() {
     let outputs = &["J5.torque.x", "J0.force.x", "rod3.P3.x", "energy"];
     let description = bricard().description.observing(outputs).duration(0.1).rows_every(0.05);
     let (_, summary) = run_methods(&description.step(5e-3), Some(Vec::new()));

@@ -153,8 +153,8 @@ fn a_bouncing_ball_has_the_energies_of_its_restitutions() {
         let bounds = nominal(&description.clone().step(h));
         let energy = curve(&bounds, "energy");
         let off: Vec<f64> = rows.iter().zip(&exact).map(|(&row, exact)| energy[row] / exact - 1.0).collect();
-        let told: Vec<String> = off.iter().map(|off| format!("{off:.1e}")).collect();
-        println!("h = {h:.2e} s: energies off by {}", told.join(", "));
+        let shown: Vec<String> = off.iter().map(|off| format!("{off:.1e}")).collect();
+        println!("h = {h:.2e} s: energies off by {}", shown.join(", "));
         errors.push(largest(off));
         if h <= 2e-4 {
             let gained = rows.windows(2).map(|pair| energy[pair[1]] / energy[pair[0]]).fold(0.0, f64::max);
@@ -455,8 +455,8 @@ fn mean_errors(case: impl Fn(f64) -> (Description, f64), steps: &[f64]) -> Vec<f
     };
     let errors: Vec<f64> = steps.iter().map(mean).collect();
     let orders: Vec<f64> = errors.windows(2).map(|pair| order(pair[0], pair[1])).collect();
-    let told: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
-    println!("errors {}, orders {orders:.2?}", told.join(", "));
+    let shown: Vec<String> = errors.iter().map(|error| format!("{error:.1e}")).collect();
+    println!("errors {}, orders {orders:.2?}", shown.join(", "));
     errors
 }
 

@@ -38,7 +38,7 @@ fn a_full_disk_is_one_message_and_the_older_results_stay() {
 #[cfg(target_os = "linux")]
 #[test]
 #[ignore = "mounts a file system"]
-fn a_read_only_folder_is_told_before_the_run() {
+fn a_read_only_folder_is_reported_before_the_run() {
     let place = Place::new();
     place.model("crank");
     let script = "mount -o remount,ro small && \"$MBINT\" run -q crank.yaml -o small/out";

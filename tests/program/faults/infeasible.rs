@@ -90,7 +90,7 @@ fn a_sample_that_does_not_fit_names_its_parameters() {
 }
 
 #[test]
-fn what_cannot_be_assembled_is_told_with_its_place_and_share() {
+fn what_cannot_be_assembled_is_reported_with_its_place_and_share() {
     let description = four_bar(WIDE, FURTHER);
     let message = run(&description, false).unwrap_err();
     println!("{message}");
@@ -255,7 +255,7 @@ bounds: {{ scan: {{ points: 12 }} }}
 
 /// The same with steps from a tolerance: a corner for which no step is small enough does not end the others' schedule.
 #[test]
-fn a_pilot_that_locks_leaves_the_schedule_to_the_others() {
+fn a_controlling_sample_that_locks_leaves_the_schedule_to_the_others() {
     let mut description = grashof();
     description.simulation.stepping = model::Stepping::Tolerance(1e-5);
     let (bounds, summary) = run(&description, false).unwrap();

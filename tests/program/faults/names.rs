@@ -39,7 +39,7 @@ fn a_model_that_is_called_like_its_file_stays_in_its_folder() {
     assert_eq!(place.files("results").len(), 1);
 }
 
-/// What is told of a file keeps to its lines, and sends nothing to the terminal, whatever the file is called.
+/// What is reported of a file keeps to its lines, and sends nothing to the terminal, whatever the file is called.
 #[test]
 fn control_characters_of_a_name_are_not_shown() {
     let place = Place::new();
@@ -48,7 +48,7 @@ fn control_characters_of_a_name_are_not_shown() {
     for command in ["check", "run", "explain", "check --format json"] {
         let done = place.command(command).arg(name).output().unwrap();
         assert_eq!(done.status.code(), Some(2));
-        let told = [done.stdout, done.stderr].concat();
-        assert!(!told.contains(&0x1b), "{command}: {}", String::from_utf8_lossy(&told));
+        let report = [done.stdout, done.stderr].concat();
+        assert!(!report.contains(&0x1b), "{command}: {}", String::from_utf8_lossy(&report));
     }
 }
