@@ -9,7 +9,7 @@ use super::joints::axis_in_ground;
 use super::mechanism::{Context, Mechanism};
 use super::space;
 use crate::elements::effects::{Forces, MovingPoint};
-use crate::grammar::{JointCoordinate, Measure, OnJoint, PointRef, TimeOrder, Turning};
+use crate::grammar::{JointCoordinate, OnJoint, PointRef, Rotating, Sensor, TimeOrder};
 use crate::multibody::{Pair, Vector};
 
 /// A mechanism while an effect acts on it.
@@ -49,7 +49,7 @@ impl<'g> Forces<'g> for Acting<'g, '_, '_> {
         self.evaluated(formula, Context::Motion)
     }
 
-    fn value_with(&self, formula: &Formula, own: &[(Measure, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError> {
+    fn value_with(&self, formula: &Formula, own: &[(Sensor, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError> {
         let own: Vec<_> = own.iter().map(|&(measure, value)| (measure, value.expr())).collect();
         self.m.own_formula(self.g, formula, &own).map(|expr| self.g.scalar(expr))
     }
@@ -86,11 +86,11 @@ impl<'g> Forces<'g> for Acting<'g, '_, '_> {
         Vector::of(self.g, self.m.bodies[body].angular_velocity(self.g))
     }
 
-    fn angle(&self, of: Turning, order: TimeOrder) -> Scalar<'g> {
+    fn angle(&self, of: Rotating, order: TimeOrder) -> Scalar<'g> {
         match (of, order) {
-            (Turning::Body(body), TimeOrder::Position) => self.g.scalar(self.m.bodies[body].position[ANGLE]),
-            (Turning::Body(body), _) => self.g.scalar(self.m.bodies[body].velocity[ANGLE]),
-            (Turning::Joint(joint), _) => self.coordinate(OnJoint::angle(joint), order),
+            (Rotating::Body(body), TimeOrder::Position) => self.g.scalar(self.m.bodies[body].position[ANGLE]),
+            (Rotating::Body(body), _) => self.g.scalar(self.m.bodies[body].velocity[ANGLE]),
+            (Rotating::Joint(joint), _) => self.coordinate(OnJoint::angle(joint), order),
         }
     }
 
@@ -154,7 +154,7 @@ impl<'g> Forces<'g> for Acting<'g, '_, '_> {
         self.applied.add_potential(self.g, self.m, &coefficients, energy.expr());
     }
 
-    fn sensor(&mut self, measure: Measure, value: Scalar<'g>) {
+    fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {
         self.applied.sensor(measure, value.expr());
     }
 }

@@ -7,12 +7,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::{Builder, Expr};
 
-use super::body::{EULER, FREEDOMS, MaterialPoint, Turn};
+use super::body::{DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates};
 use super::error::BuildError;
 use super::joints;
 use super::mechanism::Mechanism;
 use super::space::{self, Vector};
-use crate::grammar::{JointCoordinate, Measure, OnJoint};
+use crate::grammar::{JointCoordinate, OnJoint, Sensor};
 
 /// What is added to: a component of a body's force or torque (0 to 5), or a joint's own coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,7 +35,7 @@ pub struct AppliedForces {
     /// What was added to since the last [`AppliedForces::begin`].
     touched: BTreeSet<Target>,
     /// What was measured since then.
-    measured: Vec<(Measure, Expr)>,
+    measured: Vec<(Sensor, Expr)>,
     /// The condition of what is added now, if it has one.
     guard: Option<Expr>,
     /// What acts only where a condition is positive.
@@ -97,12 +97,12 @@ impl AppliedForces {
     }
 
     /// Something that the effect measures, for outputs.
-    pub fn sensor(&mut self, measure: Measure, value: Expr) {
+    pub fn sensor(&mut self, measure: Sensor, value: Expr) {
         self.measured.push((measure, value));
     }
 
     /// What the effect measures.
-    pub fn measured(&self) -> &[(Measure, Expr)] {
+    pub fn measured(&self) -> &[(Sensor, Expr)] {
         &self.measured
     }
 
@@ -116,17 +116,17 @@ impl AppliedForces {
                 }
                 Target::Body(mut index, component) => {
                     while let Some(carried) = &m.bodies[index].carried {
-                        moved.extend(carried.freedoms.iter().map(|freedom| freedom.index));
+                        moved.extend(carried.dofs.iter().map(|dof| dof.index));
                         index = carried.parent;
                     }
                     let body = &m.bodies[index];
-                    let freedoms = match (component, body.turn) {
+                    let dofs = match (component, body.turn) {
                         (0..3, _) => component..component + 1,
-                        (5, Turn::Angle) => EULER..EULER + 1,
-                        (_, Turn::Angle) => 0..0,
-                        (_, Turn::Euler) => EULER..FREEDOMS,
+                        (5, RotationCoordinates::Angle) => EULER..EULER + 1,
+                        (_, RotationCoordinates::Angle) => 0..0,
+                        (_, RotationCoordinates::Euler) => EULER..DEGREES_OF_FREEDOM,
                     };
-                    moved.extend(body.index[freedoms].iter().flatten());
+                    moved.extend(body.index[dofs].iter().flatten());
                 }
             }
         }
@@ -159,9 +159,9 @@ impl AppliedForces {
                 let moment = space::cross(g, foot, [fx, fy, fz]);
                 let at_joint = space::sub(g, [tx, ty, tz], moment);
                 let (about, along) = (space::dot(g, axis, at_joint), space::dot(g, axis, [fx, fy, fz]));
-                for freedom in &carried.freedoms {
-                    let (turn, slide) = (g.mul(freedom.turn, about), g.mul(freedom.slide, along));
-                    force[freedom.index] = g.add(turn, slide);
+                for dof in &carried.dofs {
+                    let (turn, slide) = (g.mul(dof.turn, about), g.mul(dof.slide, along));
+                    force[dof.index] = g.add(turn, slide);
                 }
                 continue;
             }

@@ -21,7 +21,7 @@ use super::rotation::{self, Quaternion};
 use super::space::{self, Matrix, Vector};
 
 /// Places for coordinates: x, y, z, then θ or p₀ to p₃.
-pub const FREEDOMS: usize = 7;
+pub const DEGREES_OF_FREEDOM: usize = 7;
 /// Place of θ.
 pub const ANGLE: usize = 3;
 /// Place of p₀.
@@ -29,7 +29,7 @@ pub const EULER: usize = 3;
 
 /// By what a body turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
+pub enum RotationCoordinates {
     /// θ about z.
     Angle,
     /// Euler parameters.
@@ -40,15 +40,15 @@ pub enum Turn {
 #[derive(Clone, Debug)]
 pub struct Body {
     /// What stands behind x, y, z.
-    pub turn: Turn,
+    pub turn: RotationCoordinates,
     /// x, y, z, then θ or p.
-    pub position: [Expr; FREEDOMS],
+    pub position: [Expr; DEGREES_OF_FREEDOM],
     /// Their first derivatives by time.
-    pub velocity: [Expr; FREEDOMS],
+    pub velocity: [Expr; DEGREES_OF_FREEDOM],
     /// Their second derivatives by time.
-    pub acceleration: [Expr; FREEDOMS],
+    pub acceleration: [Expr; DEGREES_OF_FREEDOM],
     /// Their positions in q; `None` where held, and where the body is carried.
-    pub index: [Option<usize>; FREEDOMS],
+    pub index: [Option<usize>; DEGREES_OF_FREEDOM],
     /// How a joint carries the body, if one does.
     pub carried: Option<Box<Carried>>,
     /// Of a body that is carried and does not only turn about z.
@@ -78,12 +78,12 @@ pub struct Attitude {
 }
 
 /// First three of a list of coordinates.
-fn origin(list: &[Expr; FREEDOMS]) -> Vector {
+fn origin(list: &[Expr; DEGREES_OF_FREEDOM]) -> Vector {
     [list[0], list[1], list[2]]
 }
 
 /// Last four.
-fn euler(list: &[Expr; FREEDOMS]) -> Quaternion {
+fn euler(list: &[Expr; DEGREES_OF_FREEDOM]) -> Quaternion {
     [list[EULER], list[EULER + 1], list[EULER + 2], list[EULER + 3]]
 }
 
@@ -91,13 +91,13 @@ impl Body {
     /// `R a`: from the body's frame to the ground's.
     pub fn rotate(&self, g: &Builder, a: Vector) -> Vector {
         match self.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 let (cos, sin) = (g.cos(self.position[ANGLE]), g.sin(self.position[ANGLE]));
                 let (cx, sy) = (g.mul(cos, a[0]), g.mul(sin, a[1]));
                 let (sx, cy) = (g.mul(sin, a[0]), g.mul(cos, a[1]));
                 [g.sub(cx, sy), g.add(sx, cy), a[2]]
             }
-            Turn::Euler => {
+            RotationCoordinates::Euler => {
                 let matrix = self.matrix(g);
                 space::times(g, &matrix, a)
             }
@@ -108,22 +108,22 @@ impl Body {
     pub fn matrix(&self, g: &Builder) -> Matrix {
         match (&self.attitude, self.turn) {
             (Some(attitude), _) => attitude.matrix,
-            (None, Turn::Angle) => {
+            (None, RotationCoordinates::Angle) => {
                 let axis = space::along(g, 2);
                 rotation::matrix_about(g, axis, self.position[ANGLE])
             }
-            (None, Turn::Euler) => rotation::matrix(g, self.euler()),
+            (None, RotationCoordinates::Euler) => rotation::matrix(g, self.euler()),
         }
     }
 
     /// The frame's orientation as Euler parameters.
     pub fn orientation(&self, g: &Builder) -> Quaternion {
         match self.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 let axis = space::along(g, 2);
                 rotation::about(g, axis, self.position[ANGLE])
             }
-            Turn::Euler => self.euler(),
+            RotationCoordinates::Euler => self.euler(),
         }
     }
 
@@ -153,13 +153,13 @@ impl Body {
         }
     }
 
-    fn turning(&self, g: &Builder, derivative: &[Expr; FREEDOMS]) -> Vector {
+    fn turning(&self, g: &Builder, derivative: &[Expr; DEGREES_OF_FREEDOM]) -> Vector {
         match self.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 let zero = g.constant(0.0);
                 [zero, zero, derivative[ANGLE]]
             }
-            Turn::Euler => {
+            RotationCoordinates::Euler => {
                 let rates = rotation::ground_rates(g, self.euler());
                 rotation::turning(g, &rates, euler(derivative))
             }
@@ -178,14 +178,14 @@ impl Body {
         self.turning_in_body(g, alpha, &self.acceleration)
     }
 
-    fn turning_in_body(&self, g: &Builder, turning: Option<Vector>, derivative: &[Expr; FREEDOMS]) -> Vector {
+    fn turning_in_body(&self, g: &Builder, turning: Option<Vector>, derivative: &[Expr; DEGREES_OF_FREEDOM]) -> Vector {
         match (turning, self.turn) {
             (Some(turning), _) => {
                 let back = space::transposed(&self.matrix(g));
                 space::times(g, &back, turning)
             }
-            (None, Turn::Angle) => self.turning(g, derivative),
-            (None, Turn::Euler) => {
+            (None, RotationCoordinates::Angle) => self.turning(g, derivative),
+            (None, RotationCoordinates::Euler) => {
                 let rates = rotation::body_rates(g, self.euler());
                 rotation::turning(g, &rates, euler(derivative))
             }
@@ -216,12 +216,12 @@ impl Body {
     /// `−ω × (ω × arm)`.
     pub fn centripetal(&self, g: &Builder, arm: Vector) -> Vector {
         match self.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
                 let level = [arm[0], arm[1], g.constant(0.0)];
                 space::scale(g, square, level)
             }
-            Turn::Euler => {
+            RotationCoordinates::Euler => {
                 let omega = self.angular_velocity(g);
                 let turning = space::cross(g, omega, arm);
                 space::cross(g, turning, omega)
@@ -230,11 +230,11 @@ impl Body {
     }
 
     /// Generalised forces of a force F on r₀ and a torque T about it, in the ground's axes.
-    pub fn generalised(&self, g: &Builder, force: Vector, torque: Vector) -> [Expr; FREEDOMS] {
+    pub fn generalised(&self, g: &Builder, force: Vector, torque: Vector) -> [Expr; DEGREES_OF_FREEDOM] {
         let zero = g.constant(0.0);
         let turning = match self.turn {
-            Turn::Angle => [torque[2], zero, zero, zero],
-            Turn::Euler => {
+            RotationCoordinates::Angle => [torque[2], zero, zero, zero],
+            RotationCoordinates::Euler => {
                 let rates = rotation::ground_rates(g, self.euler());
                 rotation::transposed(g, 2.0, &rates, torque)
             }

@@ -7,7 +7,7 @@ use crate::model::{Description, Formulation};
 
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
-use super::body::{Body, EULER, Turn};
+use super::body::{Body, EULER, RotationCoordinates};
 use super::error::BuildError;
 use super::joints;
 use super::mechanism::Mechanism;
@@ -216,7 +216,7 @@ fn mass_matrix(g: &Builder, inertia: &[Expr], w: &[Expr]) -> Vec<(usize, usize, 
 
 /// (pᵀp − 1) / 2 of a body that turns by Euler parameters.
 fn normalisation(g: &Builder, body: &Body) -> Option<Expr> {
-    body.index[EULER + 1].filter(|_| body.turn == Turn::Euler)?;
+    body.index[EULER + 1].filter(|_| body.turn == RotationCoordinates::Euler)?;
     let p = body.euler();
     let (square, one) = (g.dot(&p, &p), g.constant(1.0));
     let excess = g.sub(square, one);
@@ -263,7 +263,7 @@ fn is_effective(g: &Builder, m: &Mechanism, length: f64, info: &ConstraintInfo, 
     ];
     for (at, values) in samples {
         let residual = values[0];
-        // What is not a number is not closed.
+        // What is NaN is not closed.
         let closed = residual.abs() <= CLOSED * length.min(1.0);
         if !closed {
             let (joint, constraint) = (info.joint.clone(), info.name.clone());

@@ -14,7 +14,7 @@ use symdiff::{Builder, Expr};
 use crate::elements::joints::Mobilizer;
 use crate::grammar::{JointCoordinate, PointRef};
 
-use super::body::{ANGLE, Attitude, EULER, Turn};
+use super::body::{ANGLE, Attitude, EULER, RotationCoordinates};
 use super::error::BuildError;
 use super::mechanism::{Context, Mechanism, Owner};
 use super::rotation::{self, Quaternion};
@@ -23,7 +23,7 @@ use super::tree::Carrier;
 
 /// A coordinate of the joint that carries a body.
 #[derive(Clone, Copy, Debug)]
-pub struct Freedom {
+pub struct DegreeOfFreedom {
     /// Its place in q.
     pub index: usize,
     /// Turn about the axis for one of it.
@@ -52,7 +52,7 @@ pub struct Carried {
     /// ṡ, s̈.
     pub sliding: [Expr; 2],
     /// The coordinates.
-    pub freedoms: Vec<Freedom>,
+    pub dofs: Vec<DegreeOfFreedom>,
 }
 
 /// Entries of a rotation nearer than this to 0 or ±1 are so but for rounding.
@@ -74,13 +74,13 @@ impl Mechanism<'_> {
         let description = self.description;
         // What the tree uses has a mobilizer; without one a body would be welded.
         let Some(mobilizer) = description.joints[carrier.joint].kind.mobilizer() else { return Ok(()) };
-        let freedoms = self.freedoms(g, &mobilizer, carrier)?;
-        let along = |g: &Builder, list: &[Expr], part: fn(&Freedom) -> Expr| {
-            let parts: Vec<Expr> = freedoms.iter().map(|freedom| g.mul(part(freedom), list[freedom.index])).collect();
+        let dofs = self.dofs(g, &mobilizer, carrier)?;
+        let along = |g: &Builder, list: &[Expr], part: fn(&DegreeOfFreedom) -> Expr| {
+            let parts: Vec<Expr> = dofs.iter().map(|dof| g.mul(part(dof), list[dof.index])).collect();
             g.sum(parts)
         };
-        let turn = |freedom: &Freedom| freedom.turn;
-        let slide = |freedom: &Freedom| freedom.slide;
+        let turn = |dof: &DegreeOfFreedom| dof.turn;
+        let slide = |dof: &DegreeOfFreedom| dof.slide;
         let angle = along(g, &self.q, turn);
         let turning = [along(g, &self.v, turn), along(g, &self.w, turn)];
         let displacement = along(g, &self.q, slide);
@@ -129,7 +129,7 @@ impl Mechanism<'_> {
             axis: [axis_in_child, axis_in_parent],
             turning,
             sliding,
-            freedoms,
+            dofs,
         };
         let turned = rotation::about(g, axis, angle);
         let turned = rotation::product(g, before, turned);
@@ -140,9 +140,14 @@ impl Mechanism<'_> {
     }
 
     /// The coordinates of a joint that carries; φ and s count from the body that carries.
-    fn freedoms(&mut self, g: &Builder, mobilizer: &Mobilizer, carrier: Carrier) -> Result<Vec<Freedom>, BuildError> {
+    fn dofs(
+        &mut self,
+        g: &Builder,
+        mobilizer: &Mobilizer,
+        carrier: Carrier,
+    ) -> Result<Vec<DegreeOfFreedom>, BuildError> {
         let (zero, one) = (g.constant(0.0), g.constant(if carrier.reversed { -1.0 } else { 1.0 }));
-        let mut freedoms = Vec::new();
+        let mut dofs = Vec::new();
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
             let (turn, slide) = match (mobilizer.pitch(), coordinate) {
                 (Some(pitch), JointCoordinate::Angle) => {
@@ -157,10 +162,10 @@ impl Mechanism<'_> {
             if mobilizer.axis_of(coordinate).is_some() {
                 let index = self.add_coordinate(g, Owner::Joint(carrier.joint, coordinate));
                 self.joint_coordinates.insert((carrier.joint, coordinate), index);
-                freedoms.push(Freedom { index, turn, slide });
+                dofs.push(DegreeOfFreedom { index, turn, slide });
             }
         }
-        Ok(freedoms)
+        Ok(dofs)
     }
 
     /// The rotation of the frame at a point against its body's.
@@ -180,12 +185,12 @@ impl Mechanism<'_> {
         let joint_acceleration = parent.acceleration_of(g, arm);
         let omega = parent.angular_velocity(g);
         match body.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 body.position[ANGLE] = g.add(parent.position[ANGLE], angle);
                 body.velocity[ANGLE] = g.add(parent.velocity[ANGLE], carried.turning[0]);
                 body.acceleration[ANGLE] = g.add(parent.acceleration[ANGLE], carried.turning[1]);
             }
-            Turn::Euler => {
+            RotationCoordinates::Euler => {
                 let orientation = parent.orientation(g);
                 let p = rotation::product(g, orientation, turned);
                 let parent_rotation = parent.matrix(g);

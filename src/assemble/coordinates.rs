@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use symdiff::{Builder, Expr, Formula};
 
 use crate::grammar::JointCoordinate;
-use crate::model::{Description, Referent, StartValue, TimeOrder};
+use crate::model::{Description, StartValue, Symbol, TimeOrder};
 
 use super::body::ANGLE;
 use super::error::BuildError;
@@ -46,7 +46,7 @@ pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate
     }
     for formula in formulas(description) {
         for (name, _) in formula.names() {
-            if let Some(Referent::JointCoordinate { joint, coordinate, .. }) = description.referent(name) {
+            if let Some(Symbol::JointCoordinate { joint, coordinate, .. }) = description.symbol(name) {
                 add(joint, coordinate);
             }
         }

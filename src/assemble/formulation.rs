@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Formula};
 
-use crate::model::{JointKind, Reference, Referent, StartValue};
+use crate::model::{JointKind, Reference, StartValue, Symbol};
 
 use super::coordinates::formulas_of_motion;
 use super::mechanism::{Context, Mechanism};
@@ -52,8 +52,8 @@ impl Mechanism<'_> {
     fn lost_reaction(&self) -> Option<String> {
         let d = self.description;
         let reaction = |formulas: Vec<&Formula>| {
-            formulas.iter().flat_map(|formula| formula.names()).find_map(|(name, _)| match d.referent(name) {
-                Some(Referent::Reaction { joint, .. }) if self.tree.uses(joint) => Some(&d.joints[joint].name),
+            formulas.iter().flat_map(|formula| formula.names()).find_map(|(name, _)| match d.symbol(name) {
+                Some(Symbol::Reaction { joint, .. }) if self.tree.uses(joint) => Some(&d.joints[joint].name),
                 _ => None,
             })
         };
@@ -63,8 +63,8 @@ impl Mechanism<'_> {
         // What acts on coordinates of joints alone is no part of a joint's reaction.
         let of_joints = |formula: &Formula| {
             formula.names().all(|(name, _)| {
-                let known = d.referent(name);
-                matches!(known, Some(Referent::JointCoordinate { .. } | Referent::Parameter(_) | Referent::Time))
+                let known = d.symbol(name);
+                matches!(known, Some(Symbol::JointCoordinate { .. } | Symbol::Parameter(_) | Symbol::Time))
             })
         };
         let acts_on_bodies = |kind: &JointKind| {

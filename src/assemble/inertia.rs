@@ -22,11 +22,11 @@
 
 use symdiff::{Builder, Expr};
 
-use super::body::{ANGLE, Body, EULER, FREEDOMS, Turn};
+use super::body::{ANGLE, Body, DEGREES_OF_FREEDOM, EULER, RotationCoordinates};
 use super::rotation;
 use super::space::{self, Vector};
 
-type MassMatrix = [[Expr; FREEDOMS]; FREEDOMS];
+type MassMatrix = [[Expr; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
 
 impl Body {
     /// Adds the body's entries to M and its velocity-dependent inertial forces to Q. A held coordinate that moves (by
@@ -36,12 +36,12 @@ impl Body {
             return;
         }
         let (matrix, inertial) = match self.turn {
-            Turn::Angle => self.turning_by_angle(g),
-            Turn::Euler => self.turning_by_euler(g),
+            RotationCoordinates::Angle => self.turning_by_angle(g),
+            RotationCoordinates::Euler => self.turning_by_euler(g),
         };
-        for (freedom, entries) in matrix.iter().enumerate() {
-            let Some(row) = self.index[freedom] else { continue };
-            force[row] = g.add(force[row], inertial[freedom]);
+        for (dof, entries) in matrix.iter().enumerate() {
+            let Some(row) = self.index[dof] else { continue };
+            force[row] = g.add(force[row], inertial[dof]);
             for (other, &value) in entries.iter().enumerate() {
                 match self.index[other] {
                     Some(column) if !g.is_zero(value) => mass.push((row, column, value)),
@@ -56,14 +56,14 @@ impl Body {
     }
 
     /// M and Q with θ, of all coordinates, held ones included.
-    fn turning_by_angle(&self, g: &Builder) -> (MassMatrix, [Expr; FREEDOMS]) {
+    fn turning_by_angle(&self, g: &Builder) -> (MassMatrix, [Expr; DEGREES_OF_FREEDOM]) {
         let zero = g.constant(0.0);
         let arm = self.rotate(g, self.center);
         let moment = space::scale(g, self.mass, arm);
         let level = [self.center[0], self.center[1], zero];
         let square = space::dot(g, level, level);
         let offset = g.mul(self.mass, square);
-        let mut matrix = [[zero; FREEDOMS]; FREEDOMS];
+        let mut matrix = [[zero; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
         (0..3).for_each(|i| matrix[i][i] = self.mass);
         let x_angle = g.neg(moment[1]);
         (matrix[0][ANGLE], matrix[ANGLE][0]) = (x_angle, x_angle);
@@ -72,20 +72,20 @@ impl Body {
 
         let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
         let strength = g.mul(self.mass, square);
-        let mut inertial = [zero; FREEDOMS];
+        let mut inertial = [zero; DEGREES_OF_FREEDOM];
         inertial[0] = g.mul(strength, arm[0]);
         inertial[1] = g.mul(strength, arm[1]);
         (matrix, inertial)
     }
 
     /// M and Q with Euler parameters.
-    fn turning_by_euler(&self, g: &Builder) -> (MassMatrix, [Expr; FREEDOMS]) {
+    fn turning_by_euler(&self, g: &Builder) -> (MassMatrix, [Expr; DEGREES_OF_FREEDOM]) {
         let zero = g.constant(0.0);
         let p = self.euler();
         let r = rotation::matrix(g, p);
         let rates = rotation::body_rates(g, p);
         let about_origin = self.inertia_about_origin(g);
-        let mut matrix = [[zero; FREEDOMS]; FREEDOMS];
+        let mut matrix = [[zero; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
         (0..3).for_each(|i| matrix[i][i] = self.mass);
 
         // −2 m R s̃ G: column j is 2 m R (G_j × s).
@@ -148,11 +148,11 @@ impl Body {
         let square = space::dot(g, velocity, velocity);
         let moving = g.mul(self.mass, square);
         let turning = match self.turn {
-            Turn::Angle => {
+            RotationCoordinates::Angle => {
                 let square = g.mul(self.velocity[ANGLE], self.velocity[ANGLE]);
                 g.mul(self.inertia[2][2], square)
             }
-            Turn::Euler => {
+            RotationCoordinates::Euler => {
                 let omega = self.angular_velocity_in_body(g);
                 let momentum = space::times(g, &self.inertia, omega);
                 space::dot(g, momentum, omega)

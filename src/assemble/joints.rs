@@ -57,11 +57,9 @@ impl<'g> Kinematics<'g> for Position<'g, '_, '_> {
     fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
         // A name that no file can give to anything else.
         let variable = self.g.variable("own:angle");
-        let value = formula.0.build(self.g, |name| match self.m.description.referent(name) {
+        let value = formula.0.build(self.g, |name| match self.m.description.symbol(name) {
             _ if name == OfAngle::VARIABLE => Ok(variable),
-            Some(referent) if Context::of(referent) <= Context::Time => {
-                Ok(self.g.scalar(self.m.observe(self.g, referent)))
-            }
+            Some(symbol) if Context::of(symbol) <= Context::Time => Ok(self.g.scalar(self.m.observe(self.g, symbol))),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Time }),
         })?;
         let roots = [value.expr(), value.derivative(variable).expr()];

@@ -6,10 +6,10 @@ use symdiff::{Builder, Expr, Formula, Scalar};
 
 use crate::elements::joints::Mobilizer;
 use crate::model::{
-    self, Coordinate, Description, JointCoordinate, Measure, ParameterValue, PointRef, Referent, Rotation, TimeOrder,
+    self, Coordinate, Description, JointCoordinate, ParameterValue, PointRef, Rotation, Sensor, Symbol, TimeOrder,
 };
 
-use super::body::{ANGLE, Body, EULER, FREEDOMS, MaterialPoint, Turn};
+use super::body::{ANGLE, Body, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates};
 use super::error::BuildError;
 use super::joints::Reaction;
 use super::rotation::{self, Quaternion};
@@ -21,28 +21,28 @@ pub use crate::multibody::{Context, Frame};
 
 impl Context {
     /// The smallest context in which something is known.
-    pub(super) fn of(referent: Referent) -> Self {
-        match referent {
-            Referent::Parameter(_) => Self::Parameters,
-            Referent::Time => Self::Time,
-            Referent::Coordinate { order, .. }
-            | Referent::Point { order, .. }
-            | Referent::AngularMotion { order, .. }
-            | Referent::JointCoordinate { order, .. } => match order {
+    pub(super) fn of(symbol: Symbol) -> Self {
+        match symbol {
+            Symbol::Parameter(_) => Self::Parameters,
+            Symbol::Time => Self::Time,
+            Symbol::Coordinate { order, .. }
+            | Symbol::Point { order, .. }
+            | Symbol::AngularMotion { order, .. }
+            | Symbol::JointCoordinate { order, .. } => match order {
                 TimeOrder::Position => Self::Positions,
                 TimeOrder::Velocity => Self::Motion,
                 TimeOrder::Acceleration => Self::Everything,
             },
-            Referent::RollPitchYaw { .. } => Self::Positions,
-            Referent::Reaction { .. } => Self::Motion,
-            Referent::Measure { measure, .. } if measure.is_motion() => Self::Motion,
-            Referent::Measure { .. } | Referent::Energy(_) => Self::Everything,
+            Symbol::RollPitchYaw { .. } => Self::Positions,
+            Symbol::Reaction { .. } => Self::Motion,
+            Symbol::Sensor { measure, .. } if measure.is_motion() => Self::Motion,
+            Symbol::Sensor { .. } | Symbol::Energy(_) => Self::Everything,
         }
     }
 }
 
 /// A coordinate's place in its body's list.
-pub fn freedom(coordinate: Coordinate) -> usize {
+pub fn dof(coordinate: Coordinate) -> usize {
     match coordinate {
         Coordinate::X => 0,
         Coordinate::Y => 1,
@@ -95,7 +95,7 @@ pub struct Mechanism<'d> {
     /// Kinetic energy of what is no rigid body, J.
     pub bending: Expr,
     /// What the effects built so far measure.
-    pub measures: BTreeMap<(usize, Measure), Expr>,
+    pub measures: BTreeMap<(usize, Sensor), Expr>,
 }
 
 impl<'d> Mechanism<'d> {
@@ -160,13 +160,13 @@ impl<'d> Mechanism<'d> {
 
     fn body(&mut self, g: &Builder, index: usize, body: &model::Body) -> Result<Body, BuildError> {
         let zero = g.constant(0.0);
-        let turn = if body.has_orientation() { Turn::Euler } else { Turn::Angle };
+        let turn = if body.has_orientation() { RotationCoordinates::Euler } else { RotationCoordinates::Angle };
         let mut built = Body {
             turn,
-            position: [zero; FREEDOMS],
-            velocity: [zero; FREEDOMS],
-            acceleration: [zero; FREEDOMS],
-            index: [None; FREEDOMS],
+            position: [zero; DEGREES_OF_FREEDOM],
+            velocity: [zero; DEGREES_OF_FREEDOM],
+            acceleration: [zero; DEGREES_OF_FREEDOM],
+            index: [None; DEGREES_OF_FREEDOM],
             carried: None,
             attitude: None,
             mass: match &body.mass {
@@ -181,7 +181,7 @@ impl<'d> Mechanism<'d> {
             points: Vec::with_capacity(body.points.len()),
             frames: Vec::with_capacity(body.points.len()),
         };
-        if turn == Turn::Euler {
+        if turn == RotationCoordinates::Euler {
             let held = match &body.held_orientation {
                 Some(rotation) => self.rotation(g, rotation)?,
                 None => rotation::identity(g),
@@ -190,19 +190,19 @@ impl<'d> Mechanism<'d> {
         }
         let carried = self.tree.carriers[index].is_some();
         for &coordinate in body.coordinates.iter().filter(|_| !carried) {
-            let freedom = freedom(coordinate);
+            let dof = dof(coordinate);
             let index = self.add_coordinate(g, Owner::Body(index, coordinate));
-            built.index[freedom] = Some(index);
-            built.position[freedom] = self.q[index];
-            built.velocity[freedom] = self.v[index];
-            built.acceleration[freedom] = self.w[index];
+            built.index[dof] = Some(index);
+            built.position[dof] = self.q[index];
+            built.velocity[dof] = self.v[index];
+            built.acceleration[dof] = self.w[index];
         }
         for (coordinate, value) in &body.held {
-            let freedom = freedom(*coordinate);
+            let dof = dof(*coordinate);
             let value = self.formula(g, value, Context::Time)?;
-            built.position[freedom] = value;
-            built.velocity[freedom] = g.derivative(value, self.time);
-            built.acceleration[freedom] = g.derivative(built.velocity[freedom], self.time);
+            built.position[dof] = value;
+            built.velocity[dof] = g.derivative(value, self.time);
+            built.acceleration[dof] = g.derivative(built.velocity[dof], self.time);
         }
         for point in &body.points {
             built.points.push(self.vector(g, &point.position, Context::Parameters)?);
@@ -232,13 +232,13 @@ impl<'d> Mechanism<'d> {
     }
 
     /// J; of a body that turns about z only, no more than J_zz.
-    fn inertia(&self, g: &Builder, body: &model::Body, turn: Turn) -> Result<[Vector; 3], BuildError> {
+    fn inertia(&self, g: &Builder, body: &model::Body, turn: RotationCoordinates) -> Result<[Vector; 3], BuildError> {
         let mut tensor = [space::zero(g); 3];
         let Some(inertia) = &body.inertia else { return Ok(tensor) };
         let model::Inertia { xx, yy, zz, xy, xz, yz } = inertia;
         let elements: &[(usize, usize, &Formula)] = match turn {
-            Turn::Angle => &[(2, 2, zz)],
-            Turn::Euler => &[(0, 0, xx), (1, 1, yy), (2, 2, zz), (0, 1, xy), (0, 2, xz), (1, 2, yz)],
+            RotationCoordinates::Angle => &[(2, 2, zz)],
+            RotationCoordinates::Euler => &[(0, 0, xx), (1, 1, yy), (2, 2, zz), (0, 1, xy), (0, 2, xz), (1, 2, yz)],
         };
         for &(row, column, element) in elements {
             let element = self.formula(g, element, Context::Parameters)?;
@@ -272,21 +272,21 @@ impl<'d> Mechanism<'d> {
 
     /// A formula as an expression: the one place where names become expressions.
     pub fn formula(&self, g: &Builder, formula: &Formula, context: Context) -> Result<Expr, BuildError> {
-        let built = formula.build(g, |name| match self.description.referent(name) {
-            Some(referent) if Context::of(referent) <= context => Ok(g.scalar(self.observe(g, referent))),
+        let built = formula.build(g, |name| match self.description.symbol(name) {
+            Some(symbol) if Context::of(symbol) <= context => Ok(g.scalar(self.observe(g, symbol))),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: context }),
         });
         built.map(Scalar::expr)
     }
 
     /// A formula of an effect, which may speak of what the effect measures itself.
-    pub fn own_formula(&self, g: &Builder, formula: &Formula, own: &[(Measure, Expr)]) -> Result<Expr, BuildError> {
-        let built = formula.build(g, |name| match self.description.referent(name) {
-            Some(Referent::Measure { effect, measure }) if !self.measures.contains_key(&(effect, measure)) => {
+    pub fn own_formula(&self, g: &Builder, formula: &Formula, own: &[(Sensor, Expr)]) -> Result<Expr, BuildError> {
+        let built = formula.build(g, |name| match self.description.symbol(name) {
+            Some(Symbol::Sensor { effect, measure }) if !self.measures.contains_key(&(effect, measure)) => {
                 let found = own.iter().find(|(known, _)| *known == measure).map(|&(_, expr)| g.scalar(expr));
                 found.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: Context::Motion })
             }
-            Some(referent) if Context::of(referent) <= Context::Motion => Ok(g.scalar(self.observe(g, referent))),
+            Some(symbol) if Context::of(symbol) <= Context::Motion => Ok(g.scalar(self.observe(g, symbol))),
             _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Motion }),
         });
         built.map(Scalar::expr)

@@ -1,31 +1,31 @@
-//! What is observed: a referent as an expression over t, q, v, w, λ and the parameters.
+//! What is observed: a symbol as an expression over t, q, v, w, λ and the parameters.
 
 use symdiff::{Builder, Expr};
 
-use crate::model::{EnergyKind, ReactionComponent, Referent, TimeOrder};
+use crate::model::{EnergyKind, ReactionComponent, Symbol, TimeOrder};
 
 use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, freedom};
+use super::mechanism::{Context, Mechanism, dof};
 use super::rotation;
 use super::space;
 use super::system::OutputInfo;
 
 impl Mechanism<'_> {
     /// The expression that a name stands for. Joints whose reactions are asked for must have been built.
-    pub fn observe(&self, g: &Builder, referent: Referent) -> Expr {
-        match referent {
-            Referent::Parameter(index) => self.parameters[index],
-            Referent::Time => self.time,
-            Referent::Coordinate { body, coordinate, order } => {
+    pub fn observe(&self, g: &Builder, symbol: Symbol) -> Expr {
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[index],
+            Symbol::Time => self.time,
+            Symbol::Coordinate { body, coordinate, order } => {
                 let body = &self.bodies[body];
                 let list = match order {
                     TimeOrder::Position => &body.position,
                     TimeOrder::Velocity => &body.velocity,
                     TimeOrder::Acceleration => &body.acceleration,
                 };
-                list[freedom(coordinate)]
+                list[dof(coordinate)]
             }
-            Referent::AngularMotion { body, axis, order, in_body } => {
+            Symbol::AngularMotion { body, axis, order, in_body } => {
                 let body = &self.bodies[body];
                 let turning = match (order, in_body) {
                     (TimeOrder::Acceleration, true) => body.angular_acceleration_in_body(g),
@@ -35,15 +35,13 @@ impl Mechanism<'_> {
                 };
                 turning[axis]
             }
-            Referent::RollPitchYaw { body, angle } => {
+            Symbol::RollPitchYaw { body, angle } => {
                 let orientation = self.bodies[body].orientation(g);
                 let matrix = rotation::matrix(g, orientation);
                 rotation::angles(g, &matrix)[angle]
             }
-            Referent::JointCoordinate { joint, coordinate, order } => {
-                self.joint_coordinate(g, joint, coordinate, order)
-            }
-            Referent::Point { body, point, coordinate, order } => {
+            Symbol::JointCoordinate { joint, coordinate, order } => self.joint_coordinate(g, joint, coordinate, order),
+            Symbol::Point { body, point, coordinate, order } => {
                 let body = &self.bodies[body];
                 let arm = body.rotate(g, body.points[point]);
                 let vector = match order {
@@ -51,9 +49,9 @@ impl Mechanism<'_> {
                     TimeOrder::Velocity => body.velocity_of(g, arm),
                     TimeOrder::Acceleration => body.acceleration_of(g, arm),
                 };
-                vector[freedom(coordinate)]
+                vector[dof(coordinate)]
             }
-            Referent::Reaction { joint, component } => {
+            Symbol::Reaction { joint, component } => {
                 let reaction = &self.reactions[joint];
                 match component {
                     ReactionComponent::Force => reaction.magnitude,
@@ -63,13 +61,13 @@ impl Mechanism<'_> {
                     ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
                 }
             }
-            Referent::Measure { effect, measure } => match self.measures.get(&(effect, measure)) {
+            Symbol::Sensor { effect, measure } => match self.measures.get(&(effect, measure)) {
                 Some(&measured) => measured,
                 None => g.constant(0.0),
             },
-            Referent::Energy(EnergyKind::Kinetic) => self.kinetic_energy(g),
-            Referent::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
-            Referent::Energy(EnergyKind::Total) => {
+            Symbol::Energy(EnergyKind::Kinetic) => self.kinetic_energy(g),
+            Symbol::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
+            Symbol::Energy(EnergyKind::Total) => {
                 let kinetic = self.kinetic_energy(g);
                 let potential = g.sum(self.potentials.iter().copied());
                 g.add(kinetic, potential)

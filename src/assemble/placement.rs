@@ -24,7 +24,7 @@ use super::error::BuildError;
 use super::mechanism::{Context, Mechanism};
 
 /// x, y, θ.
-const FREEDOMS: usize = 3;
+const DEGREES_OF_FREEDOM: usize = 3;
 /// Place of θ.
 const ANGLE: usize = 2;
 
@@ -65,19 +65,19 @@ impl Link {
 /// Poses of all bodies.
 pub struct PlanarPoses {
     links: Vec<Vec<Link>>,
-    given: Vec<[Option<f64>; FREEDOMS]>,
-    poses: Vec<Option<[f64; FREEDOMS]>>,
+    given: Vec<[Option<f64>; DEGREES_OF_FREEDOM]>,
+    poses: Vec<Option<[f64; DEGREES_OF_FREEDOM]>>,
 }
 
 impl PlanarPoses {
     /// Places all bodies; `known` are the coordinates with a value at the start.
     pub fn of(g: &Builder, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
-        let mut given = vec![[None; FREEDOMS]; m.bodies.len()];
+        let mut given = vec![[None; DEGREES_OF_FREEDOM]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
-            for (freedom, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
-                let value = match body.index[freedom] {
+            for (dof, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
+                let value = match body.index[dof] {
                     Some(index) => known[index],
-                    None => body.carried.is_none().then_some(body.position[freedom]),
+                    None => body.carried.is_none().then_some(body.position[dof]),
                 };
                 *given = value.map(|value| m.nominal(g, &[value])[0]);
             }
@@ -116,7 +116,7 @@ impl PlanarPoses {
     }
 
     /// x, y, θ of a body.
-    pub fn pose(&self, body: usize) -> [f64; FREEDOMS] {
+    pub fn pose(&self, body: usize) -> [f64; DEGREES_OF_FREEDOM] {
         self.poses[body].unwrap_or_else(|| self.given[body].map(|value| value.unwrap_or(0.0)))
     }
 
@@ -202,7 +202,7 @@ impl PlanarPoses {
 }
 
 /// A point of a body in the ground's frame.
-fn at([x, y, angle]: [f64; FREEDOMS], [a, b]: [f64; 2]) -> [f64; 2] {
+fn at([x, y, angle]: [f64; DEGREES_OF_FREEDOM], [a, b]: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     [x + cos * a - sin * b, y + sin * a + cos * b]
 }

@@ -19,9 +19,9 @@ use symdiff::{Builder, Expr, Formula};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
 
-use super::body::{ANGLE, Body, EULER, Turn};
+use super::body::{ANGLE, Body, EULER, RotationCoordinates};
 use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, Owner, freedom};
+use super::mechanism::{Context, Mechanism, Owner, dof};
 use super::rotation;
 
 /// A frame against another, in numbers.
@@ -107,12 +107,12 @@ impl<'m, 'd> Poses<'m, 'd> {
             values.push(match owner {
                 Owner::Body(body, coordinate) => {
                     let pose = self.pose(body);
-                    let place = freedom(coordinate);
+                    let place = dof(coordinate);
                     match (place, m.bodies[body].turn) {
                         (0..3, _) => pose.position[place],
-                        (_, Turn::Angle) => angle_about(&pose.orientation, &Vector3::z()),
+                        (_, RotationCoordinates::Angle) => angle_about(&pose.orientation, &Vector3::z()),
                         // nalgebra keeps the scalar part last.
-                        (_, Turn::Euler) => pose.orientation.coords[(place - EULER + 3) % 4],
+                        (_, RotationCoordinates::Euler) => pose.orientation.coords[(place - EULER + 3) % 4],
                     }
                 }
                 Owner::Joint(joint, coordinate) => self.joint(g, joint, coordinate)?,
@@ -266,8 +266,10 @@ fn known_of(g: &Builder, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> 
         None => Some(m.nominal(g, &[body.position[place]])[0]),
     };
     let orientation = match body.turn {
-        Turn::Angle => value(ANGLE).map(|angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle)),
-        Turn::Euler => {
+        RotationCoordinates::Angle => {
+            value(ANGLE).map(|angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle))
+        }
+        RotationCoordinates::Euler => {
             let p: Option<Vec<f64>> = (EULER..EULER + 4).map(value).collect();
             p.map(|p| UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3])))
         }

@@ -24,7 +24,7 @@ use symdiff::{Builder, Expr};
 use crate::grammar::JointCoordinate;
 
 use super::applied_forces::AppliedForces;
-use super::body::{Body, EULER, Turn};
+use super::body::{Body, EULER, RotationCoordinates};
 use super::joints::Reaction;
 use super::mechanism::Mechanism;
 use super::rotation;
@@ -81,9 +81,9 @@ pub fn inertial_forces(g: &Builder, m: &Mechanism, field: Vector) -> InertialFor
         let moment = space::cross(g, carried.foot, force);
         let at_joint = space::sub(g, torque, moment);
         let (about, along) = (space::dot(g, carried.axis[0], at_joint), space::dot(g, carried.axis[0], force));
-        for freedom in &carried.freedoms {
-            let (turn, slide) = (g.mul(freedom.turn, about), g.mul(freedom.slide, along));
-            forces.generalised[freedom.index] = g.add(turn, slide);
+        for dof in &carried.dofs {
+            let (turn, slide) = (g.mul(dof.turn, about), g.mul(dof.slide, along));
+            forces.generalised[dof.index] = g.add(turn, slide);
         }
         let force = space::times(g, &carried.rotation, force);
         let torque = space::times(g, &carried.rotation, at_joint);
@@ -166,11 +166,11 @@ fn inertial_wrench(g: &Builder, body: &Body, motion: &Motion) -> Wrench {
     });
     let turned = match body.turn {
         // Of its inertia only that about z is known, and nothing else turns.
-        Turn::Angle => {
+        RotationCoordinates::Angle => {
             let zero = g.constant(0.0);
             [zero, zero, g.mul(inertia[2][2], motion.alpha[2])]
         }
-        Turn::Euler => {
+        RotationCoordinates::Euler => {
             let product = space::product(g, &motion.spread, &second);
             std::array::from_fn(|i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -190,15 +190,15 @@ fn on_root(g: &Builder, body: &Body, [force, torque]: Wrench, generalised: &mut 
     let force = body.rotate(g, force);
     let zero = g.constant(0.0);
     let turning = match body.turn {
-        Turn::Angle => [torque[2], zero, zero, zero],
-        Turn::Euler => {
+        RotationCoordinates::Angle => [torque[2], zero, zero, zero],
+        RotationCoordinates::Euler => {
             let rates = rotation::body_rates(g, body.euler());
             rotation::transposed(g, 2.0, &rates, torque)
         }
     };
     let parts = [(0, force[0]), (1, force[1]), (2, force[2])].into_iter();
-    for (freedom, part) in parts.chain((EULER..).zip(turning)) {
-        if let Some(row) = body.index.get(freedom).copied().flatten() {
+    for (dof, part) in parts.chain((EULER..).zip(turning)) {
+        if let Some(row) = body.index.get(dof).copied().flatten() {
             generalised[row] = g.add(generalised[row], part);
         }
     }
@@ -238,11 +238,11 @@ impl Mechanism<'_> {
             let is_helix = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
             let mut torque = if turns { across(g, torque, axis) } else { torque };
             let mut force = force;
-            match carried.freedoms.as_slice() {
+            match carried.dofs.as_slice() {
                 // A thread pushes along its axis, and turns by as much as does no work with that.
-                [freedom] if is_helix => {
+                [dof] if is_helix => {
                     let push = space::dot(g, force, axis);
-                    let advance = g.mul(freedom.turn, freedom.slide);
+                    let advance = g.mul(dof.turn, dof.slide);
                     let turning = g.mul(advance, push);
                     let turning = space::scale(g, turning, axis);
                     torque = space::sub(g, torque, turning);

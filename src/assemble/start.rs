@@ -8,7 +8,7 @@ use crate::model::{Coordinate, StartValue, TimeOrder};
 
 use super::body::EULER;
 use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, Owner, freedom};
+use super::mechanism::{Context, Mechanism, Owner, dof};
 use super::placement::PlanarPoses;
 use super::pose::Poses;
 use super::rotation;
@@ -64,7 +64,7 @@ impl Mechanism<'_> {
         for value in values {
             match value {
                 StartValue::Coordinate { body, coordinate, order, value } if *order == wanted => {
-                    if let Some(index) = self.bodies[*body].index[freedom(*coordinate)] {
+                    if let Some(index) = self.bodies[*body].index[dof(*coordinate)] {
                         found[index] = Some(self.formula(g, value, Context::Parameters)?);
                     } else if let Some(carrier) = self.angle_of_carrier(*body, *coordinate, *order) {
                         let own = self.formula(g, value, Context::Parameters)?;
@@ -102,7 +102,7 @@ impl Mechanism<'_> {
     /// angle of the body that carries is named too or is the ground's.
     pub fn angle_of_carrier(&self, body: usize, coordinate: Coordinate, order: TimeOrder) -> Option<CarrierAngle<'_>> {
         let carried = self.bodies[body].carried.as_ref()?;
-        let [freedom] = carried.freedoms.as_slice() else { return None };
+        let [dof] = carried.dofs.as_slice() else { return None };
         let turns = self.description.joints[carried.joint].kind.axis_of(JointCoordinate::Angle).is_some();
         if coordinate != Coordinate::Angle || !turns {
             return None;
@@ -114,8 +114,8 @@ impl Mechanism<'_> {
             _ => None,
         });
         (named.is_some() || carried.parent == 0).then_some(CarrierAngle {
-            index: freedom.index,
-            turn: freedom.turn,
+            index: dof.index,
+            turn: dof.turn,
             parent: named,
         })
     }

@@ -111,7 +111,7 @@ impl PivotChoice<'_> {
 
 /// Frozen factors in one version or two; the corrections refer to them by symbols of their own.
 pub(super) struct Elimination {
-    /// The values that the factorisation computes, and the slots in which they are kept.
+    /// The values that the factorisation computes, and the registers in which they are kept.
     pub frozen: Vec<(Expr, Option<u32>)>,
     /// Values that only one version needs.
     pub guards: FxHashMap<Expr, Guard>,
@@ -126,7 +126,7 @@ pub(super) struct Elimination {
 }
 
 impl Elimination {
-    /// Freezes one version of factors, or two with the condition that decides between them. Slots are taken from `next` on.
+    /// Freezes one version of factors, or two with the condition that decides between them. Registers are taken from `next` on.
     pub fn new(
         graph: &mut Graph,
         inputs: &mut Vec<Input>,
@@ -145,9 +145,9 @@ impl Elimination {
         let frozen_active = freezer.freeze(&active.factors, Some(guards[0]));
         let frozen_inactive = freezer.freeze(&inactive.factors, Some(guards[1]));
         let frozen_condition = freezer.frozen_value(condition);
-        let (_, slot) = freezer.symbol_of[&condition];
+        let (_, register) = freezer.symbol_of[&condition];
         let watched = [(&active, false), (&inactive, true)].map(|(version, inactive)| {
-            let mode = Some(Mode { slot: slot as usize, inactive });
+            let mode = Some(Mode { register: register as usize, inactive });
             Watched { mode, pivots: freezer.watch(version) }
         });
         let watched = watched.into();
@@ -213,11 +213,11 @@ impl<'g> Freezer<'g> {
             return symbol;
         }
         let symbol = self.graph.symbol(&format!("factor:{}", self.frozen.len()));
-        let slot = *self.next;
+        let register = *self.next;
         *self.next += 1;
-        self.inputs.push(Input { symbol, stage: ITERATION, slot });
-        self.frozen.push((value, Some(slot)));
-        self.symbol_of.insert(value, (symbol, slot));
+        self.inputs.push(Input { symbol, stage: ITERATION, register });
+        self.frozen.push((value, Some(register)));
+        self.symbol_of.insert(value, (symbol, register));
         symbol
     }
 
@@ -240,10 +240,11 @@ impl<'g> Freezer<'g> {
         let Version { factors, equilibration } = version;
         let mut watched = Vec::new();
         for pivot in &factors.pivots {
-            if let Some(&(_, slot)) = self.symbol_of.get(&pivot.inverse) {
+            if let Some(&(_, register)) = self.symbol_of.get(&pivot.inverse) {
                 let smallest = pivot.magnitude.into_iter().fold(f64::INFINITY, f64::min)
                     / (equilibration[pivot.row] * equilibration[pivot.column]);
-                watched.push(WatchedPivot { slot: slot as usize, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
+                watched
+                    .push(WatchedPivot { register: register as usize, largest_inverse: 1.0 / (PIVOT_LOSS * smallest) });
             }
         }
         watched

@@ -6,27 +6,27 @@ use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
 use crate::assemble::System;
 
-/// A matrix's entries: (row, column, slot).
+/// A matrix's entries: (row, column, register).
 pub type Entries = Vec<(usize, usize, usize)>;
 
-/// Tapes over the parameters, t, q, v, w and λ in the slots of [`Layout`].
+/// Tapes over the parameters, t, q, v, w and λ in the registers of [`Layout`].
 #[derive(Clone, Debug)]
 pub struct EquationsProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Slots of M w + Φ_qᵀ λ − Q, n, after [`residual`](Self::residual).
+    /// Registers of M w + Φ_qᵀ λ − Q, n, after [`residual`](Self::residual).
     pub motion: Vec<usize>,
-    /// Slots of Φ, m, after [`residual`](Self::residual).
+    /// Registers of Φ, m, after [`residual`](Self::residual).
     pub constraint: Vec<usize>,
-    /// Slots of Φ̇ and of Φ̈, m each, after [`rates`](Self::rates).
+    /// Registers of Φ̇ and of Φ̈, m each, after [`rates`](Self::rates).
     pub constraint_rates: [Vec<usize>; 2],
     /// Derivatives of the motion's equations after [`jacobian`](Self::jacobian): by q, v, w and λ.
     pub motion_by: [Entries; 4],
     /// Φ_q after [`jacobian`](Self::jacobian).
     pub constraint_by_position: Entries,
-    /// Slots of the outputs after [`observe`](Self::observe).
+    /// Registers of the outputs after [`observe`](Self::observe).
     pub outputs: Vec<usize>,
-    /// (coordinate, slot) of the positions, and of the velocities, that are given at the start, after [`given`](Self::given).
+    /// (coordinate, register) of the positions, and of the velocities, that are given at the start, after [`given`](Self::given).
     pub kept: [Vec<(usize, usize)>; 2],
     lowered: Lowered,
 }
@@ -38,9 +38,9 @@ const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
 
 impl EquationsProgram {
-    /// Number of slots of a memory.
-    pub fn slots(&self) -> usize {
-        self.lowered.slots
+    /// Number of registers of a memory.
+    pub fn registers(&self) -> usize {
+        self.lowered.registers
     }
 
     /// Numbers that a new memory holds.
@@ -100,28 +100,28 @@ pub fn compile_equations(system: &System) -> EquationsProgram {
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         free(&given),
     ];
-    let lowered = lower(&graph, &layout.inputs(system), 1, layout.slots() as u32, &kernels);
+    let lowered = lower(&graph, &layout.inputs(system), 1, layout.registers() as u32, &kernels);
 
     let (n, m) = (system.q.len(), system.lambda.len());
-    let slots = |kernel: usize| lowered.outputs[kernel].iter().map(|&slot| slot as usize);
-    let mut derivatives = slots(JACOBIAN);
+    let registers = |kernel: usize| lowered.outputs[kernel].iter().map(|&register| register as usize);
+    let mut derivatives = registers(JACOBIAN);
     let mut entries = |matrix: &SparseMatrix| -> Entries {
-        matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), slot)| (row, column, slot)).collect()
+        matrix.entries().zip(derivatives.by_ref()).map(|((row, column, _), register)| (row, column, register)).collect()
     };
     let motion_by = std::array::from_fn(|place| entries(&matrices[place]));
     let constraint_by_position = entries(&matrices[4]);
     drop(derivatives);
-    let mut given = slots(GIVEN);
+    let mut given = registers(GIVEN);
     let kept = kept.map(|values| {
         let places = (0..n).filter(|&place| values[place].is_some());
         places.zip(given.by_ref()).collect::<Vec<_>>()
     });
     drop(given);
     EquationsProgram {
-        motion: slots(RESIDUAL).take(n).collect(),
-        constraint: slots(RESIDUAL).skip(n).collect(),
-        constraint_rates: [slots(RATES).take(m).collect(), slots(RATES).skip(m).collect()],
-        outputs: slots(OBSERVE).collect(),
+        motion: registers(RESIDUAL).take(n).collect(),
+        constraint: registers(RESIDUAL).skip(n).collect(),
+        constraint_rates: [registers(RATES).take(m).collect(), registers(RATES).skip(m).collect()],
+        outputs: registers(OBSERVE).collect(),
         motion_by,
         constraint_by_position,
         kept,

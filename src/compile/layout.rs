@@ -6,7 +6,7 @@ use symdiff::{Expr, Input};
 
 use crate::assemble::System;
 
-/// The slots that integration reads and writes; a program's own values stand above them. All programs of a system share
+/// The registers that integration reads and writes; a program's own values stand above them. All programs of a system share
 /// this part, so that a state can be copied from one to another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -54,12 +54,12 @@ impl Layout {
         }
     }
 
-    /// Number of slots of this part.
-    pub fn slots(&self) -> usize {
+    /// Number of registers of this part.
+    pub fn registers(&self) -> usize {
         self.correction.end
     }
 
-    /// The slots that make up a state: q, v, a, w, λ.
+    /// The registers that make up a state: q, v, a, w, λ.
     pub fn state(&self) -> Range<usize> {
         self.q.start..self.lambda.end
     }
@@ -68,10 +68,10 @@ impl Layout {
     pub(super) fn inputs(&self, system: &System) -> Vec<Input> {
         let mut inputs = Vec::new();
         let mut add = |symbols: &[Expr], start: usize, stage: usize| {
-            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input {
+            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, register)| Input {
                 symbol,
                 stage,
-                slot: slot as u32,
+                register: register as u32,
             }));
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();

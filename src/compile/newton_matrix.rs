@@ -73,10 +73,10 @@ impl StepSymbols {
     fn inputs(&self, layout: &Layout, system: &System) -> Vec<Input> {
         let mut inputs = Vec::new();
         let mut add = |symbols: &[Expr], start: usize, stage: usize| {
-            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, slot)| Input {
+            inputs.extend(symbols.iter().zip(start..).map(|(&symbol, register)| Input {
                 symbol,
                 stage,
-                slot: slot as u32,
+                register: register as u32,
             }));
         };
         let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
@@ -281,7 +281,7 @@ mod tests {
                 transition_velocity: formula("0.2"),
             };
             let (coulomb, viscous, radius) = (formula("0.1"), formula("0.2"), Some(formula("0.05")));
-            let (on, coefficient) = (FrictionJoint { joint, mode: FrictionMode::Turning }, formula("0.4"));
+            let (on, coefficient) = (FrictionJoint { joint, mode: FrictionMode::Rotating }, formula("0.4"));
             m.effect(JointFriction { on, coefficient, dry, coulomb, viscous, radius, length: None });
         }
         let system = m.build();
@@ -291,24 +291,24 @@ mod tests {
         let (newton, inputs) = newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients());
         let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
         let mut values: HashMap<usize, f64> =
-            (0..layout.slots()).map(|slot| (slot, (1.7 * slot as f64 + 0.3).sin())).collect();
+            (0..layout.registers()).map(|register| (register, (1.7 * register as f64 + 0.3).sin())).collect();
         values.insert(layout.step, 0.05);
         let residual = |values: &HashMap<usize, f64>| {
             graph.evaluate(&newton.residual, |symbol| {
                 let input = inputs.iter().find(|input| input.symbol == symbol).unwrap();
-                values[&(input.slot as usize)]
+                values[&(input.register as usize)]
             })
         };
         let entries: Vec<_> = newton.matrix.entries().collect();
         let exprs: Vec<Expr> = entries.iter().map(|entry| entry.2).collect();
         let numbers = graph.evaluate(&exprs, |symbol| {
-            values[&(inputs.iter().find(|input| input.symbol == symbol).unwrap().slot as usize)]
+            values[&(inputs.iter().find(|input| input.symbol == symbol).unwrap().register as usize)]
         });
         let mut by_friction = 0;
-        for (column, slot) in unknowns.enumerate() {
+        for (column, register) in unknowns.enumerate() {
             let ends = [1e-6, -1e-6].map(|step| {
                 let mut moved = values.clone();
-                *moved.get_mut(&slot).unwrap() += step;
+                *moved.get_mut(&register).unwrap() += step;
                 residual(&moved)
             });
             for (row, (ahead, behind)) in ends[0].iter().zip(&ends[1]).enumerate() {

@@ -1,22 +1,22 @@
-//! A step's program: the tapes of one step of a scheme, and the slots of what they compute.
+//! A step's program: the tapes of one step of a scheme, and the registers of what they compute.
 
 use symdiff::{Lowered, Tape};
 
 use super::layout::Layout;
 use super::scheme::Coefficients;
 
-/// A state that guides the choice of pivots: values of the layout's slots, at a step size.
+/// A state that guides the choice of pivots: values of the layout's registers, at a step size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PivotSample {
-    /// Values of the slots below `layout.slots()`.
+    /// Values of the registers below `layout.registers()`.
     pub values: Vec<f64>,
 }
 
 /// A pivot that can change, and how small it may become before its factors are not trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WatchedPivot {
-    /// Slot of 1/pivot.
-    pub slot: usize,
+    /// Register of 1/pivot.
+    pub register: usize,
     /// Largest |1/pivot| that is trusted.
     pub largest_inverse: f64,
 }
@@ -24,8 +24,8 @@ pub struct WatchedPivot {
 /// Which lanes solve with a version of the factors: decided by the active condition at the iterate of the factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
-    /// Slot of the active condition.
-    pub slot: usize,
+    /// Register of the active condition.
+    pub register: usize,
     /// Whether the lanes are those in which the condition is not positive.
     pub inactive: bool,
 }
@@ -47,7 +47,7 @@ pub struct Watched {
     pub pivots: Vec<WatchedPivot>,
 }
 
-/// Compiled form of a system for one scheme. A tile of samples has [`Program::slots`] slots.
+/// Compiled form of a system for one scheme. A tile of samples has [`Program::registers`] registers.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// The part of the memory that holds states.
@@ -56,13 +56,13 @@ pub struct Program {
     pub coefficients: Coefficients,
     /// Typical size of each coordinate, n.
     pub scale: Vec<f64>,
-    /// Slots of the outputs after [`Program::observe`].
+    /// Registers of the outputs after [`Program::observe`].
     pub outputs: Vec<usize>,
-    /// Slots of the Newton matrix's entries (row, column, slot) after [`Program::matrix`].
+    /// Registers of the Newton matrix's entries (row, column, register) after [`Program::matrix`].
     pub matrix_entries: Vec<(usize, usize, usize)>,
-    /// Slots of the residual after [`Program::matrix`], n + m.
+    /// Registers of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
-    /// Slots of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
+    /// Registers of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
     pub redundant: Vec<usize>,
     /// Pivots that can become small, for each version of the factors.
     pub watched: Vec<Watched>,
@@ -83,9 +83,9 @@ pub(super) const MATRIX: usize = 4;
 pub(super) const ESTIMATE: usize = 5;
 
 impl Program {
-    /// Number of slots of a tile.
-    pub fn slots(&self) -> usize {
-        self.lowered.slots
+    /// Number of registers of a tile.
+    pub fn registers(&self) -> usize {
+        self.lowered.registers
     }
 
     /// Numbers that a new tile holds.
@@ -133,14 +133,14 @@ impl Program {
         &self.lowered.kernels[MATRIX]
     }
 
-    /// In the correction's first n slots the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the last
+    /// In the correction's first n registers the part of a₊ − a that moves the mechanism, J⁻¹(M (a₊ − a), 0), with the last
     /// factors: after the iteration, and before the state is advanced.
     pub fn estimate(&self) -> &Tape {
         &self.lowered.kernels[ESTIMATE]
     }
 
-    /// Slots that the factors occupy.
-    pub fn factor_slots(&self) -> &[u32] {
+    /// Registers that the factors occupy.
+    pub fn factor_registers(&self) -> &[u32] {
         &self.lowered.outputs[FACTOR]
     }
 }

@@ -33,18 +33,18 @@ const REGULARISATION: f64 = 1e-12;
 /// The same for constraints known to be redundant: the others imply them, and their multipliers stay near zero.
 const RELAXATION: f64 = 1e6;
 
-/// Tapes for the start of a tile of samples; states and corrections are in the slots of [`Layout`].
+/// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
 #[derive(Clone, Debug)]
 pub struct StartProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Slots of Φ, m and those of conditions on positions, after [`StartProgram::position`].
+    /// Registers of Φ, m and those of conditions on positions, after [`StartProgram::position`].
     pub constraint: Vec<usize>,
-    /// Slots of Φ̇, m and those of conditions on velocities, after [`StartProgram::velocity`].
+    /// Registers of Φ̇, m and those of conditions on velocities, after [`StartProgram::velocity`].
     pub constraint_rate: Vec<usize>,
-    /// Slots of the outputs after [`StartProgram::observe`].
+    /// Registers of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
-    /// Φ_q's entries (constraint, coordinate, slot) after [`StartProgram::jacobian`].
+    /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
     lowered: Lowered,
 }
@@ -58,9 +58,9 @@ const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
 
 impl StartProgram {
-    /// Number of slots of a tile.
-    pub fn slots(&self) -> usize {
-        self.lowered.slots
+    /// Number of registers of a tile.
+    pub fn registers(&self) -> usize {
+        self.lowered.registers
     }
 
     /// Numbers that a new tile holds.
@@ -109,11 +109,11 @@ impl StartProgram {
     }
 }
 
-/// A value to compute, and the slot that it must have, if any.
+/// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
 
 /// Compiles the start of a system. `redundant` are constraints that others imply, as far as known; `sample` is a state near
-/// the start (values of the layout's slots).
+/// the start (values of the layout's registers).
 ///
 /// # Errors
 /// Where the equations have no finite values at the sample (rows: motion, constraints, then start conditions), and where
@@ -128,7 +128,7 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
-        values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
+        values.iter().zip(start..).map(|(&value, register)| (value, Some(register as u32))).collect()
     };
     let with = |correction: &[Expr], further: &[Expr]| {
         let mut targets = at(correction, layout.correction.start);
@@ -146,12 +146,12 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
     ];
-    let lowered = lower(&graph, &inputs, 1, layout.slots() as u32, &kernels);
+    let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
-        lowered.outputs[kernel].iter().skip(skip).map(|&slot| slot as usize).collect::<Vec<_>>()
+        lowered.outputs[kernel].iter().skip(skip).map(|&register| register as usize).collect::<Vec<_>>()
     };
     let jacobian_entries =
-        jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), slot)| (row, column, slot)).collect();
+        jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), register)| (row, column, register)).collect();
     Ok(StartProgram {
         constraint: tail(POSITION, n),
         constraint_rate: tail(VELOCITY, n),
@@ -162,12 +162,13 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
     })
 }
 
-/// Positions and velocities that are given at the start, in the slots of the state.
+/// Positions and velocities that are given at the start, in the registers of the state.
 fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
     let mut given = Vec::new();
     for (values, block) in [(&system.start.position, &layout.q), (&system.start.velocity, &layout.v)] {
-        given
-            .extend(values.iter().zip(block.clone()).filter_map(|(value, slot)| value.map(|v| (v, Some(slot as u32)))));
+        given.extend(
+            values.iter().zip(block.clone()).filter_map(|(value, register)| value.map(|v| (v, Some(register as u32)))),
+        );
     }
     given
 }
@@ -354,9 +355,9 @@ impl Builder<'_> {
 
     /// Values at the sample.
     fn at_sample(&self, exprs: &[Expr]) -> Vec<f64> {
-        let slot_of: rustc_hash::FxHashMap<Expr, usize> =
-            self.inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
-        self.graph.evaluate(exprs, |symbol| self.sample[slot_of[&symbol]])
+        let register_of: rustc_hash::FxHashMap<Expr, usize> =
+            self.inputs.iter().map(|input| (input.symbol, input.register as usize)).collect();
+        self.graph.evaluate(exprs, |symbol| self.sample[register_of[&symbol]])
     }
 
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {

@@ -10,7 +10,7 @@ use super::scheme::Scheme;
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting};
 use crate::assemble::System;
 
-/// A value to compute, and the slot that it must have, if any.
+/// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
 
 /// Compiles a system. `redundant` are constraints that others imply; pivots are good near the states of `samples`.
@@ -28,7 +28,7 @@ pub fn compile(
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
     let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)?;
-    let mut next = layout.slots() as u32;
+    let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);
     let Elimination { frozen, guards, watched, active: Version { factors, equilibration }, .. } = elimination;
@@ -40,15 +40,19 @@ pub fn compile(
     let lowered = lower_where(&graph, &inputs, ITERATION, next, &kernels, &guards);
     debug_assert_eq!(lowered.stages.len(), STEP_SIZE + 2);
     let nonzeros = newton.matrix.nonzeros();
-    let slots = &lowered.outputs[MATRIX];
-    let matrix_entries =
-        newton.matrix.entries().zip(slots).map(|((row, column, _), &slot)| (row, column, slot as usize)).collect();
+    let registers = &lowered.outputs[MATRIX];
+    let matrix_entries = newton
+        .matrix
+        .entries()
+        .zip(registers)
+        .map(|((row, column, _), &register)| (row, column, register as usize))
+        .collect();
     Ok(Program {
         coefficients,
         scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
-        outputs: lowered.outputs[OBSERVE].iter().map(|&slot| slot as usize).collect(),
+        outputs: lowered.outputs[OBSERVE].iter().map(|&register| register as usize).collect(),
         matrix_entries,
-        residual: slots[nonzeros..].iter().map(|&slot| slot as usize).collect(),
+        residual: registers[nonzeros..].iter().map(|&register| register as usize).collect(),
         redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint).collect(),
         watched,
         equilibration,
@@ -102,7 +106,7 @@ fn solutions(graph: &mut Graph, newton: &NewtonSystem, elimination: &Elimination
     [at(&correction, layout.correction.start), at(moving, layout.correction.start)]
 }
 
-/// q₊, v₊, a₊ and w₊ in the slots of the state.
+/// q₊, v₊, a₊ and w₊ in the registers of the state.
 fn advanced_state(newton: &NewtonSystem, layout: &Layout) -> Vec<Target> {
     let mut advance = at(&newton.position, layout.q.start);
     advance.extend(at(&newton.velocity, layout.v.start));
@@ -111,9 +115,9 @@ fn advanced_state(newton: &NewtonSystem, layout: &Layout) -> Vec<Target> {
     advance
 }
 
-/// Values in consecutive slots.
+/// Values in consecutive registers.
 fn at(values: &[Expr], start: usize) -> Vec<Target> {
-    values.iter().zip(start..).map(|(&value, slot)| (value, Some(slot as u32))).collect()
+    values.iter().zip(start..).map(|(&value, register)| (value, Some(register as u32))).collect()
 }
 
 /// The Newton matrix with its numbers where the conditional forces are active, and where they are inactive; `None` if the
@@ -167,11 +171,11 @@ fn sample_numbers(
     inputs: &[Input],
     samples: &[PivotSample; PIVOT_SAMPLES],
 ) -> Vec<Numbers> {
-    let slot_of: rustc_hash::FxHashMap<Expr, usize> =
-        inputs.iter().map(|input| (input.symbol, input.slot as usize)).collect();
+    let register_of: rustc_hash::FxHashMap<Expr, usize> =
+        inputs.iter().map(|input| (input.symbol, input.register as usize)).collect();
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
     let values: Vec<Vec<f64>> =
-        samples.iter().map(|sample| graph.evaluate(&entries, |symbol| sample.values[slot_of[&symbol]])).collect();
+        samples.iter().map(|sample| graph.evaluate(&entries, |symbol| sample.values[register_of[&symbol]])).collect();
     (0..entries.len()).map(|entry| std::array::from_fn(|sample| values[sample][entry])).collect()
 }
 

@@ -119,7 +119,7 @@ fn binary(function: Binary, a: Kind, b: Kind) -> Result<Kind, String> {
     match function {
         Binary::Add | Binary::Sub => sum(a, b, if function == Binary::Add { "added" } else { "subtracted" }),
         Binary::Min | Binary::Max => sum(a, b, "compared"),
-        Binary::Where | Binary::Elsewhere => Ok(b),
+        Binary::Select | Binary::SelectElse => Ok(b),
         Binary::Atan2 => sum(a, b, "compared").map(|_| Kind::Number(None)),
         Binary::Mul => Ok(product(a, b, Dimension::times, |x, y| x * y)),
         Binary::Div => Ok(product(a, b, Dimension::per, |x, y| x / y)),

@@ -9,7 +9,7 @@ use super::element::{FromNumber, Group, Key, Quantity, Value, number_as_json};
 use super::plane;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
-use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, SymbolTable, Turning};
+use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, Rotating, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{self, Node};
@@ -258,7 +258,7 @@ pub struct BodyRef(pub usize);
 
 /// A joint with an angle, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TurningJoint(pub usize);
+pub struct RotatingJoint(pub usize);
 
 /// A joint with a displacement, by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -267,7 +267,7 @@ pub struct SlidingJoint(pub usize);
 reference! {
     PointRef, name(), |reader, node| reader.point_ref(node), |point, found| found.push(Reference::Point(point));
     BodyRef, name(), |reader, node| reader.body_ref(node).map(BodyRef), |body, found| found.push(Reference::Body(&mut body.0));
-    TurningJoint, name(), |reader, node| reader.joint_ref(node, JointCoordinate::Angle).map(TurningJoint),
+    RotatingJoint, name(), |reader, node| reader.joint_ref(node, JointCoordinate::Angle).map(RotatingJoint),
         |joint, found| found.push(Reference::Joint(&mut joint.0));
     SlidingJoint, name(), |reader, node| reader.joint_ref(node, JointCoordinate::Displacement).map(SlidingJoint),
         |joint, found| found.push(Reference::Joint(&mut joint.0));
@@ -275,10 +275,10 @@ reference! {
         |points, found| found.extend(points.iter_mut().map(Reference::Point));
     [BodyRef; 2], two_names(), |reader, node| reader.between_bodies(node).map(|bodies| bodies.map(BodyRef)),
         |bodies, found| found.extend(bodies.iter_mut().map(|body| Reference::Body(&mut body.0)));
-    [Turning; 2], two_names(), |reader, node| reader.turning(node),
+    [Rotating; 2], two_names(), |reader, node| reader.turning(node),
         |turnings, found| found.extend(turnings.iter_mut().map(|turning| match turning {
-            Turning::Body(body) => Reference::Body(body),
-            Turning::Joint(joint) => Reference::Joint(joint),
+            Rotating::Body(body) => Reference::Body(body),
+            Rotating::Joint(joint) => Reference::Joint(joint),
         }));
 }
 

@@ -23,7 +23,7 @@ pub use element::{
     Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, kinds_schema,
     object_schema, ordered, short_or_full,
 };
-pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, PerAxis, SlidingJoint, TurningJoint};
+pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
 pub use reader::{Fields, Reader};
 pub use symbols::*;

@@ -7,7 +7,7 @@ use super::motions::{
     ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
-use super::symbols::{Coordinate, EnergyKind, Measure, ReactionComponent, Referent, SymbolTable, TimeOrder};
+use super::symbols::{Coordinate, EnergyKind, ReactionComponent, Sensor, Symbol, SymbolTable, TimeOrder};
 use crate::syntax::suggest;
 
 /// The ground's name.
@@ -55,7 +55,7 @@ pub fn is_reserved(name: &str) -> bool {
 }
 
 /// What a name in a formula stands for; `None` where it stands for nothing.
-pub fn referent(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     if let Some(found) = of_robot(table, name) {
         return Some(found);
     }
@@ -76,17 +76,17 @@ pub fn referent(table: &impl SymbolTable, name: &str) -> Option<Referent> {
 }
 
 /// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.
-fn of_beam(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+fn of_beam(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     let (owner, member) = name.rsplit_once('.')?;
     body_motion(table, owner, member).or_else(|| measure(table, owner, member))
 }
 
 /// A number of the URDF that is a parameter; `link.NAME.x` and `joint.NAME.angle`; or a part of the motion of a link
 /// that is welded to another, and so a point.
-fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Referent> {
+fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     table.is_robot().then_some(())?;
     if let Some(index) = table.parameter(name) {
-        return Some(Referent::Parameter(index));
+        return Some(Symbol::Parameter(index));
     }
     if let Some(rest) = name.strip_prefix("joint.") {
         let (joint, member) = rest.split_once('.')?;
@@ -100,15 +100,10 @@ fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Referent> {
     let place = table.link(link)?;
     let Some(point) = place.point else {
         // A body of that name: the usual way.
-        return if rest.len() < name.len() { referent(table, rest) } else { None };
+        return if rest.len() < name.len() { symbol(table, rest) } else { None };
     };
     let (_, coordinate, order) = motions(table, place.body).find(|(motion, ..)| *motion == member)?;
-    coordinate.is_length().then_some(Referent::Point {
-        body: place.body,
-        point,
-        coordinate: *coordinate,
-        order: *order,
-    })
+    coordinate.is_length().then_some(Symbol::Point { body: place.body, point, coordinate: *coordinate, order: *order })
 }
 
 /// The parts of a body's motion.
@@ -123,49 +118,49 @@ fn motions(table: &impl SymbolTable, body: usize) -> impl Iterator<Item = &'stat
     })
 }
 
-fn word(table: &impl SymbolTable, word: &str) -> Option<Referent> {
+fn word(table: &impl SymbolTable, word: &str) -> Option<Symbol> {
     if word == "t" {
-        return Some(Referent::Time);
+        return Some(Symbol::Time);
     }
     if let Some((_, kind)) = ENERGIES.iter().find(|(energy, _)| *energy == word) {
-        return Some(Referent::Energy(*kind));
+        return Some(Symbol::Energy(*kind));
     }
-    table.parameter(word).map(Referent::Parameter)
+    table.parameter(word).map(Symbol::Parameter)
 }
 
-fn body_motion(table: &impl SymbolTable, body: &str, member: &str) -> Option<Referent> {
+fn body_motion(table: &impl SymbolTable, body: &str, member: &str) -> Option<Symbol> {
     let body = table.body(body)?;
     let (_, coordinate, order) = motions(table, body).find(|(motion, ..)| *motion == member)?;
-    (body != 0).then_some(Referent::Coordinate { body, coordinate: *coordinate, order: *order })
+    (body != 0).then_some(Symbol::Coordinate { body, coordinate: *coordinate, order: *order })
 }
 
-fn attitude(table: &impl SymbolTable, body: &str, member: &str) -> Option<Referent> {
+fn attitude(table: &impl SymbolTable, body: &str, member: &str) -> Option<Symbol> {
     let body = table.body(body)?;
     let angle = ATTITUDE.iter().position(|angle| *angle == member)?;
-    table.has_orientation(body).then_some(Referent::RollPitchYaw { body, angle })
+    table.has_orientation(body).then_some(Symbol::RollPitchYaw { body, angle })
 }
 
-fn turning(table: &impl SymbolTable, body: &str, member: &str, part: &str) -> Option<Referent> {
+fn turning(table: &impl SymbolTable, body: &str, member: &str, part: &str) -> Option<Symbol> {
     let body = table.body(body)?;
     let &(_, in_body, order) = TURNING.iter().find(|(vector, ..)| *vector == member)?;
     let axis = AXES.iter().position(|axis| *axis == part)?;
-    (body != 0 && table.is_spatial()).then_some(Referent::AngularMotion { body, axis, order, in_body })
+    (body != 0 && table.is_spatial()).then_some(Symbol::AngularMotion { body, axis, order, in_body })
 }
 
-fn point_motion(table: &impl SymbolTable, body: &str, point: &str, member: &str) -> Option<Referent> {
+fn point_motion(table: &impl SymbolTable, body: &str, point: &str, member: &str) -> Option<Symbol> {
     let body = table.body(body)?;
     let point = table.points(body).position(|known| known == point)?;
     let (_, coordinate, order) = motions(table, body).find(|(motion, ..)| *motion == member)?;
-    coordinate.is_length().then_some(Referent::Point { body, point, coordinate: *coordinate, order: *order })
+    coordinate.is_length().then_some(Symbol::Point { body, point, coordinate: *coordinate, order: *order })
 }
 
-fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<Referent> {
+fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<Symbol> {
     let joint = table.joint(joint)?;
     let &(_, coordinate, order) = JOINT_MOTIONS.iter().find(|(motion, ..)| *motion == member)?;
-    table.has_coordinate(joint, coordinate).then_some(Referent::JointCoordinate { joint, coordinate, order })
+    table.has_coordinate(joint, coordinate).then_some(Symbol::JointCoordinate { joint, coordinate, order })
 }
 
-fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Referent> {
+fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Symbol> {
     let joint = table.joint(joint)?;
     let axis = match part {
         Some(part) => Some(AXES.iter().position(|axis| *axis == part)?),
@@ -178,41 +173,39 @@ fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&s
         ("torque", Some(axis)) if table.is_spatial() => ReactionComponent::TorqueAbout(axis),
         _ => return None,
     };
-    Some(Referent::Reaction { joint, component })
+    Some(Symbol::Reaction { joint, component })
 }
 
-fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Referent> {
+fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Symbol> {
     let effect = table.effect(effect)?;
     let measures = table.measures(effect);
     let (measure, _) = measures.into_iter().find(|(measure, _)| measure.name() == member)?;
-    Some(Referent::Measure { effect, measure })
+    Some(Symbol::Sensor { effect, measure })
 }
 
 /// What a name stands for, or why that may not stand here.
-pub fn allowed(name: &str, referent: Referent, context: Context) -> Result<Referent, NameError> {
-    let refusal = match (context, referent) {
-        (Context::Output, _) | (_, Referent::Parameter(_)) => None,
-        (Context::Constant, Referent::Time) => Some("only parameters can stand here: this value cannot change in time"),
+pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, NameError> {
+    let refusal = match (context, symbol) {
+        (Context::Output, _) | (_, Symbol::Parameter(_)) => None,
+        (Context::Constant, Symbol::Time) => Some("only parameters can stand here: this value cannot change in time"),
         (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
-        (_, Referent::Time) => None,
+        (_, Symbol::Time) => None,
         (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
-        (_, Referent::Reaction { .. }) => {
-            Some("reactions are known only when the motion is; only outputs may use them")
-        }
-        (_, Referent::Energy(_)) => Some("only outputs may use energies"),
-        (Context::Effect, Referent::Measure { measure, .. }) if measure.is_motion() => None,
-        (_, Referent::Measure { .. }) => {
+        (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
+        (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
+        (Context::Effect, Symbol::Sensor { measure, .. }) if measure.is_motion() => None,
+        (_, Symbol::Sensor { .. }) => {
             Some("what an effect does is known only when the motion is; only outputs may use it")
         }
-        (_, Referent::RollPitchYaw { .. }) => {
+        (_, Symbol::RollPitchYaw { .. }) => {
             Some("these angles jump by a turn, so only outputs may use them; a joint's `angle` does not")
         }
         (
             _,
-            Referent::Coordinate { order, .. }
-            | Referent::Point { order, .. }
-            | Referent::AngularMotion { order, .. }
-            | Referent::JointCoordinate { order, .. },
+            Symbol::Coordinate { order, .. }
+            | Symbol::Point { order, .. }
+            | Symbol::AngularMotion { order, .. }
+            | Symbol::JointCoordinate { order, .. },
         ) => match (context, order) {
             (_, TimeOrder::Position) | (Context::Effect, TimeOrder::Velocity) => None,
             (Context::Equation, TimeOrder::Velocity) => {
@@ -222,7 +215,7 @@ pub fn allowed(name: &str, referent: Referent, context: Context) -> Result<Refer
         },
     };
     match refusal {
-        None => Ok(referent),
+        None => Ok(symbol),
         Some(reason) => Err(NameError {
             message: format!("`{name}` cannot stand here"),
             part: 0..name.len(),
@@ -232,7 +225,7 @@ pub fn allowed(name: &str, referent: Referent, context: Context) -> Result<Refer
 }
 
 /// What to say of a part that an effect does not have.
-pub fn no_measure(effect: &str, rest: &str, measures: &[(Measure, Dimension)]) -> NameError {
+pub fn no_measure(effect: &str, rest: &str, measures: &[(Sensor, Dimension)]) -> NameError {
     let names: Vec<&str> = measures.iter().map(|(measure, _)| measure.name()).collect();
     let after = effect.len() + 1;
     NameError {
@@ -400,19 +393,19 @@ fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
 
 /// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations and of
 /// what effects measure are the reader's.
-pub fn kind(referent: Referent, parameters: &[Kind]) -> Kind {
-    Kind::motion(match referent {
-        Referent::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
-        Referent::Time => Dimension::TIME,
-        Referent::Coordinate { coordinate, order, .. } | Referent::Point { coordinate, order, .. } => {
+pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
+    Kind::motion(match symbol {
+        Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
+        Symbol::Time => Dimension::TIME,
+        Symbol::Coordinate { coordinate, order, .. } | Symbol::Point { coordinate, order, .. } => {
             motion_dimension(coordinate, order)
         }
-        Referent::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
-        Referent::RollPitchYaw { .. } => Dimension::ANGLE,
-        Referent::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
-        Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
-        | Referent::Energy(_) => Dimension::TORQUE,
-        Referent::Reaction { .. } => Dimension::FORCE,
-        Referent::Measure { .. } => return Kind::Any,
+        Symbol::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
+        Symbol::RollPitchYaw { .. } => Dimension::ANGLE,
+        Symbol::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
+        Symbol::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
+        | Symbol::Energy(_) => Dimension::TORQUE,
+        Symbol::Reaction { .. } => Dimension::FORCE,
+        Symbol::Sensor { .. } => return Kind::Any,
     })
 }

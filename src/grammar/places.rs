@@ -1,7 +1,7 @@
 //! References to bodies, points and joints by their names.
 
 use super::reader::{Fields, Reader};
-use super::symbols::{JointCoordinate, OnJoint, PointRef, SymbolTable, Turning};
+use super::symbols::{JointCoordinate, OnJoint, PointRef, Rotating, SymbolTable};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::Node;
 
@@ -138,7 +138,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// Two bodies by their angles, or two joints by theirs.
-    pub fn turning(&mut self, node: &Node) -> Option<[Turning; 2]> {
+    pub fn turning(&mut self, node: &Node) -> Option<[Rotating; 2]> {
         let pair = self.two(node, "a list of two bodies or joints")?;
         if !pair.iter().any(|node| self.names_joint(node)) {
             let bodies = self.between_bodies(node)?;
@@ -150,13 +150,13 @@ impl<S: SymbolTable> Reader<'_, S> {
                     self.error(node.span.clone(), message, help.to_owned());
                 }
             }
-            return Some(bodies.map(Turning::Body));
+            return Some(bodies.map(Rotating::Body));
         }
         let [first, second] = pair.map(|node| self.joint_ref(node, JointCoordinate::Angle));
         let (first, second) = (first?, second?);
         if first == second {
             self.error(pair[1].span.clone(), "a joint is not geared with itself", None);
         }
-        Some([Turning::Joint(first), Turning::Joint(second)])
+        Some([Rotating::Joint(first), Rotating::Joint(second)])
     }
 }

@@ -13,7 +13,7 @@ use super::element::{Quantity, Requirement};
 use super::mapping::Grammar;
 use super::names::{self, Context, NameError};
 use super::quantity::{Dimension, Unit, number_and_unit};
-use super::symbols::{Measure, ReactionComponent, Referent, SymbolTable};
+use super::symbols::{ReactionComponent, Sensor, Symbol, SymbolTable};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -30,7 +30,7 @@ pub struct Reader<'d, S> {
     pub model: S,
     /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
     /// the others had errors.
-    pub unread: Vec<(String, Vec<(Measure, Dimension)>)>,
+    pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
     /// A name of its own that the formula being read may use, and its dimension.
     pub variable: Option<(&'static str, Dimension)>,
     /// Dimension of each parameter.
@@ -325,7 +325,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let own = self.variable.map(|(name, _)| name);
         for (name, span) in formula.names().filter(|(name, _)| Some(*name) != own) {
             match self.resolve(name, context) {
-                Ok(Referent::Parameter(index)) => {
+                Ok(Symbol::Parameter(index)) => {
                     if let Some(used) = self.used.get_mut(index) {
                         *used = true;
                     }
@@ -345,23 +345,23 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// What a name stands for; effects that are not in the model are numbered after those that are.
-    pub fn referent(&self, name: &str) -> Option<Referent> {
-        names::referent(&self.model, name).or_else(|| self.unread_measure(name)?.ok())
+    pub fn symbol(&self, name: &str) -> Option<Symbol> {
+        names::symbol(&self.model, name).or_else(|| self.unread_measure(name)?.ok())
     }
 
     /// What a name stands for where it may stand for that.
-    fn resolve(&self, name: &str, context: Context) -> Result<Referent, NameError> {
-        match names::referent(&self.model, name) {
-            Some(referent) => names::allowed(name, referent, context),
+    fn resolve(&self, name: &str, context: Context) -> Result<Symbol, NameError> {
+        match names::symbol(&self.model, name) {
+            Some(symbol) => names::allowed(name, symbol, context),
             None => match self.unread_measure(name) {
-                Some(own) => own.and_then(|referent| names::allowed(name, referent, context)),
+                Some(own) => own.and_then(|symbol| names::allowed(name, symbol, context)),
                 None => Err(names::unknown(&self.model, name, context)),
             },
         }
     }
 
     /// What an effect measures that is not in the model; nothing where the name is of something else.
-    fn unread_measure(&self, name: &str) -> Option<Result<Referent, NameError>> {
+    fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
         let (owner, member) = name.split_once('.')?;
         if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
             return None;
@@ -370,7 +370,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let measures = &self.unread[unread].1;
         let found = measures.iter().find(|(measure, _)| measure.name() == member);
         Some(match found {
-            Some(&(measure, _)) => Ok(Referent::Measure { effect: self.model.effects() + unread, measure }),
+            Some(&(measure, _)) => Ok(Symbol::Sensor { effect: self.model.effects() + unread, measure }),
             None => Err(names::no_measure(owner, member, measures)),
         })
     }
@@ -380,7 +380,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let mut mismatches = Vec::new();
         let name = |name: &str| match self.variable {
             Some((own, dimension)) if own == name => Kind::motion(dimension),
-            _ => self.referent(name).map_or(Kind::Any, |referent| self.kind_of(referent)),
+            _ => self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol)),
         };
         let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
         for mismatch in mismatches {
@@ -398,22 +398,21 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
-    fn kind_of(&self, referent: Referent) -> Kind {
-        if let Referent::Reaction { joint, component: ReactionComponent::Force } = referent
+    fn kind_of(&self, symbol: Symbol) -> Kind {
+        if let Symbol::Reaction { joint, component: ReactionComponent::Force } = symbol
             && let Some(left) = self.model.equated(joint)
         {
-            let name =
-                |name: &str| self.referent(name).map_or(Kind::Any, |referent| names::kind(referent, &self.kinds));
+            let name = |name: &str| self.symbol(name).map_or(Kind::Any, |symbol| names::kind(symbol, &self.kinds));
             let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
         }
-        if let Referent::Measure { effect, measure } = referent {
+        if let Symbol::Sensor { effect, measure } = symbol {
             let unread = effect.checked_sub(self.model.effects()).and_then(|unread| self.unread.get(unread));
             let measures = unread.map_or_else(|| self.model.measures(effect), |(_, measures)| measures.clone());
             let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
             return dimension.map_or(Kind::Any, Kind::motion);
         }
-        names::kind(referent, &self.kinds)
+        names::kind(symbol, &self.kinds)
     }
 
     /// Reports where something stands that does not belong there.
@@ -523,16 +522,16 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The formula's value at a corner; `None` where it is made of more than parameters.
     pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
         let corner = self.corners.get(corner)?;
-        evaluate(formula, |name| match self.referent(name) {
-            Some(Referent::Parameter(index)) => corner.values.get(index).copied(),
+        evaluate(formula, |name| match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => corner.values.get(index).copied(),
             _ => None,
         })
     }
 
     /// Whether an uncertain parameter stands behind a name of the formula.
     pub fn is_uncertain(&self, formula: &Formula) -> bool {
-        formula.names().any(|(name, _)| match self.referent(name) {
-            Some(Referent::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
+        formula.names().any(|(name, _)| match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
             _ => false,
         })
     }

@@ -24,7 +24,7 @@ pub trait SymbolTable {
     /// The effect of a name.
     fn effect(&self, name: &str) -> Option<usize>;
     /// What an effect measures.
-    fn measures(&self, effect: usize) -> Vec<(Measure, Dimension)>;
+    fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.
     fn link(&self, name: &str) -> Option<PointRef>;
     /// What of a beam has a name of its own; nothing where there is no beam of that name.
@@ -120,7 +120,7 @@ pub enum TimeOrder {
 
 /// What a name in a formula stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Referent {
+pub enum Symbol {
     /// Index of the parameter.
     Parameter(usize),
     /// `t`, s.
@@ -180,11 +180,11 @@ pub enum Referent {
         component: ReactionComponent,
     },
     /// `effect.length`, `effect.force`, …: what an effect measures.
-    Measure {
+    Sensor {
         #[allow(missing_docs)]
         effect: usize,
         #[allow(missing_docs)]
-        measure: Measure,
+        measure: Sensor,
     },
     /// `energy`, `kinetic_energy`, `potential_energy`, J.
     Energy(EnergyKind),
@@ -223,7 +223,7 @@ pub enum JointCoordinate {
 
 /// Something with an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turning {
+pub enum Rotating {
     /// The angle of a body about z.
     Body(usize),
     /// The angle of a joint.
@@ -247,12 +247,12 @@ impl OnJoint {
 
 /// Something that an effect measures, by its name; elements may have their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Measure {
+pub struct Sensor {
     name: &'static str,
     is_motion: bool,
 }
 
-impl Measure {
+impl Sensor {
     /// Between two points.
     pub const LENGTH: Self = Self::of_motion("length");
     /// Of a spring or of teeth.
@@ -316,7 +316,7 @@ pub enum Reference<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionMode {
     /// Its turning: revolute joints.
-    Turning,
+    Rotating,
     /// Its sliding: prismatic joints.
     Sliding,
     /// Both at once: cylindrical joints.

@@ -18,7 +18,7 @@ pub use start::StartValue;
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
 /// A `Description` is consistent: every index is in range, every formula's names resolve (through
-/// [`Description::referent`]) in their context, every dimension agrees. Formulas give SI values.
+/// [`Description::symbol`]) in their context, every dimension agrees. Formulas give SI values.
 #[derive(Clone, Debug)]
 pub struct Description {
     /// Short name; output folder and titles.
@@ -120,7 +120,7 @@ pub struct Effect {
 pub struct Output {
     /// Its name in files and plots.
     pub name: String,
-    /// Formula over names of [`Description::referent`].
+    /// Formula over names of [`Description::symbol`].
     pub formula: Formula,
     /// SI unit derived from the formula, for axes; empty where dimensionless or unknown.
     pub unit: String,

@@ -5,15 +5,15 @@ use symdiff::Formula;
 use super::description::Description;
 use crate::elements::joints::Mobilizer;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{self, FrictionMode, JointCoordinate, Measure, PointRef, Referent, SymbolTable};
+use crate::grammar::{self, FrictionMode, JointCoordinate, PointRef, Sensor, Symbol, SymbolTable};
 
 /// Reads a description.
 pub type Reader<'d> = grammar::reader::Reader<'d, Description>;
 
 impl Description {
     /// What a name in a formula stands for; `None` where it stands for nothing.
-    pub fn referent(&self, name: &str) -> Option<Referent> {
-        grammar::names::referent(self, name)
+    pub fn symbol(&self, name: &str) -> Option<Symbol> {
+        grammar::names::symbol(self, name)
     }
 }
 
@@ -50,7 +50,7 @@ impl SymbolTable for Description {
         self.effects.iter().position(|effect| effect.name == name)
     }
 
-    fn measures(&self, effect: usize) -> Vec<(Measure, Dimension)> {
+    fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)> {
         self.effects[effect].kind.measures()
     }
 
@@ -72,7 +72,7 @@ impl SymbolTable for Description {
 
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {
         match self.joints[joint].kind.mobilizer()? {
-            Mobilizer::Rotation { .. } => Some(FrictionMode::Turning),
+            Mobilizer::Rotation { .. } => Some(FrictionMode::Rotating),
             Mobilizer::Translation { .. } => Some(FrictionMode::Sliding),
             Mobilizer::RotationAndTranslation { .. } => Some(FrictionMode::Both),
             _ => None,

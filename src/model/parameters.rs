@@ -12,7 +12,7 @@ use super::description::{Parameter, ParameterValue};
 use super::file;
 use super::overrides::Override;
 use super::urdf;
-use crate::grammar::Referent;
+use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Unit;
@@ -66,7 +66,7 @@ pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span
         if !urdf::is_number(&entry.key) {
             reader.name(entry, "a parameter");
         }
-        // Not a number until it is known: no file can write that.
+        // NaN until it is known: no file can write that.
         let value = ParameterValue::Formula(Formula::number(f64::NAN));
         reader.model.parameters.push(Parameter { name: entry.key.clone(), unit: String::new(), value });
     }
@@ -148,8 +148,8 @@ fn draft<'n>(reader: &mut Reader, entry: &'n Entry, replaced: Option<&'n Overrid
     {
         uses = formula
             .names()
-            .filter_map(|(name, _)| match reader.model.referent(name) {
-                Some(Referent::Parameter(index)) => Some(index),
+            .filter_map(|(name, _)| match reader.model.symbol(name) {
+                Some(Symbol::Parameter(index)) => Some(index),
                 _ => None,
             })
             .collect();
@@ -178,8 +178,8 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         },
         _ => (None, draft.unit.map_or(Kind::Any, |unit| Kind::parameter(unit.dimension))),
     };
-    let at = |name: &str| match reader.model.referent(name) {
-        Some(Referent::Parameter(used)) => Some(values[used]),
+    let at = |name: &str| match reader.model.symbol(name) {
+        Some(Symbol::Parameter(used)) => Some(values[used]),
         _ => None,
     };
     let number = value.as_ref().and_then(|formula| evaluate(formula, at));

@@ -7,7 +7,7 @@ use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dime
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::{Fields, Written};
-use crate::grammar::{Coordinate, ReactionComponent, Referent, TimeOrder};
+use crate::grammar::{Coordinate, ReactionComponent, Symbol, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
@@ -29,12 +29,12 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     if let Some(value) = turning_value(reader, entry, velocities) {
         return value;
     }
-    let referent = match reader
+    let symbol = match reader
         .model
-        .referent(name)
+        .symbol(name)
         .ok_or_else(|| crate::grammar::names::unknown(&reader.model, name, Context::Equation))
     {
-        Ok(referent) => referent,
+        Ok(symbol) => symbol,
         Err(error) => {
             let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
             let verbatim = entry.key_span.len() == name.len();
@@ -42,8 +42,8 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             return None;
         }
     };
-    let (order, dimension) = match referent {
-        Referent::Coordinate { body, coordinate, order } if !matches!(coordinate, Coordinate::Euler(_)) => {
+    let (order, dimension) = match symbol {
+        Symbol::Coordinate { body, coordinate, order } if !matches!(coordinate, Coordinate::Euler(_)) => {
             if !reader.model.bodies[body].coordinates.contains(&coordinate) {
                 let owner = reader.model.bodies[body].name.clone();
                 let coordinate_name = motion_name(coordinate, TimeOrder::Position);
@@ -53,7 +53,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             }
             (order, motion_dimension(coordinate, order))
         }
-        Referent::JointCoordinate { coordinate, order, .. } => (order, joint_dimension(coordinate, order)),
+        Symbol::JointCoordinate { coordinate, order, .. } => (order, joint_dimension(coordinate, order)),
         _ => {
             let message = format!("`{}` is not a coordinate of a body", clip(name));
             let help = if reader.model.space.spatial {
@@ -77,11 +77,9 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
         return None;
     }
     let value = reader.formula(&entry.value, Context::Constant, dimension)?;
-    match referent {
-        Referent::Coordinate { body, coordinate, .. } => {
-            Some(StartValue::Coordinate { body, coordinate, order, value })
-        }
-        Referent::JointCoordinate { joint, coordinate, .. } => {
+    match symbol {
+        Symbol::Coordinate { body, coordinate, .. } => Some(StartValue::Coordinate { body, coordinate, order, value }),
+        Symbol::JointCoordinate { joint, coordinate, .. } => {
             Some(StartValue::Joint { joint, coordinate, order, value })
         }
         _ => None,
@@ -149,12 +147,12 @@ fn output(reader: &mut Reader, entry: &Entry) -> Option<Output> {
 /// The unit of a formula that is just a name, where its dimension alone does not say it.
 fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
     let [(symdiff::formula::Term::Name(name), _)] = formula.terms() else { return None };
-    match reader.model.referent(name)? {
-        Referent::Energy(_) => Some("J".to_owned()),
-        Referent::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. } => {
+    match reader.model.symbol(name)? {
+        Symbol::Energy(_) => Some("J".to_owned()),
+        Symbol::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. } => {
             Some("N*m".to_owned())
         }
-        Referent::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
+        Symbol::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
         _ => None,
     }
 }

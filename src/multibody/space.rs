@@ -65,7 +65,7 @@ pub fn norm(g: &Builder, a: Vector) -> Expr {
     g.sqrt(square)
 }
 
-/// `a / |a|`; not a number where a = 0.
+/// `a / |a|`; NaN where a = 0.
 pub fn unit(g: &Builder, a: Vector) -> Vector {
     let length = norm(g, a);
     a.map(|component| g.div(component, length))

@@ -89,7 +89,7 @@ impl BandError {
         let mut lost = false;
         let mut unresolved = Vec::with_capacity(total.len());
         for (row, range) in ranges.iter().enumerate() {
-            // Written so that not a number is not resolved.
+            // Written so that NaN is not resolved.
             let at_rest = span == 0.0 && !total[row].is_nan();
             let small = |share: f64| total[row] <= share * span || at_rest;
             unresolved.push(match tolerance {
@@ -105,7 +105,7 @@ impl BandError {
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
     }
 
-    /// Largest of all rows; not a number if one is.
+    /// Largest of all rows; NaN if one is.
     pub fn largest(&self) -> f64 {
         largest(self.total.iter().copied())
     }
@@ -122,14 +122,14 @@ fn held_up(estimates: &[f64], safety: f64) -> Vec<f64> {
     let held = |row: usize| {
         let beside = [row.wrapping_sub(1), row + 1].map(|row| estimates.get(row).copied().unwrap_or(0.0));
         lasting = lasting.max(estimates[row]);
-        // `max` passes over not a number.
+        // `max` passes over NaN.
         let least = (NEIGHBOUR * beside[0]).max(NEIGHBOUR * beside[1]).max(LASTING * lasting);
         safety * if estimates[row] < least { least } else { estimates[row] }
     };
     (0..estimates.len()).map(held).collect()
 }
 
-/// Largest absolute value; not a number if one is.
+/// Largest absolute value; NaN if one is.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     let larger = |largest: f64, value: f64| if value <= largest || largest.is_nan() { largest } else { value };
     values.into_iter().map(f64::abs).fold(0.0, larger)

@@ -28,7 +28,7 @@ pub struct Extent {
 }
 
 /// Extremes of many functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The grid
-/// has `points` ≥ 3 along each axis. Unknown where a value on it is not a number.
+/// has `points` ≥ 3 along each axis. Unknown where a value on it is NaN.
 pub fn extremes(k: usize, points: usize, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let grid = TensorGrid::full_factorial(&vec![points; k]);
     let samples: Vec<Vec<f64>> = (0..grid.len()).map(|index| grid.sample(index)).collect();
@@ -80,7 +80,7 @@ struct End {
     /// Where the peak is looked for, and where it is believed to be.
     around: Peak,
     xi: Vec<f64>,
-    /// The best value seen, and where; not a number where one was not.
+    /// The best value seen, and where; NaN where one was not.
     best: f64,
     best_xi: Vec<f64>,
     /// What the last step of the search changed.
@@ -119,7 +119,7 @@ impl End {
     fn refine(&mut self, points: &[Vec<f64>], values: &[f64], width: f64) {
         let best = (0..values.len()).fold(0, |a, b| if self.sign * values[b] > self.sign * values[a] { b } else { a });
         let gain = self.sign * (values[best] - self.best);
-        // Not a number beside the grid's points changes nothing.
+        // NaN beside the grid's points changes nothing.
         if gain > 0.0 {
             self.gap = gain;
             self.found = gain <= SETTLED * width;

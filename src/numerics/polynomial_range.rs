@@ -84,7 +84,7 @@ impl PolynomialRange {
     }
 
     /// Range of the polynomial with these Chebyshev coefficients (last index fastest). Exact for a constant; unknown
-    /// if any coefficient is infinite or not a number. Never wider than c₀ ± Σ|c|.
+    /// if any coefficient is infinite or NaN. Never wider than c₀ ± Σ|c|.
     pub fn range(&mut self, coefficients: &[f64]) -> Range {
         self.enclose(coefficients).outer
     }

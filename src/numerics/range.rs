@@ -13,7 +13,7 @@ impl Range {
     /// Of what cannot be bounded.
     pub const UNKNOWN: Self = Self { lower: f64::NAN, upper: f64::NAN };
 
-    /// Of values: from the least to the largest; unknown if there are none or one is not a number.
+    /// Of values: from the least to the largest; unknown if there are none or one is NaN.
     pub fn of(values: &[f64]) -> Self {
         let fold = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap_or(f64::NAN);
         if values.iter().any(|value| value.is_nan()) {

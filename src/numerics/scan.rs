@@ -2,7 +2,7 @@
 //!
 //! Between two samples a smooth response can go beyond both: past an extreme of the grid that is not at the box's edge by at
 //! most an eighth of the second difference along each axis (that of the parabola through it and its neighbours). That is the
-//! error stated of a scan. Where a sample is not a number, the others are bounded, and the error is not a number.
+//! error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
 
 use super::range::Range;
 
@@ -15,7 +15,7 @@ pub struct ScanBounds {
     points: Vec<usize>,
     /// By time, then by output: least and largest. Empty while least > largest.
     extremes: Vec<[Extreme; 2]>,
-    /// Whether a sample was not a number.
+    /// Whether a sample was NaN.
     gaps: Vec<bool>,
 }
 
@@ -78,7 +78,7 @@ impl ScanBounds {
         if least.value <= largest.value { Range { lower: least.value, upper: largest.value } } else { Range::UNKNOWN }
     }
 
-    /// How far the response may go beyond those bounds between the samples; not a number where a sample is none.
+    /// How far the response may go beyond those bounds between the samples; NaN where a sample is none.
     pub fn error(&self, time: usize, output: usize) -> f64 {
         if self.gaps[time * self.outputs + output] {
             return f64::NAN;

@@ -32,7 +32,7 @@ impl SobolDecomposition {
         Self { basis: basis.clone(), conversion: from_chebyshev(highest.into()) }
     }
 
-    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or not a number.
+    /// SobolIndices in the variance of a polynomial; `None` where it does not vary, or a coefficient is infinite or NaN.
     pub fn indices(&self, coefficients: &[f64]) -> Option<SobolIndices> {
         assert_eq!(coefficients.len(), self.basis.len(), "coefficients of another shape");
         let k = self.basis.dimension();

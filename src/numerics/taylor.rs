@@ -57,12 +57,12 @@ impl TaylorRange {
     }
 
     /// Range of the polynomial with these coefficients. Exact for a constant; unknown if any coefficient is infinite or
-    /// not a number. The tight range is never wider than the one term by term.
+    /// NaN. The tight range is never wider than the one term by term.
     pub fn range(&mut self, coefficients: &[f64]) -> Range {
         self.enclose(coefficients).0
     }
 
-    /// The same, with how much too wide it may be: not a number where the polynomial is too large to know.
+    /// The same, with how much too wide it may be: NaN where the polynomial is too large to know.
     pub fn enclose(&mut self, coefficients: &[f64]) -> (Range, f64) {
         let terms = self.term_by_term(coefficients);
         let Some(tensor) = &mut self.tensor else { return (terms, f64::NAN) };
@@ -85,7 +85,7 @@ impl TaylorRange {
         assert_eq!(coefficients.len(), self.monomials.len(), "coefficients of another shape");
         let (mut below, mut above) = (0.0, 0.0);
         for (&c, &even) in coefficients.iter().zip(&self.even).skip(1) {
-            // Written so that not a number stays so.
+            // Written so that NaN stays so.
             below += if even && c > 0.0 { 0.0 } else { -c.abs() };
             above += if even && c < 0.0 { 0.0 } else { c.abs() };
         }

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, Effect, Joint, Reference, Referent, Scope};
+use crate::model::{Description, Effect, Joint, Reference, Scope, Symbol};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,23 +35,23 @@ impl Dependencies {
     /// Adds those of a formula.
     pub fn add(&mut self, description: &Description, formula: &Formula) {
         for (name, _) in formula.names() {
-            match description.referent(name) {
-                Some(Referent::Parameter(index)) => self.parameters.push(index),
+            match description.symbol(name) {
+                Some(Symbol::Parameter(index)) => self.parameters.push(index),
                 Some(
-                    Referent::Coordinate { body, .. }
-                    | Referent::AngularMotion { body, .. }
-                    | Referent::RollPitchYaw { body, .. },
+                    Symbol::Coordinate { body, .. }
+                    | Symbol::AngularMotion { body, .. }
+                    | Symbol::RollPitchYaw { body, .. },
                 ) => self.parts.push(Part::Body(body)),
-                Some(Referent::Point { body, point, .. }) => {
+                Some(Symbol::Point { body, point, .. }) => {
                     self.parts.push(Part::Body(body));
                     self.points.push((body, point));
                 }
-                Some(Referent::JointCoordinate { joint, .. } | Referent::Reaction { joint, .. }) => {
+                Some(Symbol::JointCoordinate { joint, .. } | Symbol::Reaction { joint, .. }) => {
                     self.parts.push(Part::Joint(joint));
                 }
-                Some(Referent::Measure { effect, .. }) => self.parts.push(Part::Effect(effect)),
-                Some(Referent::Energy(_)) => self.everything = true,
-                Some(Referent::Time) | None => {}
+                Some(Symbol::Sensor { effect, .. }) => self.parts.push(Part::Effect(effect)),
+                Some(Symbol::Energy(_)) => self.everything = true,
+                Some(Symbol::Time) | None => {}
             }
         }
     }

@@ -7,7 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
-use crate::model::{Description, LineMass, Referent, StartValue};
+use crate::model::{Description, LineMass, StartValue, Symbol};
 
 /// A fixed joint, and why its bodies are not merged, if they are not.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ fn named(description: &Description, values: &[StartValue]) -> Vec<bool> {
 }
 
 fn is_time_independent(description: &Description, angle: &Formula) -> bool {
-    angle.names().all(|(name, _)| matches!(description.referent(name), Some(Referent::Parameter(_))))
+    angle.names().all(|(name, _)| matches!(description.symbol(name), Some(Symbol::Parameter(_))))
 }
 
 /// Joints whose reaction a formula refers to.
@@ -120,7 +120,7 @@ fn observed(description: &Description) -> Vec<bool> {
     let of_effects = description.effects.iter().flat_map(|effect| effect.kind.formulas());
     let of_outputs = description.outputs.iter().map(|output| &output.formula);
     for (name, _) in of_effects.chain(of_outputs).flat_map(Formula::names) {
-        if let Some(Referent::Reaction { joint, .. }) = description.referent(name) {
+        if let Some(Symbol::Reaction { joint, .. }) = description.symbol(name) {
             observed[joint] = true;
         }
     }

@@ -16,7 +16,7 @@ pub struct Bounds {
     pub covered: Vec<f64>,
 }
 
-/// A parameter's part in the spread of an output over the times; not a number where it is not known.
+/// A parameter's part in the spread of an output over the times; NaN where it is not known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// Its name.

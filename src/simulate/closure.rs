@@ -45,16 +45,16 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
     let start = &simulator.start;
     let layout = &start.layout;
     let n = layout.q.len();
-    let mut tile = Tile::new(1, start.slots(), start.constants());
-    for (slot, &value) in layout.parameters.clone().zip(parameters).chain(layout.q.clone().zip(motion)) {
-        tile.lane_mut(slot)[0] = value;
+    let mut tile = Tile::new(1, start.registers(), start.constants());
+    for (register, &value) in layout.parameters.clone().zip(parameters).chain(layout.q.clone().zip(motion)) {
+        tile.lane_mut(register)[0] = value;
     }
     tile.lane_mut(layout.time)[0] = time;
     tile.run(start.sample());
     tile.run(start.jacobian());
     let mut slopes = DMatrix::zeros(layout.lambda.len(), n);
-    for &(row, column, slot) in &start.jacobian_entries {
-        slopes[(row, column)] = tile.lane(slot)[0] * simulator.program.scale[column];
+    for &(row, column, register) in &start.jacobian_entries {
+        slopes[(row, column)] = tile.lane(register)[0] * simulator.program.scale[column];
     }
     let weight: Vec<f64> = simulator
         .system
@@ -108,23 +108,23 @@ impl<'s> Closure<'s> {
         while first < points.count {
             let count = WIDTH.min(points.count - first);
             let tile = assembly.tile_mut();
-            let mut set = |slots: std::ops::Range<usize>, values: &[f64]| {
-                for (slot, values) in slots.zip(values.chunks_exact(points.count)) {
-                    for (lane, value) in tile.lane_mut(slot).iter_mut().enumerate() {
+            let mut set = |registers: std::ops::Range<usize>, values: &[f64]| {
+                for (register, values) in registers.zip(values.chunks_exact(points.count)) {
+                    for (lane, value) in tile.lane_mut(register).iter_mut().enumerate() {
                         *value = values[first + lane.min(count - 1)];
                     }
                 }
             };
             set(layout.parameters.clone(), &points.parameters);
             set(layout.q.start..layout.v.end, &points.motion);
-            (layout.w.start..layout.lambda.end).for_each(|slot| tile.lane_mut(slot).fill(0.0));
+            (layout.w.start..layout.lambda.end).for_each(|register| tile.lane_mut(register).fill(0.0));
             tile.lane_mut(layout.time).fill(time);
             tile.run(self.program.sample());
             self.close(&mut assembly);
             let closed = self.closed(&assembly);
-            for (line, &slot) in into.chunks_exact_mut(points.count).zip(&self.program.outputs) {
+            for (line, &register) in into.chunks_exact_mut(points.count).zip(&self.program.outputs) {
                 for (lane, value) in line[first..first + count].iter_mut().enumerate() {
-                    *value = if closed[lane] { assembly.tile().lane(slot)[lane] } else { f64::NAN };
+                    *value = if closed[lane] { assembly.tile().lane(register)[lane] } else { f64::NAN };
                 }
             }
             first += count;
@@ -148,8 +148,8 @@ impl<'s> Closure<'s> {
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
         let allowed = allowed_residual(&self.simulator.program.scale);
         let mut closed = vec![true; WIDTH];
-        for &slot in &self.program.constraint {
-            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(slot)) {
+        for &register in &self.program.constraint {
+            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(register)) {
                 *closed &= gap.abs() <= allowed;
             }
         }

@@ -23,7 +23,7 @@ pub struct Simulator {
     pub start: StartProgram,
     /// Tapes for the steps.
     pub program: Program,
-    /// The nominal start: values of the layout's slots.
+    /// The nominal start: values of the layout's registers.
     pub nominal: Vec<f64>,
     /// Degrees of freedom and redundant constraints.
     pub mobility: Mobility,
@@ -59,7 +59,7 @@ impl Simulator {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
-            Ok(assembly.tile().values()[..layout.slots()].to_vec())
+            Ok(assembly.tile().values()[..layout.registers()].to_vec())
         };
         let mut start = compile_start(&system, &[], &guess).map_err(singular)?;
         let mut nominal = assembled(&start)?;

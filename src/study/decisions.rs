@@ -142,7 +142,7 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
             .parameters
             .iter()
             .zip(0..)
-            .map(|(parameter, slot)| Input { symbol: parameter.symbol, stage: 0, slot })
+            .map(|(parameter, register)| Input { symbol: parameter.symbol, stage: 0, register })
             .collect();
         let kernel = steady.into_iter().map(|value| (value, None)).collect();
         let lowered = lower(&system.graph, &inputs, 0, inputs.len() as u32, &[kernel]);
@@ -216,7 +216,7 @@ fn unasked(prepared: &[Prepared]) -> Option<Decision> {
             effect.kind.measures().into_iter().map(|(measure, _)| format!("{}.{}", effect.name, measure.name()))
         });
         let all: Vec<String> = reactions.chain(measures).chain(["energy".to_owned()]).collect();
-        let known = |text: &String| description.referent(text).is_some();
+        let known = |text: &String| description.symbol(text).is_some();
         let outputs = all.iter().filter(|text| known(text)).filter_map(|text| {
             let formula = Formula::parse(text).ok()?;
             Some(Output { name: text.clone(), formula, unit: String::new() })

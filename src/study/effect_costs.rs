@@ -61,7 +61,7 @@ pub(super) fn effect_costs(description: &Description, simulator: &Simulator) -> 
     let cost = |effect: usize| {
         let mut rest = as_chosen(description, simulator);
         rest.effects.remove(effect);
-        let known = |rest: &Description, name: &str| rest.referent(name).is_some();
+        let known = |rest: &Description, name: &str| rest.symbol(name).is_some();
         let outputs = std::mem::take(&mut rest.outputs);
         rest.outputs =
             outputs.into_iter().filter(|output| output.formula.names().all(|(name, _)| known(&rest, name))).collect();
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(conditional, 6, "effects that act only sometimes");
     }
 
-    /// An effect that is left out leaves nothing: no coordinate, no slot, no instruction.
+    /// An effect that is left out leaves nothing: no coordinate, no register, no instruction.
     #[test]
     fn what_is_left_out_leaves_nothing() {
         let bare = prepare_whole(&example(None)).unwrap();
@@ -118,7 +118,7 @@ mod tests {
             let p = &simulator.program;
             let tapes =
                 [p.sample(), p.step_size(), p.step(), p.factor(), p.correct(), p.advance(), p.observe(), p.matrix()];
-            (tapes.map(symdiff::Tape::len), p.slots(), p.nonzeros)
+            (tapes.map(symdiff::Tape::len), p.registers(), p.nonzeros)
         };
         for docs in EffectKind::docs() {
             let (keyword, keys) = (docs.keyword, docs.example);

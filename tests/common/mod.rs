@@ -179,7 +179,7 @@ pub fn band(output: &OutputBounds, method: Method) -> &Band {
     output.bands.iter().find(|band| band.method == method).unwrap()
 }
 
-/// Largest absolute value; not a number where there is one.
+/// Largest absolute value; NaN where there is one.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |largest, value| if value.abs() <= largest { largest } else { value.abs() })
 }

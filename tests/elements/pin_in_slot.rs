@@ -1,4 +1,4 @@
-//! Pins in slots: the scotch yoke.
+//! Pins in registers: the scotch yoke.
 
 use std::f64::consts::TAU;
 

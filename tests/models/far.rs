@@ -92,13 +92,17 @@ fn agrees_with_samples_alone(description: &Description, width: usize, steps: usi
         assert!(together.step(STEP, end).is_empty(), "step {step}");
         together.observe(&mut observed);
         let state = together.save();
-        let slots = state.len() / width;
+        let registers = state.len() / width;
         let mut touching = 0;
         for (lane, alone) in alone.iter_mut().enumerate() {
             assert!(alone.step(STEP, end).is_empty(), "step {step}, lane {lane}");
-            for (slot, value) in alone.save().iter().enumerate() {
-                let found = state[slot * width + lane];
-                assert_eq!(found.to_bits(), value.to_bits(), "step {step}, lane {lane}, slot {slot} of {slots}");
+            for (register, value) in alone.save().iter().enumerate() {
+                let found = state[register * width + lane];
+                assert_eq!(
+                    found.to_bits(),
+                    value.to_bits(),
+                    "step {step}, lane {lane}, register {register} of {registers}"
+                );
             }
             alone.observe(&mut one);
             for (output, value) in one.iter().enumerate() {

@@ -41,7 +41,7 @@ fn every_model_runs() {
             assert_eq!(methods, asked, "{what}");
             for band in &output.bands {
                 for row in 0..rows {
-                    // Not a number is in no order.
+                    // NaN is in no order.
                     assert!(band.lower[row] <= band.upper[row], "{what}: {:?} in row {row}", band.method);
                 }
             }

@@ -120,14 +120,14 @@ fn amplification(scheme: Scheme, h: f64) -> Matrix3<f64> {
     let start = simulator.assemble(4, h, |_| Vec::new()).unwrap();
     let mut stepper = Stepper::new(&simulator.program, &start);
     let unit = [1.0, 1.0 / h, 1.0 / (h * h)];
-    let slots = [layout.q.start, layout.v.start, layout.a.start];
-    for (place, &slot) in slots.iter().enumerate() {
-        stepper.tile_mut().lane_mut(slot).fill(0.0);
-        stepper.tile_mut().lane_mut(slot)[place] = unit[place];
+    let registers = [layout.q.start, layout.v.start, layout.a.start];
+    for (place, &register) in registers.iter().enumerate() {
+        stepper.tile_mut().lane_mut(register).fill(0.0);
+        stepper.tile_mut().lane_mut(register)[place] = unit[place];
     }
     stepper.tile_mut().lane_mut(layout.w.start).copy_from_slice(&[-1e6, 0.0, 0.0, 0.0]);
     assert_eq!(stepper.step(h, h), []);
-    Matrix3::from_fn(|row, column| stepper.tile().lane(slots[row])[column] / unit[row])
+    Matrix3::from_fn(|row, column| stepper.tile().lane(registers[row])[column] / unit[row])
 }
 
 #[test]

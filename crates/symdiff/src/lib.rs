@@ -12,9 +12,9 @@
 //! let derivative = (x * x * y.sin()).derivative(x);
 //!
 //! // As a tape, over four samples at once: x and y stand in the first two registers.
-//! let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol: symbol.expr(), stage: 0, slot });
+//! let inputs = [(x, 0), (y, 1)].map(|(symbol, register)| Input { symbol: symbol.expr(), stage: 0, register });
 //! let lowered = lower(&builder.graph(), &inputs, 0, 2, &[vec![(derivative.expr(), None)]]);
-//! let mut tile = Tile::new(4, lowered.slots, &lowered.constants);
+//! let mut tile = Tile::new(4, lowered.registers, &lowered.constants);
 //! tile.lane_mut(0).copy_from_slice(&[0.0, 1.0, 2.0, 3.0]);
 //! tile.lane_mut(1).fill(std::f64::consts::FRAC_PI_2);
 //! tile.run(&lowered.kernels[0]);

@@ -29,8 +29,8 @@ fn tree() -> impl Strategy<Value = Tree> {
         Binary::Atan2,
         Binary::Min,
         Binary::Max,
-        Binary::Where,
-        Binary::Elsewhere,
+        Binary::Select,
+        Binary::SelectElse,
     ]);
     leaf.prop_recursive(4, 16, 2, move |inner| {
         let pair = (binary.clone(), inner.clone(), inner.clone());
@@ -86,8 +86,8 @@ fn build(graph: &mut Graph, variables: &[Expr], tree: &Tree) -> Expr {
                     let one = graph.constant(1.0);
                     (a, graph.add(b, one))
                 }
-                Binary::Where => (positive(graph, a), b),
-                Binary::Elsewhere => {
+                Binary::Select => (positive(graph, a), b),
+                Binary::SelectElse => {
                     let a = positive(graph, a);
                     (graph.neg(a), b)
                 }

@@ -233,7 +233,7 @@ proptest! {
             prop_assert_eq!(jets.unary(function, &a)[0].to_bits(), expected.to_bits());
         }
         for function in [Binary::Add, Binary::Sub, Binary::Mul, Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min,
-                         Binary::Max, Binary::Where, Binary::Elsewhere] {
+                         Binary::Max, Binary::Select, Binary::SelectElse] {
             let node = graph.binary(function, x, y);
             let expected = graph.evaluate(&[node], value_of)[0];
             prop_assert_eq!(jets.binary(function, &a, &b)[0].to_bits(), expected.to_bits());

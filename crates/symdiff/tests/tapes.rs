@@ -28,7 +28,7 @@ fn step() -> impl Strategy<Value = Step> {
     // Sums and products most often: what is fused.
     let binary = prop_oneof![
         6 => prop::sample::select(vec![Binary::Add, Binary::Sub, Binary::Mul]),
-        1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max, Binary::Where, Binary::Elsewhere]),
+        1 => prop::sample::select(vec![Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max, Binary::Select, Binary::SelectElse]),
     ];
     let guarded = (any::<usize>(), any::<[usize; 2]>(), any::<Option<usize>>());
     prop_oneof![
@@ -85,20 +85,20 @@ fn blocks_are_skipped_where_no_lane_wants_them() {
     }
     let push = g.add(base, long);
     let total = g.select(c, push, base);
-    let inputs = [(c, 0), (x, 1), (y, 2)].map(|(symbol, slot)| Input { symbol, stage: 0, slot });
+    let inputs = [(c, 0), (x, 1), (y, 2)].map(|(symbol, register)| Input { symbol, stage: 0, register });
     let lowered = lower(&g, &inputs, 0, 3, &[vec![(total, Some(1))]]);
     let tape = &lowered.kernels[0];
     // Apart, the sum is all there is; it stands where the block would put its choice, and is copied to x at the end.
     assert_eq!((tape.len_where(false), tape.len_where(true), tape.len()), (2, 24, 24), "{tape:?}");
     for width in WIDTHS {
         for touching in 0..=width.min(2) {
-            let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+            let mut tile = Tile::new(width, lowered.registers, &lowered.constants);
             // What a block leaves behind may be anything.
             tile.values_mut()[3 * width..].fill(f64::NAN);
-            lowered.constants.iter().for_each(|&(slot, value)| tile.lane_mut(slot as usize).fill(value));
+            lowered.constants.iter().for_each(|&(register, value)| tile.lane_mut(register as usize).fill(value));
             let at = |lane: usize| [if lane < touching { 0.5 } else { -0.0 }, lane as f64 - 3.0, 1.0];
             for lane in 0..width {
-                at(lane).into_iter().enumerate().for_each(|(slot, value)| tile.lane_mut(slot)[lane] = value);
+                at(lane).into_iter().enumerate().for_each(|(register, value)| tile.lane_mut(register)[lane] = value);
             }
             tile.run(tape);
             for lane in 0..width {
@@ -111,7 +111,7 @@ fn blocks_are_skipped_where_no_lane_wants_them() {
     }
 }
 
-/// Equal to the bit; all that is not a number counts as one.
+/// Equal to the bit; all that is NaN counts as one.
 fn same(a: f64, b: f64) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
@@ -127,7 +127,7 @@ proptest! {
         let mut graph = Graph::new();
         let nodes = build(&mut graph, &steps);
         let inputs: Vec<Input> =
-            (0..INPUTS).map(|i| Input { symbol: nodes[i], stage: stages[i], slot: i as u32 }).collect();
+            (0..INPUTS).map(|i| Input { symbol: nodes[i], stage: stages[i], register: i as u32 }).collect();
         let observed: Vec<Expr> = picks.iter().map(|&(pick, _)| nodes[pick % nodes.len()]).collect();
         // The second kernel puts results where inputs of its own stage stand, as a step does with the state.
         let mut places = (0..INPUTS).filter(|&i| stages[i] == SHARED);
@@ -139,7 +139,7 @@ proptest! {
         let lowered = lower(&graph, &inputs, SHARED, INPUTS as u32, &kernels);
 
         for width in WIDTHS {
-            let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+            let mut tile = Tile::new(width, lowered.registers, &lowered.constants);
             for input in 0..INPUTS {
                 for lane in 0..width {
                     tile.lane_mut(input)[lane] = value(input, lane, seed);
@@ -155,8 +155,8 @@ proptest! {
                         let input = nodes.iter().position(|&node| node == symbol).unwrap();
                         value(input, lane, seed)
                     });
-                    for (&slot, &direct) in outputs.iter().zip(&direct) {
-                        let found = tile.lane(slot as usize)[lane];
+                    for (&register, &direct) in outputs.iter().zip(&direct) {
+                        let found = tile.lane(register as usize)[lane];
                         prop_assert!(same(found, direct), "{found:e} is not {direct:e} (width {width}, lane {lane})");
                     }
                 }

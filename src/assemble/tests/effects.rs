@@ -6,7 +6,7 @@ use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{
     Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Force, Friction, Impact, Preload,
-    RestitutionLaw, SpringDamper, Torque, TorsionalSpringDamper, Turning,
+    RestitutionLaw, Rotating, SpringDamper, Torque, TorsionalSpringDamper,
 };
 
 use super::model::{Model, formula, pair, vector};
@@ -260,7 +260,7 @@ fn what_takes_nothing_has_its_potential() {
         transition: formula("0.01"),
     };
     let backlash = Backlash {
-        between: [Turning::Body(m.body_index("a")), Turning::Body(m.body_index("b"))],
+        between: [Rotating::Body(m.body_index("a")), Rotating::Body(m.body_index("b"))],
         ratio: formula("-1.7"),
         offset: formula("0.1"),
         backlash: formula("0.02"),

@@ -1,7 +1,7 @@
 use crate::assemble::{self, System};
 use crate::elements::joints::*;
 use crate::grammar::{Axis, Direction};
-use crate::model::{JointKind, Turning};
+use crate::model::{JointKind, Rotating};
 
 use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_all_close, assert_close, constraint_forces, output};
@@ -30,7 +30,7 @@ fn kinds(m: &Model) -> Vec<JointKind> {
         JointKind::PinInSlot(PinInSlot { between, axis: Direction(pair("1", "2")) }),
         JointKind::Distance(Distance { between, length: formula("d") }),
         JointKind::Gear(Gear {
-            between: [Turning::Body(1), Turning::Body(2)],
+            between: [Rotating::Body(1), Rotating::Body(2)],
             ratio: formula("-2"),
             offset: formula("0.1"),
         }),

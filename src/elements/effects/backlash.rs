@@ -14,9 +14,9 @@ use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
 use super::positive_part::PositivePart;
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{JointCoordinate, Measure, OnJoint, TimeOrder, Turning};
+use crate::grammar::{JointCoordinate, Sensor, OnJoint, TimeOrder, Rotating};
 use crate::multibody::BuildError;
 
 /// Angle over which teeth come to bear, over the play.
@@ -33,7 +33,7 @@ const BEARING: f64 = 1e-2;
 )]
 pub struct Backlash {
     /// Two bodies (their angles about z) or two joints.
-    pub between: [Turning; 2],
+    pub between: [Rotating; 2],
     /// Angle of the second per angle of the first; negative for external gears.
     #[quantity(unit = "1", constant, nonzero)]
     pub ratio: Formula,
@@ -60,16 +60,16 @@ pub struct Backlash {
 }
 
 impl ForceElement for Backlash {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::ANGLE, Dimension::ANGLE),
-        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
-        (Measure::TORQUE, Dimension::TORQUE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::ANGLE, Dimension::ANGLE),
+        (Sensor::RATE, Dimension::ANGULAR_VELOCITY),
+        (Sensor::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {
-        let joint = |turning: &Turning| match turning {
-            Turning::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
-            Turning::Body(_) => None,
+        let joint = |turning: &Rotating| match turning {
+            Rotating::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
+            Rotating::Body(_) => None,
         };
         self.between.iter().filter_map(joint).collect()
     }
@@ -96,7 +96,7 @@ impl ForceElement for Backlash {
         let torque = torque.only_where(bearing_at);
         let potential = (stiffness * (ahead.integral + behind.integral)).only_where(bearing_at);
         forces.potential(&[stiffness, play, corner, ratio, offset], potential);
-        forces.sensors([(Measure::ANGLE, place), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
+        forces.sensors([(Sensor::ANGLE, place), (Sensor::RATE, rate), (Sensor::TORQUE, torque)]);
         Ok(())
     }
 }

@@ -18,9 +18,9 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Forces, LineMass, Sensor};
+use super::{ForceElement, Forces, LineMass, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
 /// A massless beam of the plane that bends between two bodies.
@@ -75,11 +75,11 @@ impl Flexible {
 }
 
 impl ForceElement for Beam {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::LENGTH, Dimension::LENGTH),
-        (Measure::FORCE, Dimension::FORCE),
-        (Measure::TORQUE, Dimension::TORQUE),
-        (Measure::START_TORQUE, Dimension::TORQUE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::LENGTH, Dimension::LENGTH),
+        (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::TORQUE, Dimension::TORQUE),
+        (Sensor::START_TORQUE, Dimension::TORQUE),
     ];
 
     fn inertia(&self) -> Option<LineMass<'_>> {
@@ -131,10 +131,10 @@ impl ForceElement for Beam {
         forces.potential(&[axial, bending, free], stretched + bent);
         let at_start = -moments[0];
         forces.sensors([
-            (Measure::LENGTH, length),
-            (Measure::FORCE, tension),
-            (Measure::TORQUE, moments[1]),
-            (Measure::START_TORQUE, at_start),
+            (Sensor::LENGTH, length),
+            (Sensor::FORCE, tension),
+            (Sensor::TORQUE, moments[1]),
+            (Sensor::START_TORQUE, at_start),
         ]);
         Ok(())
     }

@@ -21,9 +21,9 @@ use mbint_derive::{Choice, Element};
 use symdiff::{Binary, Formula};
 
 use super::positive_part::{PositivePart, clipped};
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Fields, JointCoordinate, Measure, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Turning};
+use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
 use crate::multibody::BuildError;
 
 /// Stretch over which a strand becomes taut, over the first radius.
@@ -42,7 +42,7 @@ const TAUT: f64 = 1e-4;
 )]
 pub struct Belt {
     /// Two bodies (their angles about z) or two joints.
-    pub between: [Turning; 2],
+    pub between: [Rotating; 2],
     /// Of the first pulley.
     #[quantity(unit = "m", constant, positive)]
     pub first_radius: Formula,
@@ -91,19 +91,19 @@ pub enum Run {
 
 impl Belt {
     /// Tension of the strand that pulls against the first angle.
-    pub const FIRST_TENSION: Measure = Measure::of_force("first_tension");
+    pub const FIRST_TENSION: Sensor = Sensor::of_force("first_tension");
     /// Tension of the other strand.
-    pub const SECOND_TENSION: Measure = Measure::of_force("second_tension");
+    pub const SECOND_TENSION: Sensor = Sensor::of_force("second_tension");
 }
 
 impl ForceElement for Belt {
-    const SENSORS: &'static [Sensor] =
+    const SENSORS: &'static [TypedSensor] =
         &[(Self::FIRST_TENSION, Dimension::FORCE), (Self::SECOND_TENSION, Dimension::FORCE)];
 
     fn coordinates(&self) -> Vec<OnJoint> {
-        let joint = |turning: &Turning| match turning {
-            Turning::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
-            Turning::Body(_) => None,
+        let joint = |turning: &Rotating| match turning {
+            Rotating::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
+            Rotating::Body(_) => None,
         };
         self.between.iter().filter_map(joint).collect()
     }

@@ -21,7 +21,7 @@ use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
 use symdiff::{Builder, Expr, Formula, Scalar};
 
-use super::{ForceElement, Forces, MovingPoint, Sensor};
+use super::{ForceElement, Forces, MovingPoint, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::space::{self, Vector};
@@ -61,7 +61,7 @@ pub struct Bushing {
 }
 
 impl ForceElement for Bushing {
-    const SENSORS: &'static [Sensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let g = forces.graph();

@@ -12,9 +12,9 @@ use mbint_derive::Element;
 use symdiff::{Binary, Formula};
 
 use super::positive_part::{PositivePart, clipped};
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Measure, PointRef};
+use crate::grammar::{Sensor, PointRef};
 use crate::multibody::BuildError;
 
 /// Stretch over which a cable becomes taut, over its length.
@@ -52,10 +52,10 @@ pub struct Cable {
 }
 
 impl ForceElement for Cable {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::LENGTH, Dimension::LENGTH),
-        (Measure::RATE, Dimension::VELOCITY),
-        (Measure::FORCE, Dimension::FORCE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::LENGTH, Dimension::LENGTH),
+        (Sensor::RATE, Dimension::VELOCITY),
+        (Sensor::FORCE, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -77,7 +77,7 @@ impl ForceElement for Cable {
         let tension = tension.only_where(tight);
         let potential = (stiffness * taut.integral).only_where(tight);
         forces.potential(&[stiffness, free, corner], potential);
-        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension)]);
         Ok(())
     }
 }

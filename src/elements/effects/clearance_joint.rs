@@ -13,7 +13,7 @@ use symdiff::Formula;
 
 use super::contact::{Shape, Touch};
 use super::impact::Push;
-use super::{ForceElement, Forces, Friction, Impact, Sensor, contact};
+use super::{ForceElement, Forces, Friction, Impact, TypedSensor, contact};
 use crate::grammar::{Axis, PointRef};
 use crate::multibody::BuildError;
 
@@ -46,7 +46,7 @@ pub struct ClearanceJoint {
 }
 
 impl ForceElement for ClearanceJoint {
-    const SENSORS: &'static [Sensor] = contact::SENSORS;
+    const SENSORS: &'static [TypedSensor] = contact::SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let clearance = forces.prescribed(&self.clearance)?.expr();

@@ -19,9 +19,9 @@ use symdiff::{Builder, Expr, Formula};
 
 use super::dry_friction::Resistance;
 use super::impact::Push;
-use super::{ForceElement, Forces, Friction, Impact, Sensor};
+use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Axis, Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::grammar::{Axis, Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::space::{self, Vector};
 use crate::multibody::{BuildError, Pair, Vector as Handle};
 
@@ -63,15 +63,15 @@ pub struct Contact {
 }
 
 /// What two surfaces measure.
-pub(super) const SENSORS: &[Sensor] = &[
-    (Measure::GAP, Dimension::LENGTH),
-    (Measure::RATE, Dimension::VELOCITY),
-    (Measure::FORCE, Dimension::FORCE),
-    (Measure::FRICTION, Dimension::FORCE),
+pub(super) const SENSORS: &[TypedSensor] = &[
+    (Sensor::GAP, Dimension::LENGTH),
+    (Sensor::RATE, Dimension::VELOCITY),
+    (Sensor::FORCE, Dimension::FORCE),
+    (Sensor::FRICTION, Dimension::FORCE),
 ];
 
 impl ForceElement for Contact {
-    const SENSORS: &'static [Sensor] = SENSORS;
+    const SENSORS: &'static [TypedSensor] = SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let g = forces.graph();
@@ -169,13 +169,13 @@ impl<'g> Touch<'g> {
                 // Along n turned clockwise: x on a floor.
                 normal.perpendicular().dot(drag)
             };
-            forces.sensor(Measure::FRICTION, felt.only_where(overlap));
+            forces.sensor(Sensor::FRICTION, felt.only_where(overlap));
         }
         forces.between(&first, &second, force);
         let push = push.only_where(overlap);
         let potential = self.impact.potential(depth).only_where(depth);
         forces.potential(&[self.impact.stiffness], potential);
-        forces.sensors([(Measure::GAP, gap), (Measure::RATE, parting), (Measure::FORCE, push)]);
+        forces.sensors([(Sensor::GAP, gap), (Sensor::RATE, parting), (Sensor::FORCE, push)]);
     }
 
     fn gap(&self, g: &Builder, pair: &Pair) -> Gap {

@@ -9,9 +9,9 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Components, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::grammar::{Checked, Components, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::BuildError;
 
 /// ε, m/s
@@ -65,7 +65,7 @@ impl Drag {
 }
 
 impl ForceElement for Drag {
-    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE)];
+    const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE)];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let point = forces.point(self.on);
@@ -79,7 +79,7 @@ impl ForceElement for Drag {
         let speed = (u.dot(u) + AT_REST * AT_REST).sqrt();
         let resistance = linear + quadratic * speed;
         forces.at(&point, -resistance * u);
-        forces.sensor(Measure::FORCE, resistance * speed);
+        forces.sensor(Sensor::FORCE, resistance * speed);
         Ok(())
     }
 }

@@ -8,7 +8,7 @@
 
 use mbint_derive::{Choice, Element};
 
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::{Components, PointRef};
 use crate::multibody::BuildError;
 
@@ -42,7 +42,7 @@ pub enum Frame {
 }
 
 impl ForceElement for Force {
-    const SENSORS: &'static [Sensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let mut force = forces.vector(&self.value)?;

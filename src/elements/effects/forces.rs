@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Formula, Scalar};
 
-use crate::grammar::{Measure, OnJoint, PointRef, TimeOrder, Turning};
+use crate::grammar::{OnJoint, PointRef, Rotating, Sensor, TimeOrder};
 use crate::multibody::{BuildError, MaterialPoint, Pair, Vector};
 
 /// A point fixed in a body, in the ground's axes.
@@ -47,7 +47,7 @@ pub trait Forces<'g> {
     /// A formula of parameters, t, positions, velocities and reactions.
     fn value(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
     /// The same of a formula that may refer to what the effect itself measures.
-    fn value_with(&self, formula: &Formula, own: &[(Measure, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError>;
+    fn value_with(&self, formula: &Formula, own: &[(Sensor, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError>;
     /// A formula of parameters and t.
     fn prescribed(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError>;
     /// Three formulas of parameters, t, positions, velocities and reactions.
@@ -66,7 +66,7 @@ pub trait Forces<'g> {
     /// ω of a body in the ground's axes, rad/s.
     fn angular_velocity(&self, body: usize) -> Vector<'g>;
     /// The angle of a body about z or of a joint, rad, or its rate, rad/s.
-    fn angle(&self, of: Turning, order: TimeOrder) -> Scalar<'g>;
+    fn angle(&self, of: Rotating, order: TimeOrder) -> Scalar<'g>;
     /// A coordinate of a joint, rad or m, or its rate.
     fn coordinate(&self, on: OnJoint, order: TimeOrder) -> Scalar<'g>;
     /// The rate of a joint's coordinate, rad/s or m/s, by the velocities of its bodies.
@@ -92,7 +92,7 @@ pub trait Forces<'g> {
     /// A potential energy, J, if it is one: where a coefficient depends on the motion, its gradient is not the force.
     fn potential(&mut self, coefficients: &[Scalar<'g>], energy: Scalar<'g>);
     /// Something that the effect measures, for outputs.
-    fn sensor(&mut self, measure: Measure, value: Scalar<'g>);
+    fn sensor(&mut self, measure: Sensor, value: Scalar<'g>);
 }
 
 impl<'g> dyn Forces<'g> + '_ {
@@ -102,19 +102,19 @@ impl<'g> dyn Forces<'g> + '_ {
     }
 
     /// A torque about z on what has an angle: on a body from the ground, or on a joint's second body from its first, N m.
-    pub fn torque_about(&mut self, on: Turning, torque: Scalar<'g>) -> Result<(), BuildError> {
+    pub fn torque_about(&mut self, on: Rotating, torque: Scalar<'g>) -> Result<(), BuildError> {
         match on {
-            Turning::Body(body) => {
+            Rotating::Body(body) => {
                 let zero = self.graph().number(0.0);
                 self.torque(0, body, [zero, zero, torque].into());
                 Ok(())
             }
-            Turning::Joint(joint) => self.effort(OnJoint::angle(joint), torque),
+            Rotating::Joint(joint) => self.effort(OnJoint::angle(joint), torque),
         }
     }
 
     /// Several things that the effect measures.
-    pub fn sensors<const N: usize>(&mut self, measured: [(Measure, Scalar<'g>); N]) {
+    pub fn sensors<const N: usize>(&mut self, measured: [(Sensor, Scalar<'g>); N]) {
         for (measure, value) in measured {
             self.sensor(measure, value);
         }

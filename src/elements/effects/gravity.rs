@@ -9,7 +9,7 @@
 
 use mbint_derive::Element;
 
-use super::{ForceElement, Forces, Scope, Sensor};
+use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::grammar::Components;
 use crate::multibody::BuildError;
 
@@ -29,7 +29,7 @@ pub struct Gravity {
 }
 
 impl ForceElement for Gravity {
-    const SENSORS: &'static [Sensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[];
 
     fn scope(&self) -> Scope {
         Scope::EveryBody

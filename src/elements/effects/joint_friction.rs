@@ -17,10 +17,10 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::{Formula, Scalar};
 
 use super::dry_friction::Resistance;
-use super::{DryFriction, ForceElement, Forces, Sensor};
+use super::{DryFriction, ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{
-    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Measure, Node, OnJoint, Reader, Reference, SymbolTable,
+    Checked, Fields, FrictionMode, Group, JointCoordinate, Key, Sensor, Node, OnJoint, Reader, Reference, SymbolTable,
 };
 use crate::multibody::{BuildError, Vector};
 
@@ -72,16 +72,16 @@ pub struct FrictionJoint {
 }
 
 impl ForceElement for JointFriction {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::LOAD, Dimension::FORCE),
-        (Measure::FORCE, Dimension::FORCE),
-        (Measure::TORQUE, Dimension::TORQUE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::LOAD, Dimension::FORCE),
+        (Sensor::FORCE, Dimension::FORCE),
+        (Sensor::TORQUE, Dimension::TORQUE),
     ];
 
-    fn sensors(&self) -> Vec<Sensor> {
-        let measured = |measure: Measure| match self.on.mode {
-            FrictionMode::Turning => measure != Measure::FORCE,
-            FrictionMode::Sliding => measure != Measure::TORQUE,
+    fn sensors(&self) -> Vec<TypedSensor> {
+        let measured = |measure: Sensor| match self.on.mode {
+            FrictionMode::Rotating => measure != Sensor::FORCE,
+            FrictionMode::Sliding => measure != Sensor::TORQUE,
             FrictionMode::Both => true,
         };
         Self::SENSORS.iter().copied().filter(|(measure, _)| measured(*measure)).collect()
@@ -102,14 +102,14 @@ impl ForceElement for JointFriction {
         };
         let load = self.load(forces)?;
         let mut bound = dry.coefficient * load;
-        if self.on.mode == FrictionMode::Turning {
+        if self.on.mode == FrictionMode::Rotating {
             bound = radius * bound;
         }
         let bound = constant + bound;
 
         let rate = |coordinate| forces.rate(OnJoint { joint, coordinate });
         let velocity = match self.on.mode {
-            FrictionMode::Turning => vec![rate(JointCoordinate::Angle)?],
+            FrictionMode::Rotating => vec![rate(JointCoordinate::Angle)?],
             FrictionMode::Sliding => vec![rate(JointCoordinate::Displacement)?],
             FrictionMode::Both => {
                 let turning = rate(JointCoordinate::Angle)?;
@@ -120,16 +120,16 @@ impl ForceElement for JointFriction {
         let resistance = bound * dry.by_speed(square) + viscous;
         let against: Vec<Scalar> = velocity.iter().map(|&velocity| -(resistance * velocity)).collect();
         let efforts = match self.on.mode {
-            FrictionMode::Turning => vec![(JointCoordinate::Angle, against[0])],
+            FrictionMode::Rotating => vec![(JointCoordinate::Angle, against[0])],
             FrictionMode::Sliding => vec![(JointCoordinate::Displacement, against[0])],
             FrictionMode::Both => {
                 vec![(JointCoordinate::Displacement, against[0]), (JointCoordinate::Angle, radius * against[1])]
             }
         };
-        forces.sensor(Measure::LOAD, load);
+        forces.sensor(Sensor::LOAD, load);
         for (coordinate, effort) in efforts {
             forces.effort(OnJoint { joint, coordinate }, effort)?;
-            forces.sensor(Measure::of_effort(coordinate), effort);
+            forces.sensor(Sensor::of_effort(coordinate), effort);
         }
         Ok(())
     }
@@ -143,7 +143,7 @@ impl JointFriction {
         let Some(length) = &self.length else { return Ok(magnitude(force)) };
         let length = forces.value(length)?;
         let coordinate = match self.on.mode {
-            FrictionMode::Turning => JointCoordinate::Angle,
+            FrictionMode::Rotating => JointCoordinate::Angle,
             FrictionMode::Sliding | FrictionMode::Both => JointCoordinate::Displacement,
         };
         let couple = torque.cross(forces.axis(OnJoint { joint, coordinate })?) / length;
@@ -168,7 +168,7 @@ impl Checked for JointFriction {
 
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         let by_radius = match self.on.mode {
-            FrictionMode::Turning => fields.get("coefficient").is_some(),
+            FrictionMode::Rotating => fields.get("coefficient").is_some(),
             FrictionMode::Sliding => false,
             FrictionMode::Both => true,
         };
@@ -217,7 +217,7 @@ impl Group for FrictionJoint {
 
     fn units(read: Option<&Self>) -> Option<usize> {
         // A joint that is unknown is taken for a revolute one, as in other effects on joints.
-        let slides = read.is_some_and(|on| on.mode != FrictionMode::Turning);
+        let slides = read.is_some_and(|on| on.mode != FrictionMode::Rotating);
         let coordinate = if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle };
         Some(coordinate.unit_choice())
     }

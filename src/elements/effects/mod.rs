@@ -17,7 +17,7 @@ pub use self::forces::{Forces, MovingPoint};
 pub use self::impact::{Exponent, Impact, RestitutionLaw};
 use self::registry::effects;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Element, ElementDocs, Measure, OnJoint, PointRef};
+use crate::grammar::{Element, ElementDocs, OnJoint, PointRef, Sensor};
 use crate::multibody::BuildError;
 
 effects! {
@@ -41,12 +41,12 @@ effects! {
 }
 
 /// Something that an effect measures, and what it is.
-pub type Sensor = (Measure, Dimension);
+pub type TypedSensor = (Sensor, Dimension);
 
 /// What an effect does.
 pub trait ForceElement: Element {
     /// What it may measure; its own formulas may refer to what of this follows from the motion.
-    const SENSORS: &'static [Sensor];
+    const SENSORS: &'static [TypedSensor];
 
     /// Adds its forces to a mechanism.
     ///
@@ -55,7 +55,7 @@ pub trait ForceElement: Element {
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError>;
 
     /// What it measures.
-    fn sensors(&self) -> Vec<Sensor> {
+    fn sensors(&self) -> Vec<TypedSensor> {
         Self::SENSORS.to_vec()
     }
 
@@ -105,9 +105,9 @@ pub struct LineMass<'a> {
 }
 
 /// What pushes a joint's coordinate.
-fn effort(on: OnJoint) -> Sensor {
+fn effort(on: OnJoint) -> TypedSensor {
     let [_, _, dimension] = crate::grammar::motions::dimensions_of(on.coordinate);
-    (Measure::of_effort(on.coordinate), dimension)
+    (Sensor::of_effort(on.coordinate), dimension)
 }
 
 /// What people are told of an effect.

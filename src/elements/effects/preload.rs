@@ -10,7 +10,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::{Checked, Fields, OnJoint, PointRef, Reader, SymbolTable, TimeOrder};
 use crate::multibody::BuildError;
 
@@ -36,7 +36,7 @@ pub struct Preload {
 }
 
 impl ForceElement for Preload {
-    const SENSORS: &'static [Sensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[];
 
     fn coordinates(&self) -> Vec<OnJoint> {
         self.on.into_iter().collect()

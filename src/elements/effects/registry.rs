@@ -85,7 +85,7 @@ macro_rules! effects {
             }
 
             /// What it measures, for outputs.
-            pub fn measures(&self) -> Vec<Sensor> {
+            pub fn measures(&self) -> Vec<TypedSensor> {
                 match self {
                     $(Self::$name(effect) => ForceElement::sensors(effect),)*
                 }

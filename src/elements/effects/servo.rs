@@ -10,9 +10,9 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Forces, Sensor, effort};
+use super::{ForceElement, Forces, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Measure, OnJoint};
+use crate::grammar::{Sensor, OnJoint};
 use crate::multibody::BuildError;
 
 /// ε over L.
@@ -46,9 +46,9 @@ pub struct Servo {
 }
 
 impl ForceElement for Servo {
-    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE), (Measure::TORQUE, Dimension::TORQUE)];
+    const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE), (Sensor::TORQUE, Dimension::TORQUE)];
 
-    fn sensors(&self) -> Vec<Sensor> {
+    fn sensors(&self) -> Vec<TypedSensor> {
         vec![effort(self.on)]
     }
 
@@ -66,7 +66,7 @@ impl ForceElement for Servo {
         if let Some(limit) = &self.limit {
             effort = saturated(effort, forces.value(limit)?);
         }
-        forces.sensor(Measure::of_effort(self.on.coordinate), effort);
+        forces.sensor(Sensor::of_effort(self.on.coordinate), effort);
         forces.effort(self.on, effort)
     }
 }

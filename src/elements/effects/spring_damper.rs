@@ -16,9 +16,9 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Direction, Fields, Measure, PointRef, Reader, SymbolTable};
+use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
 /// A spring and damper between two points.
@@ -52,10 +52,10 @@ pub struct SpringDamper {
 }
 
 impl ForceElement for SpringDamper {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::LENGTH, Dimension::LENGTH),
-        (Measure::RATE, Dimension::VELOCITY),
-        (Measure::FORCE, Dimension::FORCE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::LENGTH, Dimension::LENGTH),
+        (Sensor::RATE, Dimension::VELOCITY),
+        (Sensor::FORCE, Dimension::FORCE),
     ];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
@@ -72,7 +72,7 @@ impl ForceElement for SpringDamper {
             None => along_line(line, growth, spring),
         };
         if let Some(further) = &self.force {
-            let further = forces.value_with(further, &[(Measure::LENGTH, length), (Measure::RATE, rate)])?;
+            let further = forces.value_with(further, &[(Sensor::LENGTH, length), (Sensor::RATE, rate)])?;
             pull += further * direction;
             tension += further;
         }
@@ -83,7 +83,7 @@ impl ForceElement for SpringDamper {
         if self.force.is_none() {
             forces.potential(&[spring.stiffness, spring.free_length], potential);
         }
-        forces.sensors([(Measure::LENGTH, length), (Measure::RATE, rate), (Measure::FORCE, tension)]);
+        forces.sensors([(Sensor::LENGTH, length), (Sensor::RATE, rate), (Sensor::FORCE, tension)]);
         Ok(())
     }
 }

@@ -10,9 +10,9 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::impact::Push;
-use super::{ForceElement, Forces, Impact, Sensor, effort};
+use super::{ForceElement, Forces, Impact, TypedSensor, effort};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Checked, Fields, Measure, OnJoint, Reader, SymbolTable};
+use crate::grammar::{Checked, Fields, Sensor, OnJoint, Reader, SymbolTable};
 use crate::multibody::BuildError;
 
 /// Stops at the ends of a joint's range.
@@ -40,9 +40,9 @@ pub struct Stop {
 }
 
 impl ForceElement for Stop {
-    const SENSORS: &'static [Sensor] = &[(Measure::FORCE, Dimension::FORCE), (Measure::TORQUE, Dimension::TORQUE)];
+    const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE), (Sensor::TORQUE, Dimension::TORQUE)];
 
-    fn sensors(&self) -> Vec<Sensor> {
+    fn sensors(&self) -> Vec<TypedSensor> {
         vec![effort(self.on)]
     }
 
@@ -74,7 +74,7 @@ impl ForceElement for Stop {
             let potential = impact.potential(depth).only_where(depth);
             forces.potential(&[impact.stiffness], potential);
         }
-        forces.sensor(Measure::of_effort(self.on.coordinate), push);
+        forces.sensor(Sensor::of_effort(self.on.coordinate), push);
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ use schemars::{Schema, SchemaGenerator};
 use symdiff::Formula;
 
 use super::force::Frame;
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::{
     BodyRef, Checked, Fields, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values,
 };
@@ -61,7 +61,7 @@ impl Torque {
 }
 
 impl ForceElement for Torque {
-    const SENSORS: &'static [Sensor] = &[];
+    const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         match self.on {

@@ -11,9 +11,9 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use super::{ForceElement, Forces, Sensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Measure, OnJoint, Reader, SymbolTable, TimeOrder, Turning, TurningJoint};
+use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Sensor, OnJoint, Reader, SymbolTable, TimeOrder, Rotating, RotatingJoint};
 use crate::multibody::BuildError;
 
 /// A spring and damper between the angles of two bodies, or on the angle of a joint.
@@ -30,7 +30,7 @@ pub struct TorsionalSpringDamper {
     /// Two bodies, by their angles about z.
     pub between: Option<[BodyRef; 2]>,
     /// Instead of `between`: a joint.
-    pub on: Option<TurningJoint>,
+    pub on: Option<RotatingJoint>,
     /// Torque by twist.
     #[quantity(unit = "N*m/rad", default = 0)]
     pub stiffness: Formula,
@@ -46,10 +46,10 @@ pub struct TorsionalSpringDamper {
 }
 
 impl ForceElement for TorsionalSpringDamper {
-    const SENSORS: &'static [Sensor] = &[
-        (Measure::ANGLE, Dimension::ANGLE),
-        (Measure::RATE, Dimension::ANGULAR_VELOCITY),
-        (Measure::TORQUE, Dimension::TORQUE),
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::ANGLE, Dimension::ANGLE),
+        (Sensor::RATE, Dimension::ANGULAR_VELOCITY),
+        (Sensor::TORQUE, Dimension::TORQUE),
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {
@@ -63,16 +63,16 @@ impl ForceElement for TorsionalSpringDamper {
         let bodies = self.between.map(|bodies| bodies.map(|body| body.0));
         let [angle, rate] = match (bodies, self.on) {
             (Some([first, second]), None) => [TimeOrder::Position, TimeOrder::Velocity]
-                .map(|order| forces.angle(Turning::Body(second), order) - forces.angle(Turning::Body(first), order)),
+                .map(|order| forces.angle(Rotating::Body(second), order) - forces.angle(Rotating::Body(first), order)),
             (_, Some(joint)) => forces.coordinate_and_rate(OnJoint::angle(joint.0)),
             (None, None) => return Ok(()),
         };
         let twist = angle - free_angle;
         let mut torque = stiffness * twist + damping * rate;
         if let Some(further) = &self.torque {
-            torque += forces.value_with(further, &[(Measure::ANGLE, angle), (Measure::RATE, rate)])?;
+            torque += forces.value_with(further, &[(Sensor::ANGLE, angle), (Sensor::RATE, rate)])?;
         }
-        forces.sensors([(Measure::ANGLE, angle), (Measure::RATE, rate), (Measure::TORQUE, torque)]);
+        forces.sensors([(Sensor::ANGLE, angle), (Sensor::RATE, rate), (Sensor::TORQUE, torque)]);
         match (bodies, self.on) {
             (Some([first, second]), None) => {
                 let zero = forces.graph().number(0.0);

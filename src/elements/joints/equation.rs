@@ -13,7 +13,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Referent, Span, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Symbol, Span, SymbolTable};
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -109,8 +109,8 @@ impl Element for Equation {
         }
         let moves = left.names().chain(right.names()).any(|(name, _)| {
             matches!(
-                reader.referent(name),
-                Some(Referent::Coordinate { .. } | Referent::Point { .. } | Referent::JointCoordinate { .. })
+                reader.symbol(name),
+                Some(Symbol::Coordinate { .. } | Symbol::Point { .. } | Symbol::JointCoordinate { .. })
             )
         });
         if !moves {

@@ -12,7 +12,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::{JointCoordinate, OnJoint, Turning};
+use crate::grammar::{JointCoordinate, OnJoint, Rotating};
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -28,7 +28,7 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 )]
 pub struct Gear {
     /// Two bodies (their angles about z) or two joints.
-    pub between: [Turning; 2],
+    pub between: [Rotating; 2],
     /// Angle of the second per angle of the first; negative for external gears.
     #[quantity(unit = "1", nonzero, constant)]
     pub ratio: Formula,
@@ -47,10 +47,10 @@ impl JointElement for Gear {
 }
 
 /// The coordinate of an angle that is a joint's.
-fn of_joint(angle: Turning) -> Option<OnJoint> {
+fn of_joint(angle: Rotating) -> Option<OnJoint> {
     match angle {
-        Turning::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
-        Turning::Body(_) => None,
+        Rotating::Joint(joint) => Some(OnJoint { joint, coordinate: JointCoordinate::Angle }),
+        Rotating::Body(_) => None,
     }
 }
 
@@ -62,8 +62,8 @@ impl Joint for Gear {
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {
         let (ratio, offset) = (k.number(&self.ratio)?, k.number(&self.offset)?);
         let [first, second] = self.between.map(|angle| match angle {
-            Turning::Body(body) => k.angle(body),
-            Turning::Joint(joint) => k.coordinate(OnJoint { joint, coordinate: JointCoordinate::Angle }),
+            Rotating::Body(body) => k.angle(body),
+            Rotating::Joint(joint) => k.coordinate(OnJoint { joint, coordinate: JointCoordinate::Angle }),
         });
         let value = second - ratio * first - offset;
         let axis = match of_joint(self.between[1]) {

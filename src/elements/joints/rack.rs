@@ -11,7 +11,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
-use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, TurningJoint};
+use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
 use crate::multibody::Vector;
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -27,7 +27,7 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 )]
 pub struct Rack {
     /// The joint about which the pinion turns.
-    pub pinion: TurningJoint,
+    pub pinion: RotatingJoint,
     /// The joint along which the rack slides.
     pub rack: SlidingJoint,
     /// Displacement a radian; negative where the rack goes against the angle.

@@ -1,7 +1,7 @@
 //! How far a parameter may deviate: `tolerance`, `interval`, `plus` and `minus`.
 
 use super::{Draft, Spec};
-use crate::grammar::Referent;
+use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::number_and_unit;
@@ -23,8 +23,8 @@ pub fn depends_on_uncertain(reader: &Reader, draft: &Draft) -> bool {
         match &reader.model.parameters[index].value {
             ParameterValue::Interval { .. } => return true,
             ParameterValue::Formula(formula) => {
-                open.extend(formula.names().filter_map(|(name, _)| match reader.model.referent(name) {
-                    Some(Referent::Parameter(used)) => Some(used),
+                open.extend(formula.names().filter_map(|(name, _)| match reader.model.symbol(name) {
+                    Some(Symbol::Parameter(used)) => Some(used),
                     _ => None,
                 }));
             }

@@ -81,7 +81,7 @@ fn rubbing<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found
         let none = || Formula::number(0.0);
         let (viscous, coulomb) = if what == "damping" { (value, none()) } else { (none(), value) };
         let (mode, slow) =
-            if joint.kind.turns() { (FrictionMode::Turning, SLOW_TURN) } else { (FrictionMode::Sliding, SLOW_SLIDE) };
+            if joint.kind.turns() { (FrictionMode::Rotating, SLOW_TURN) } else { (FrictionMode::Sliding, SLOW_SLIDE) };
         let dry = DryFriction {
             breakaway: Formula::number(1.0),
             stribeck_velocity: None,

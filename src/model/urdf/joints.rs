@@ -6,7 +6,7 @@ use super::algebra::{self, Value};
 use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
 use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
-use crate::grammar::{Axis, Direction, PointRef, Turning};
+use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
 
@@ -55,7 +55,7 @@ pub fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
     };
     let kind = if joint.kind.turns() && leader.kind.turns() && mimic.multiplier != 0.0 {
         JointKind::from(Gear {
-            between: [Turning::Joint(other), Turning::Joint(this)],
+            between: [Rotating::Joint(other), Rotating::Joint(this)],
             ratio: Formula::number(mimic.multiplier),
             offset: Formula::number(mimic.offset),
         })

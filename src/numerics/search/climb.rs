@@ -111,7 +111,7 @@ impl Climb {
         self.at = self.best;
         let least = ExtremeSearch::TOLERANCE * seen.width(self.goal);
         let hopeless = value + self.promised.max(gained) < seen.best_value(self.goal);
-        // What is not a number ends it too.
+        // What is NaN ends it too.
         let goes_on = gained > least && self.promised > least;
         self.arrived = hopeless || !goes_on;
     }

@@ -66,7 +66,7 @@ impl Evaluations {
         Ok(places)
     }
 
-    /// What a goal wants to be large; not a number is the least of all.
+    /// What a goal wants to be large; NaN is the least of all.
     pub(super) fn value(&self, goal: Goal, place: usize) -> f64 {
         let value = goal.sign * self.values[goal.output][place];
         if value.is_nan() { f64::NEG_INFINITY } else { value }

@@ -29,7 +29,7 @@ const ROUNDS: usize = 12;
 /// A function's least and largest value found, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extremes {
-    /// Unknown if any value was not a number.
+    /// Unknown if any value was NaN.
     pub range: Range,
     /// ξ of the least value.
     pub lowest: Vec<f64>,

@@ -15,7 +15,7 @@ pub struct OpenConstraint {
 }
 
 impl Simulator {
-    /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's slots), and
+    /// The constraint that cannot be closed at a time wherever positions are sought from `state` (the layout's registers), and
     /// its residual. `None` where all constraints can be closed.
     pub(in crate::simulate) fn open_constraint(&self, state: &[f64], time: f64) -> Option<OpenConstraint> {
         // Of the start only the constraints are kept.
@@ -25,8 +25,8 @@ impl Simulator {
         let layout = &start.layout;
         let parameters = layout.parameters.clone();
         let mut assembly = Assembly::new(&start, &free, 1, |parameter, _| state[parameters.start + parameter]);
-        for slot in layout.q.clone() {
-            assembly.tile_mut().lane_mut(slot)[0] = state[slot];
+        for register in layout.q.clone() {
+            assembly.tile_mut().lane_mut(register)[0] = state[register];
         }
         assembly.tile_mut().lane_mut(layout.time)[0] = time;
         let worst = assembly.descend().err()?;

@@ -37,7 +37,7 @@ pub struct SingularPass {
 struct Moment {
     time: f64,
     pivot_loss: f64,
-    /// The layout's slots.
+    /// The layout's registers.
     state: Vec<f64>,
 }
 

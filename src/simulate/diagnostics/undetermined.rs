@@ -53,8 +53,8 @@ fn null_vectors(system: &System, start: &StartProgram, state: &[f64], count: usi
 fn general_values(system: &System, layout: &Layout, state: &[f64]) -> FxHashMap<Expr, f64> {
     let mut values = FxHashMap::default();
     let parameters = system.parameters.iter().map(|parameter| parameter.symbol);
-    values.extend(parameters.zip(layout.parameters.clone().map(|slot| state[slot])));
-    values.extend(system.q.iter().copied().zip(layout.q.clone().map(|slot| state[slot])));
+    values.extend(parameters.zip(layout.parameters.clone().map(|register| state[register])));
+    values.extend(system.q.iter().copied().zip(layout.q.clone().map(|register| state[register])));
     let free = [&system.v, &system.w, &system.lambda];
     let free = free.into_iter().flatten().copied().enumerate();
     values.extend(free.map(|(place, symbol)| (symbol, 1.0 + spread(3, place))));

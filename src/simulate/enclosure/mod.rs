@@ -139,9 +139,9 @@ impl<'s> Enclosure<'s> {
     ) -> Result<Self, EnclosureError> {
         let (simulator, program) = (certifier.simulator, &certifier.program);
         let coefficients = simulator.program.coefficients;
-        let mut memory = ModelMemory::new(space, program.slots(), program.constants());
-        for (variable, slot) in program.layout.parameters.clone().enumerate() {
-            space.variable(variable, lower[variable], upper[variable], memory.model_mut(slot));
+        let mut memory = ModelMemory::new(space, program.registers(), program.constants());
+        for (variable, register) in program.layout.parameters.clone().enumerate() {
+            space.variable(variable, lower[variable], upper[variable], memory.model_mut(register));
         }
         memory.run(program.sample());
         start::assemble(simulator, program, space, &mut memory, coefficients.shift() * h)?;
@@ -176,7 +176,7 @@ impl<'s> Enclosure<'s> {
     pub fn observe(&mut self, into: &mut Vec<f64>) {
         self.memory.run(self.program.observe());
         into.clear();
-        self.program.outputs.iter().for_each(|&slot| into.extend_from_slice(self.memory.model(slot)));
+        self.program.outputs.iter().for_each(|&register| into.extend_from_slice(self.memory.model(register)));
     }
 
     /// Steps up to a row of output, which follows the one before.

@@ -10,15 +10,15 @@ use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
 
-/// A square system of equations among a program's slots.
+/// A square system of equations among a program's registers.
 struct Equations<'p> {
-    /// Slots of the unknowns.
+    /// Registers of the unknowns.
     unknowns: Vec<usize>,
-    /// Slots of the residuals, after `residual`.
+    /// Registers of the residuals, after `residual`.
     residuals: Vec<usize>,
     residual: [&'p Tape; 2],
     slopes: &'p Tape,
-    /// (residual, unknown, slot) after `slopes`.
+    /// (residual, unknown, register) after `slopes`.
     entries: Vec<(usize, usize, usize)>,
 }
 
@@ -31,8 +31,8 @@ pub(super) fn assemble(
     shift: f64,
 ) -> Result<(), EnclosureError> {
     let layout = &program.layout;
-    for slot in layout.state() {
-        space.constant(Interval::point(simulator.nominal[slot]), memory.model_mut(slot));
+    for register in layout.state() {
+        space.constant(Interval::point(simulator.nominal[register]), memory.model_mut(register));
     }
     set_time(space, memory, layout.time, 0.0);
     memory.run(program.given());
@@ -49,7 +49,7 @@ pub(super) fn assemble(
             (0..layout.q.len()).filter(|place| kept.iter().all(|(known, _)| known != place)).collect();
         let column = |place: usize| free.iter().position(|&known| known == place);
         let slopes = program.constraint_by_position.iter();
-        let entries = slopes.filter_map(|&(row, place, slot)| Some((row, column(place)?, slot))).collect();
+        let entries = slopes.filter_map(|&(row, place, register)| Some((row, column(place)?, register))).collect();
         let equations = Equations {
             unknowns: free.iter().map(|place| start + place).collect(),
             residuals: residuals.clone(),
@@ -63,8 +63,8 @@ pub(super) fn assemble(
     accelerations.solve(space, memory)?;
 
     // a = w(t + αh) to first order: the accelerations of the state moved there.
-    let saved: Vec<Vec<f64>> = layout.state().map(|slot| memory.model(slot).to_vec()).collect();
-    let state = |slot: usize| &saved[slot - layout.q.start];
+    let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.model(register).to_vec()).collect();
+    let state = |register: usize| &saved[register - layout.q.start];
     let (shift_by, half) = (Interval::point(shift), Interval::point(0.5 * shift));
     let (mut moved, mut term) = (vec![0.0; space.size()], vec![0.0; space.size()]);
     for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
@@ -77,12 +77,12 @@ pub(super) fn assemble(
     }
     set_time(space, memory, layout.time, shift);
     accelerations.solve(space, memory)?;
-    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|slot| memory.model(slot).to_vec()).collect();
-    for (slot, saved) in layout.state().zip(&saved) {
-        memory.model_mut(slot).copy_from_slice(saved);
+    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|register| memory.model(register).to_vec()).collect();
+    for (register, saved) in layout.state().zip(&saved) {
+        memory.model_mut(register).copy_from_slice(saved);
     }
-    for (slot, shifted) in layout.a.clone().zip(&shifted) {
-        memory.model_mut(slot).copy_from_slice(shifted);
+    for (register, shifted) in layout.a.clone().zip(&shifted) {
+        memory.model_mut(register).copy_from_slice(shifted);
     }
     set_time(space, memory, layout.time, 0.0);
     Ok(())
@@ -107,13 +107,13 @@ pub(super) fn tangent(
     }
     memory.run(program.jacobian());
     let (mut mass, mut slopes) = (Models::zero(space, n + m, n + m), Models::zero(space, m, n));
-    for &(row, column, slot) in &program.motion_by[2] {
-        mass.at_mut(row, column).copy_from_slice(memory.model(slot));
+    for &(row, column, register) in &program.motion_by[2] {
+        mass.at_mut(row, column).copy_from_slice(memory.model(register));
     }
-    for &(row, column, slot) in &program.constraint_by_position {
-        mass.at_mut(n + row, column).copy_from_slice(memory.model(slot));
-        mass.at_mut(column, n + row).copy_from_slice(memory.model(slot));
-        slopes.at_mut(row, column).copy_from_slice(memory.model(slot));
+    for &(row, column, register) in &program.constraint_by_position {
+        mass.at_mut(n + row, column).copy_from_slice(memory.model(register));
+        mass.at_mut(column, n + row).copy_from_slice(memory.model(register));
+        slopes.at_mut(row, column).copy_from_slice(memory.model(register));
     }
     let mut tangent = Models::zero(space, n, independent.len());
     independent.iter().enumerate().for_each(|(column, &row)| tangent.at_mut(row, column)[0] = 1.0);
@@ -132,8 +132,8 @@ fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, EnclosureError
     if inverse.refine_inverse_of(space, matrix) { Ok(inverse) } else { Err(EnclosureError::Unproven) }
 }
 
-fn set_time(space: &ModelSpace, memory: &mut ModelMemory, slot: usize, time: f64) {
-    space.constant(Interval::point(time), memory.model_mut(slot));
+fn set_time(space: &ModelSpace, memory: &mut ModelMemory, register: usize, time: f64) {
+    space.constant(Interval::point(time), memory.model_mut(register));
 }
 
 /// M w + Φ_qᵀ λ − Q = 0 and Φ̈ = 0, whose derivative by w is Φ_q.
@@ -142,8 +142,8 @@ fn accelerations(program: &EquationsProgram) -> Equations<'_> {
     let n = layout.q.len();
     let [_, _, by_w, by_lambda] = &program.motion_by;
     let mut entries = by_w.clone();
-    entries.extend(by_lambda.iter().map(|&(row, column, slot)| (row, n + column, slot)));
-    entries.extend(program.constraint_by_position.iter().map(|&(row, column, slot)| (n + row, column, slot)));
+    entries.extend(by_lambda.iter().map(|&(row, column, register)| (row, n + column, register)));
+    entries.extend(program.constraint_by_position.iter().map(|&(row, column, register)| (n + row, column, register)));
     Equations {
         unknowns: layout.w.clone().chain(layout.lambda.clone()).collect(),
         residuals: program.motion.iter().chain(&program.constraint_rates[1]).copied().collect(),
@@ -171,9 +171,9 @@ impl Equations<'_> {
                 return Err(EnclosureError::Unproven);
             }
             let correction = inverse.approximate_times(space, &self.residual(space, memory));
-            for (place, &slot) in self.unknowns.iter().enumerate() {
+            for (place, &register) in self.unknowns.iter().enumerate() {
                 let change = correction.at(place, 0);
-                memory.model_mut(slot).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
+                memory.model_mut(register).iter_mut().zip(change).for_each(|(x, change)| *x -= change);
             }
         }
         let sizes = inverse.bounds(space);
@@ -188,16 +188,16 @@ impl Equations<'_> {
     }
 
     fn set_radii(&self, space: &ModelSpace, memory: &mut ModelMemory, radii: Option<&[f64]>) {
-        for (place, &slot) in self.unknowns.iter().enumerate() {
-            memory.model_mut(slot)[space.size() - 1] = radii.map_or(0.0, |radii| radii[place]);
+        for (place, &register) in self.unknowns.iter().enumerate() {
+            memory.model_mut(register)[space.size() - 1] = radii.map_or(0.0, |radii| radii[place]);
         }
     }
 
     fn residual(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         self.residual.iter().for_each(|tape| memory.run(tape));
         let mut residual = Models::zero(space, self.residuals.len(), 1);
-        for (row, &slot) in self.residuals.iter().enumerate() {
-            residual.at_mut(row, 0).copy_from_slice(memory.model(slot));
+        for (row, &register) in self.residuals.iter().enumerate() {
+            residual.at_mut(row, 0).copy_from_slice(memory.model(register));
         }
         residual
     }
@@ -205,8 +205,8 @@ impl Equations<'_> {
     fn matrix(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Models {
         memory.run(self.slopes);
         let mut matrix = Models::zero(space, self.residuals.len(), self.unknowns.len());
-        for &(row, column, slot) in &self.entries {
-            matrix.at_mut(row, column).copy_from_slice(memory.model(slot));
+        for &(row, column, register) in &self.entries {
+            matrix.at_mut(row, column).copy_from_slice(memory.model(register));
         }
         matrix
     }

@@ -33,7 +33,7 @@ impl<'s> Enclosure<'s> {
         let radius = space.size() - 1;
         let mut spread = vec![0.0; 3 * n];
         for i in 0..n {
-            let model = |slot: usize| self.memory.model(slot + i);
+            let model = |register: usize| self.memory.model(register + i);
             let [q, v, a, w] = [layout.q.start, layout.v.start, layout.a.start, layout.w.start].map(model);
             let predicted = self.predict(q, v, a, w);
             for (block, model) in [&predicted[0][..], &predicted[1], w].into_iter().enumerate() {
@@ -44,8 +44,8 @@ impl<'s> Enclosure<'s> {
         }
         let unknowns = layout.w.chain(layout.lambda);
         let mut first = Models::zero(space, unknowns.clone().count(), 1);
-        for (row, slot) in unknowns.enumerate() {
-            first.at_mut(row, 0)[..radius].copy_from_slice(&self.memory.model(slot)[..radius]);
+        for (row, register) in unknowns.enumerate() {
+            first.at_mut(row, 0)[..radius].copy_from_slice(&self.memory.model(register)[..radius]);
         }
         self.before.push(first);
         self.radii = self.frame.radii_of(space, &spread)?;
@@ -217,8 +217,8 @@ impl<'s> Enclosure<'s> {
         let layout = &self.program.layout;
         let radius = self.space.size() - 1;
         let more = |place: usize| radii.map_or(0.0, |radii| radii[place]);
-        let mut set = |slot: usize, model: &[f64], more: f64| {
-            let target = memory.model_mut(slot);
+        let mut set = |register: usize, model: &[f64], more: f64| {
+            let target = memory.model_mut(register);
             target.copy_from_slice(model);
             target[radius] = up(target[radius] + more);
         };
@@ -230,8 +230,8 @@ impl<'s> Enclosure<'s> {
             set(layout.v.start + i, &v, more(n + i));
             set(layout.w.start + i, x, more(2 * n + i));
         }
-        for (i, slot) in layout.lambda.clone().enumerate() {
-            set(slot, solution.at(n + i, 0), more(3 * n + i));
+        for (i, register) in layout.lambda.clone().enumerate() {
+            set(register, solution.at(n + i, 0), more(3 * n + i));
         }
     }
 
@@ -240,12 +240,12 @@ impl<'s> Enclosure<'s> {
         let (n, space) = (self.coordinates(), self.space);
         self.memory.run(self.program.residual());
         let mut residual = Models::zero(space, n + self.program.constraint.len(), 1);
-        for (row, &slot) in self.program.motion.iter().enumerate() {
-            residual.at_mut(row, 0).copy_from_slice(self.memory.model(slot));
+        for (row, &register) in self.program.motion.iter().enumerate() {
+            residual.at_mut(row, 0).copy_from_slice(self.memory.model(register));
         }
         let inverse_gain = Interval::point(1.0) / self.gains.b;
-        for (row, &slot) in self.program.constraint.iter().enumerate() {
-            space.scale(inverse_gain, self.memory.model(slot), residual.at_mut(n + row, 0));
+        for (row, &register) in self.program.constraint.iter().enumerate() {
+            space.scale(inverse_gain, self.memory.model(register), residual.at_mut(n + row, 0));
         }
         residual
     }
@@ -264,22 +264,24 @@ impl<'s> Enclosure<'s> {
         memory.run(program.jacobian());
         let count = n + program.constraint.len();
         let (mut by_unknown, mut by_state) = (Models::zero(space, count, count), Models::zero(space, count, 2 * n));
-        let mut add = |row: usize, column: usize, factor: Option<Interval>, slot: usize| {
-            let sum = self.combine(&[(None, by_unknown.at(row, column)), (factor, memory.model(slot))]);
+        let mut add = |row: usize, column: usize, factor: Option<Interval>, register: usize| {
+            let sum = self.combine(&[(None, by_unknown.at(row, column)), (factor, memory.model(register))]);
             by_unknown.at_mut(row, column).copy_from_slice(&sum);
         };
         let [by_q, by_v, by_w, by_lambda] = &program.motion_by;
-        by_w.iter().for_each(|&(row, column, slot)| add(row, column, None, slot));
-        by_q.iter().for_each(|&(row, column, slot)| add(row, column, Some(gains.b), slot));
-        by_v.iter().for_each(|&(row, column, slot)| add(row, column, Some(gains.c), slot));
-        by_lambda.iter().for_each(|&(row, column, slot)| add(row, n + column, None, slot));
-        program.constraint_by_position.iter().for_each(|&(row, column, slot)| add(n + row, column, None, slot));
+        by_w.iter().for_each(|&(row, column, register)| add(row, column, None, register));
+        by_q.iter().for_each(|&(row, column, register)| add(row, column, Some(gains.b), register));
+        by_v.iter().for_each(|&(row, column, register)| add(row, column, Some(gains.c), register));
+        by_lambda.iter().for_each(|&(row, column, register)| add(row, n + column, None, register));
+        program.constraint_by_position.iter().for_each(|&(row, column, register)| add(n + row, column, None, register));
         let inverse_gain = Interval::point(1.0) / gains.b;
-        by_q.iter().for_each(|&(row, column, slot)| by_state.at_mut(row, column).copy_from_slice(memory.model(slot)));
-        by_v.iter()
-            .for_each(|&(row, column, slot)| by_state.at_mut(row, n + column).copy_from_slice(memory.model(slot)));
-        for &(row, column, slot) in &program.constraint_by_position {
-            space.scale(inverse_gain, memory.model(slot), by_state.at_mut(n + row, column));
+        by_q.iter()
+            .for_each(|&(row, column, register)| by_state.at_mut(row, column).copy_from_slice(memory.model(register)));
+        by_v.iter().for_each(|&(row, column, register)| {
+            by_state.at_mut(row, n + column).copy_from_slice(memory.model(register))
+        });
+        for &(row, column, register) in &program.constraint_by_position {
+            space.scale(inverse_gain, memory.model(register), by_state.at_mut(n + row, column));
         }
         Slopes { by_unknown, by_state }
     }

@@ -38,22 +38,22 @@ impl<'s> JetRun<'s> {
         let assembled = simulator.assemble(1, first_step, |_| center.to_vec())?;
         let order = space.monomials().order();
         let set_parameters = |memory: &mut JetMemory<'s>| {
-            for (variable, slot) in simulator.start.layout.parameters.clone().enumerate() {
-                space.variable(variable, center[variable], half_width[variable], memory.jet_mut(slot));
+            for (variable, register) in simulator.start.layout.parameters.clone().enumerate() {
+                space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
             }
         };
-        let mut start = JetMemory::new(space, simulator.start.slots(), simulator.start.constants());
-        for slot in simulator.start.layout.state() {
-            start.set_constant(slot, assembled.lane(slot)[0]);
+        let mut start = JetMemory::new(space, simulator.start.registers(), simulator.start.constants());
+        for register in simulator.start.layout.state() {
+            start.set_constant(register, assembled.lane(register)[0]);
         }
         set_parameters(&mut start);
         consistent(simulator, &mut start, order, first_step);
 
         let program = &simulator.program;
-        let mut memory = JetMemory::new(space, program.slots(), program.constants());
+        let mut memory = JetMemory::new(space, program.registers(), program.constants());
         set_parameters(&mut memory);
-        for slot in program.layout.state() {
-            memory.jet_mut(slot).copy_from_slice(start.jet(slot));
+        for register in program.layout.state() {
+            memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         memory.run(program.sample());
         Ok(Self { simulator, order, center: Stepper::new(program, &assembled), memory, step_size: f64::NAN })
@@ -71,8 +71,8 @@ impl<'s> JetRun<'s> {
                 }
             }
             self.memory.run(self.simulator.program.observe());
-            for &slot in &self.simulator.program.outputs {
-                into.extend_from_slice(self.memory.jet(slot));
+            for &register in &self.simulator.program.outputs {
+                into.extend_from_slice(self.memory.jet(register));
             }
         }
         None
@@ -103,19 +103,19 @@ impl<'s> JetRun<'s> {
             return Err(true);
         }
         self.center.tile_mut().run(program.factor());
-        for &slot in program.factor_slots() {
-            self.memory.set_constant(slot as usize, self.center.tile().lane(slot as usize)[0]);
+        for &register in program.factor_registers() {
+            self.memory.set_constant(register as usize, self.center.tile().lane(register as usize)[0]);
         }
         for (w, x) in layout.w.clone().zip(layout.iterate.clone()) {
             let prediction = self.memory.jet(w).to_vec();
             self.memory.jet_mut(x).copy_from_slice(&prediction);
             self.memory.jet_mut(x)[0] = self.center.tile().lane(x)[0];
         }
-        for &slot in &program.redundant {
-            self.memory.set_constant(slot, 0.0);
+        for &register in &program.redundant {
+            self.memory.set_constant(register, 0.0);
         }
-        for slot in layout.lambda.clone() {
-            self.memory.jet_mut(slot)[0] = self.center.tile().lane(slot)[0];
+        for register in layout.lambda.clone() {
+            self.memory.jet_mut(register)[0] = self.center.tile().lane(register)[0];
         }
         for _ in 0..self.order {
             self.memory.run(program.correct());
@@ -149,9 +149,9 @@ impl<'s> JetRun<'s> {
 
 /// Adds the correction to the unknowns.
 fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>, correction: usize) {
-    for (place, slot) in unknowns.enumerate() {
+    for (place, register) in unknowns.enumerate() {
         let change = memory.jet(correction + place).to_vec();
-        memory.jet_mut(slot).iter_mut().zip(change).for_each(|(value, change)| *value += change);
+        memory.jet_mut(register).iter_mut().zip(change).for_each(|(value, change)| *value += change);
     }
 }
 
@@ -182,8 +182,8 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
     accelerate(memory);
     // a = w(t + Δh), as for tiles.
     let shift = simulator.program.coefficients.shift() * first_step;
-    let saved: Vec<Vec<f64>> = layout.state().map(|slot| memory.jet(slot).to_vec()).collect();
-    let state = |slot: usize| &saved[slot - layout.q.start];
+    let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.jet(register).to_vec()).collect();
+    let state = |register: usize| &saved[register - layout.q.start];
     for ((q, v), w) in layout.q.clone().zip(layout.v.clone()).zip(layout.w.clone()) {
         for place in 0..state(q).len() {
             memory.jet_mut(q)[place] += shift * (state(v)[place] + 0.5 * shift * state(w)[place]);
@@ -192,12 +192,12 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
     }
     memory.set_constant(layout.time, shift);
     accelerate(memory);
-    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|slot| memory.jet(slot).to_vec()).collect();
-    for (slot, saved) in layout.state().zip(&saved) {
-        memory.jet_mut(slot).copy_from_slice(saved);
+    let shifted: Vec<Vec<f64>> = layout.w.clone().map(|register| memory.jet(register).to_vec()).collect();
+    for (register, saved) in layout.state().zip(&saved) {
+        memory.jet_mut(register).copy_from_slice(saved);
     }
-    for (slot, shifted) in layout.a.clone().zip(&shifted) {
-        memory.jet_mut(slot).copy_from_slice(shifted);
+    for (register, shifted) in layout.a.clone().zip(&shifted) {
+        memory.jet_mut(register).copy_from_slice(shifted);
     }
     memory.set_constant(layout.time, 0.0);
 }

@@ -77,9 +77,9 @@ pub struct Stop {
     pub singular: bool,
 }
 
-/// Tiles of `samples` with this many slots each for `threads`: (first, count, width). Results do not depend on the tiling.
-fn tiles(samples: usize, slots: usize, threads: usize) -> Vec<(usize, usize, usize)> {
-    let fits = TILE_MEMORY / (slots * size_of::<f64>()).max(1);
+/// Tiles of `samples` with this many registers each for `threads`: (first, count, width). Results do not depend on the tiling.
+fn tiles(samples: usize, registers: usize, threads: usize) -> Vec<(usize, usize, usize)> {
+    let fits = TILE_MEMORY / (registers * size_of::<f64>()).max(1);
     let share = samples.div_ceil(threads).min(fits.clamp(NARROWEST, WIDEST));
     let width = WIDTHS.into_iter().rev().find(|&width| width <= share).unwrap_or(1);
     let mut tiles = Vec::new();
@@ -99,7 +99,7 @@ impl<'s> EnsembleRun<'s> {
     /// # Errors
     /// The first sample that cannot be assembled.
     pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
-        let tiles = tiles(samples.len(), simulator.program.slots(), rayon::current_num_threads());
+        let tiles = tiles(samples.len(), simulator.program.registers(), rayon::current_num_threads());
         let assembled: Vec<Result<TileRun<'s>, SimulationError>> = tiles
             .into_par_iter()
             .map(|(first, count, width)| {
@@ -253,9 +253,9 @@ mod tests {
     #[test]
     fn tiles_cover_all_samples_once() {
         for samples in 1..200 {
-            for (threads, slots) in [(1, 100), (2, 100), (7, 100), (2, 100_000)] {
+            for (threads, registers) in [(1, 100), (2, 100), (7, 100), (2, 100_000)] {
                 let mut next = 0;
-                for (first, count, width) in tiles(samples, slots, threads) {
+                for (first, count, width) in tiles(samples, registers, threads) {
                     assert_eq!(first, next);
                     assert!(count >= 1 && count <= width && WIDTHS.contains(&width));
                     next += count;

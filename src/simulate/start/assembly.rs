@@ -60,7 +60,7 @@ impl<'p> Assembly<'p> {
         width: usize,
         parameters: impl Fn(usize, usize) -> f64,
     ) -> Self {
-        let tile = Tile::new(width, program.slots(), program.constants());
+        let tile = Tile::new(width, program.registers(), program.constants());
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
         let mut assembly = Self { program, scale, tile };
         assembly.set_parameters(parameters);
@@ -69,9 +69,9 @@ impl<'p> Assembly<'p> {
 
     /// Sets other parameters.
     pub fn set_parameters(&mut self, parameters: impl Fn(usize, usize) -> f64) {
-        for (parameter, slot) in self.program.layout.parameters.clone().enumerate() {
+        for (parameter, register) in self.program.layout.parameters.clone().enumerate() {
             for lane in 0..self.tile.width() {
-                self.tile.lane_mut(slot)[lane] = parameters(parameter, lane);
+                self.tile.lane_mut(register)[lane] = parameters(parameter, lane);
             }
         }
         self.tile.run(self.program.sample());
@@ -79,8 +79,8 @@ impl<'p> Assembly<'p> {
 
     /// Sets the same state in every lane.
     pub fn set_state(&mut self, state: &[f64]) {
-        for slot in self.program.layout.state() {
-            self.tile.lane_mut(slot).fill(state[slot]);
+        for register in self.program.layout.state() {
+            self.tile.lane_mut(register).fill(state[register]);
         }
     }
 
@@ -96,16 +96,18 @@ impl<'p> Assembly<'p> {
         let is_far = |lane: usize| {
             let places = self.program.layout.q.clone().zip(&self.scale);
             // NaN is far.
-            !places.into_iter().all(|(slot, scale)| (self.tile.lane(slot)[lane] - state[slot]).abs() <= FAR * scale)
+            !places
+                .into_iter()
+                .all(|(register, scale)| (self.tile.lane(register)[lane] - state[register]).abs() <= FAR * scale)
         };
         (0..self.tile.width()).map(is_far).collect()
     }
 
     /// Copies some lanes of another assembly.
     pub fn copy_lanes(&mut self, other: &Self, lanes: &[usize]) {
-        for slot in 0..self.program.slots() {
+        for register in 0..self.program.registers() {
             for &lane in lanes {
-                self.tile.lane_mut(slot)[lane] = other.tile.lane(slot)[lane];
+                self.tile.lane_mut(register)[lane] = other.tile.lane(register)[lane];
             }
         }
     }
@@ -115,7 +117,7 @@ impl<'p> Assembly<'p> {
         &mut self.tile
     }
 
-    /// The assembled states, slot by slot as in the program's layout.
+    /// The assembled states, register by register as in the program's layout.
     pub fn tile(&self) -> &Tile {
         &self.tile
     }
@@ -129,10 +131,10 @@ impl<'p> Assembly<'p> {
         for guess in 0..GUESSES {
             self.tile.run(self.program.guess());
             let spread = 3.0 * guess as f64 / GUESSES as f64;
-            for (place, slot) in self.program.layout.q.clone().enumerate() {
+            for (place, register) in self.program.layout.q.clone().enumerate() {
                 // Additive recurrence: evenly spread, the same on every machine.
                 let direction = 2.0 * ((guess * (2 * place + 1)) as f64 * 0.618_033_988_749_895).fract() - 1.0;
-                self.tile.lane_mut(slot)[0] += spread * self.scale[place] * direction;
+                self.tile.lane_mut(register)[0] += spread * self.scale[place] * direction;
             }
             self.tile.run(self.program.given());
             match self.descend() {
@@ -171,8 +173,8 @@ impl<'p> Assembly<'p> {
         let program = self.program;
         self.tile.run(program.position());
         let mut open = self.open_lanes(&program.constraint, false);
-        for slot in program.layout.v.clone() {
-            self.tile.lane_mut(slot).fill(0.0);
+        for register in program.layout.v.clone() {
+            self.tile.lane_mut(register).fill(0.0);
         }
         self.tile.run(program.given());
         // `given` sets positions too: to the values they have already.
@@ -182,8 +184,8 @@ impl<'p> Assembly<'p> {
         // Where positions are inconsistent, velocities mean nothing.
         open.sort_by_key(|residual| (residual.lane, residual.of_velocities));
         open.dedup_by_key(|residual| residual.lane);
-        for slot in program.layout.w.start..program.layout.lambda.end {
-            self.tile.lane_mut(slot).fill(0.0);
+        for register in program.layout.w.start..program.layout.lambda.end {
+            self.tile.lane_mut(register).fill(0.0);
         }
         self.accelerate();
         open
@@ -235,8 +237,8 @@ impl<'p> Assembly<'p> {
             // No coordinate turns or moves by more than about its own scale at once.
             damping = damping.min(1.0 / largest);
             loop {
-                for ((slot, old), change) in q.clone().zip(&before).zip(&correction) {
-                    self.tile.lane_mut(slot)[0] = old + damping * change;
+                for ((register, old), change) in q.clone().zip(&before).zip(&correction) {
+                    self.tile.lane_mut(register)[0] = old + damping * change;
                 }
                 self.tile.run(program.position());
                 let new = self.constraint_norm();
@@ -252,10 +254,10 @@ impl<'p> Assembly<'p> {
     }
 
     fn constraint_norm(&self) -> f64 {
-        self.program.constraint.iter().map(|&slot| self.tile.lane(slot)[0].powi(2)).sum::<f64>().sqrt()
+        self.program.constraint.iter().map(|&register| self.tile.lane(register)[0].powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Full corrections of the values from slot `start` on, until every lane has settled or the corrections are used up.
+    /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are used up.
     pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
         let layout = &self.program.layout;
         let width = self.tile.width();
@@ -286,10 +288,10 @@ impl<'p> Assembly<'p> {
     }
 
     /// The largest residual of each lane with a constraint that does not hold.
-    fn open_lanes(&self, slots: &[usize], of_velocities: bool) -> Vec<ConstraintResidual> {
+    fn open_lanes(&self, registers: &[usize], of_velocities: bool) -> Vec<ConstraintResidual> {
         let allowed = allowed_residual(&self.scale);
         let of_lane = |lane: usize| {
-            let residuals = slots.iter().map(|&slot| self.tile.lane(slot)[lane]).enumerate();
+            let residuals = registers.iter().map(|&register| self.tile.lane(register)[lane]).enumerate();
             let worst = residuals.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
             // NaN does not hold either.
             let open = worst.filter(|(_, residual)| residual.is_nan() || residual.abs() > allowed);

@@ -19,18 +19,18 @@ pub fn spread(series: usize, place: usize) -> f64 {
     2.0 * ((place + 1) as f64 * 0.618_033_988_749_895 + series as f64 * 0.414_213_562_373_095).fract() - 1.0
 }
 
-/// A state in general position near the model's guess: values of the layout's slots.
+/// A state in general position near the model's guess: values of the layout's registers.
 pub fn guess_state(system: &System, layout: &Layout, parameters: &[f64]) -> Vec<f64> {
-    let mut values = vec![0.0; layout.slots()];
+    let mut values = vec![0.0; layout.registers()];
     values[layout.parameters.clone()].copy_from_slice(parameters);
     let value_of = |symbol| system.parameters.iter().position(|parameter| parameter.symbol == symbol);
     let guess =
         system.graph.evaluate(&system.start.guess, |symbol| value_of(symbol).map_or(f64::NAN, |k| parameters[k]));
-    for (place, slot) in layout.q.clone().enumerate() {
-        values[slot] = guess[place] + 0.1 * system.coordinates[place].scale * spread(0, place);
+    for (place, register) in layout.q.clone().enumerate() {
+        values[register] = guess[place] + 0.1 * system.coordinates[place].scale * spread(0, place);
     }
-    for (place, slot) in (layout.v.start..layout.correction.end).enumerate() {
-        values[slot] = spread(1, place);
+    for (place, register) in (layout.v.start..layout.correction.end).enumerate() {
+        values[register] = spread(1, place);
     }
     values
 }
@@ -59,19 +59,19 @@ pub fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
     free.start.position.fill(None);
     free.start.conditions.clear();
     let start = compile_start(&free, &[], state).ok()?;
-    let mut tile = Tile::new(1, start.slots(), start.constants());
+    let mut tile = Tile::new(1, start.registers(), start.constants());
     tile.values_mut()[..state.len()].copy_from_slice(state);
     tile.run(start.sample());
-    for (place, slot) in start.layout.q.clone().enumerate() {
-        tile.lane_mut(slot)[0] += APART * system.coordinates[place].scale * spread(7, place);
+    for (place, register) in start.layout.q.clone().enumerate() {
+        tile.lane_mut(register)[0] += APART * system.coordinates[place].scale * spread(7, place);
     }
     for _ in 0..CORRECTIONS {
         tile.run(start.position());
-        for (slot, correction) in start.layout.q.clone().zip(start.layout.correction.clone()) {
-            tile.lane_mut(slot)[0] += tile.lane(correction)[0];
+        for (register, correction) in start.layout.q.clone().zip(start.layout.correction.clone()) {
+            tile.lane_mut(register)[0] += tile.lane(correction)[0];
         }
     }
     tile.run(start.position());
-    let assembled = start.constraint.iter().all(|&slot| tile.lane(slot)[0].abs() < 1e-9);
+    let assembled = start.constraint.iter().all(|&register| tile.lane(register)[0].abs() < 1e-9);
     assembled.then(|| tile.values()[..state.len()].to_vec())
 }

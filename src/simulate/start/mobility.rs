@@ -40,15 +40,15 @@ fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -
     dependent_rows(&jacobian_rows(system, start, state), DEPENDENT)
 }
 
-/// Rows of Φ_q at a state (the layout's slots), per scale of each coordinate: (coordinate, value).
+/// Rows of Φ_q at a state (the layout's registers), per scale of each coordinate: (coordinate, value).
 pub fn jacobian_rows(system: &System, start: &StartProgram, state: &[f64]) -> Vec<Vec<(usize, f64)>> {
-    let mut tile = Tile::new(1, start.slots(), start.constants());
+    let mut tile = Tile::new(1, start.registers(), start.constants());
     tile.values_mut()[..state.len()].copy_from_slice(state);
     tile.run(start.sample());
     tile.run(start.jacobian());
     let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); system.lambda.len()];
-    for &(row, column, slot) in &start.jacobian_entries {
-        rows[row].push((column, tile.lane(slot)[0] * system.coordinates[column].scale));
+    for &(row, column, register) in &start.jacobian_entries {
+        rows[row].push((column, tile.lane(register)[0] * system.coordinates[column].scale));
     }
     rows
 }

@@ -141,8 +141,8 @@ impl Newton {
         };
         let values = [&self.start[..], last, second_last];
         vectorised(Predict { program, tile, pending: &self.pending, weights, values });
-        for &slot in &program.redundant {
-            for (value, _) in tile.lane_mut(slot).iter_mut().zip(&self.pending).filter(|(_, pending)| **pending) {
+        for &register in &program.redundant {
+            for (value, _) in tile.lane_mut(register).iter_mut().zip(&self.pending).filter(|(_, pending)| **pending) {
                 *value = 0.0;
             }
         }
@@ -152,9 +152,9 @@ impl Newton {
     fn restore_multipliers(&self, program: &Program, tile: &mut Tile) {
         let width = tile.width();
         let saved = &self.start[program.layout.w.len() * width..];
-        for (slot, saved) in program.layout.lambda.clone().zip(saved.chunks_exact(width)) {
+        for (register, saved) in program.layout.lambda.clone().zip(saved.chunks_exact(width)) {
             for ((value, saved), _) in
-                tile.lane_mut(slot).iter_mut().zip(saved).zip(&self.pending).filter(|(_, pending)| **pending)
+                tile.lane_mut(register).iter_mut().zip(saved).zip(&self.pending).filter(|(_, pending)| **pending)
             {
                 *value = *saved;
             }
@@ -194,23 +194,23 @@ impl Newton {
         tile.run(program.matrix());
         let coordinates = program.scale.len();
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
-            let value = |slot: usize| tile.lane(slot)[lane];
+            let value = |register: usize| tile.lane(register)[lane];
             let entries: Vec<(usize, usize, f64)> =
-                program.matrix_entries.iter().map(|&(row, column, slot)| (row, column, value(slot))).collect();
+                program.matrix_entries.iter().map(|&(row, column, register)| (row, column, value(register))).collect();
             let mut rounding = vec![0.0; program.residual.len()];
             let slopes = entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates);
             for &(row, column, slope) in slopes.filter(|_| count >= FROZEN_CORRECTIONS) {
                 let position = value(program.layout.q.start + column).abs() + program.scale[column];
                 rounding[row] += ROUND_OFF * slope.abs() * position / gain;
             }
-            let right = program.residual.iter().zip(&rounding).map(|(&slot, rounding)| {
-                let residual = value(slot);
+            let right = program.residual.iter().zip(&rounding).map(|(&register, rounding)| {
+                let residual = value(register);
                 if residual.abs() <= *rounding { 0.0 } else { -residual }
             });
             let right: Vec<f64> = right.collect();
             let solution = solve_rank_deficient(&entries, &right, &program.equilibration);
-            for (place, slot) in program.layout.correction.clone().enumerate() {
-                tile.lane_mut(slot)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
+            for (place, register) in program.layout.correction.clone().enumerate() {
+                tile.lane_mut(register)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
             }
         }
     }
@@ -221,8 +221,8 @@ impl Newton {
         tile.run(program.matrix());
         let gain = program.coefficients.constraint_gain(h);
         let allowed = allowed_residual(&program.scale);
-        for &slot in &program.residual[program.scale.len()..] {
-            for (lane, residual) in tile.lane(slot).iter().enumerate() {
+        for &register in &program.residual[program.scale.len()..] {
+            for (lane, residual) in tile.lane(register).iter().enumerate() {
                 let closed = (gain * residual).abs() <= allowed;
                 self.pending[lane] |= self.singular[lane] && !closed;
             }
@@ -248,9 +248,9 @@ impl Vectorise for Predict<'_> {
         let width = self.tile.width();
         let ([a, b, c], [now, last, second_last]) = (self.weights, self.values);
         let targets = layout.iterate.clone().chain(layout.lambda.clone());
-        for (place, slot) in targets.enumerate() {
+        for (place, register) in targets.enumerate() {
             let [now, last, second_last] = [now, last, second_last].map(|values| &values[place * width..][..width]);
-            let values = self.tile.lane_mut(slot);
+            let values = self.tile.lane_mut(register);
             for lane in 0..width {
                 let predicted = a * now[lane] + (b * last[lane] + c * second_last[lane]);
                 values[lane] = if self.pending[lane] { predicted } else { values[lane] };
@@ -277,14 +277,14 @@ impl Vectorise for Watch<'_> {
         for Watched { mode, pivots } in watched {
             match mode {
                 None => pivots.iter().for_each(|pivot| {
-                    for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.slot)) {
+                    for (singular, &inverse) in singular.iter_mut().zip(tile.lane(pivot.register)) {
                         *singular |= lost(inverse, pivot.largest_inverse);
                     }
                 }),
                 // Lanes that do not use this version have arbitrary factors.
-                Some(mode) if tile.lane(mode.slot).iter().any(|&value| mode.holds(value)) => {
+                Some(mode) if tile.lane(mode.register).iter().any(|&value| mode.holds(value)) => {
                     for pivot in pivots {
-                        let lanes = singular.iter_mut().zip(tile.lane(pivot.slot)).zip(tile.lane(mode.slot));
+                        let lanes = singular.iter_mut().zip(tile.lane(pivot.register)).zip(tile.lane(mode.register));
                         for ((singular, &inverse), &value) in lanes {
                             *singular |= mode.holds(value) & lost(inverse, pivot.largest_inverse);
                         }

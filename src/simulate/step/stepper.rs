@@ -47,11 +47,11 @@ pub struct Stepper<'p> {
 }
 
 impl<'p> Stepper<'p> {
-    /// A tile with the states and parameters of `start`, whose first slots have the same layout.
+    /// A tile with the states and parameters of `start`, whose first registers have the same layout.
     pub fn new(program: &'p Program, start: &Tile) -> Self {
         let width = start.width();
-        let mut tile = Tile::new(width, program.slots(), program.constants());
-        let shared = program.layout.slots() * width;
+        let mut tile = Tile::new(width, program.registers(), program.constants());
+        let shared = program.layout.registers() * width;
         tile.values_mut()[..shared].copy_from_slice(&start.values()[..shared]);
         tile.run(program.sample());
         Self {
@@ -75,24 +75,24 @@ impl<'p> Stepper<'p> {
         &mut self.tile
     }
 
-    /// The layout's slots of one lane.
+    /// The layout's registers of one lane.
     pub(in crate::simulate) fn lane(&self, lane: usize) -> Vec<f64> {
-        (0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]).collect()
+        (0..self.program.layout.registers()).map(|register| self.tile.lane(register)[lane]).collect()
     }
 
     /// [`lane`](Self::lane) without a new allocation.
     pub(in crate::simulate) fn copy_lane(&self, lane: usize, into: &mut Vec<f64>) {
         into.clear();
-        into.extend((0..self.program.layout.slots()).map(|slot| self.tile.lane(slot)[lane]));
+        into.extend((0..self.program.layout.registers()).map(|register| self.tile.lane(register)[lane]));
     }
 
     /// Largest |1/pivot| of a lane's last factors, over the largest that is trusted.
     pub(in crate::simulate) fn pivot_loss(&self, lane: usize) -> f64 {
-        let value = |slot: usize| self.tile.lane(slot)[lane];
+        let value = |register: usize| self.tile.lane(register)[lane];
         let watched = self.program.watched.iter();
-        let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.slot))));
+        let used = watched.filter(|watched| watched.mode.is_none_or(|mode| mode.holds(value(mode.register))));
         used.flat_map(|watched| &watched.pivots)
-            .map(|pivot| self.tile.lane(pivot.slot)[lane].abs() / pivot.largest_inverse)
+            .map(|pivot| self.tile.lane(pivot.register)[lane].abs() / pivot.largest_inverse)
             .fold(0.0, f64::max)
     }
 
@@ -177,9 +177,9 @@ impl<'p> Stepper<'p> {
     /// Restores saved states in the chosen lanes.
     pub fn restore_lanes(&mut self, saved: &[f64], chosen: impl Fn(usize) -> bool) {
         let width = self.tile.width();
-        for (slot, values) in self.program.layout.state().zip(saved.chunks_exact(width)) {
+        for (register, values) in self.program.layout.state().zip(saved.chunks_exact(width)) {
             for lane in (0..width).filter(|&lane| chosen(lane)) {
-                self.tile.lane_mut(slot)[lane] = values[lane];
+                self.tile.lane_mut(register)[lane] = values[lane];
             }
         }
     }
@@ -211,9 +211,9 @@ impl<'p> Stepper<'p> {
     /// The equation with the largest scaled residual of the last attempt.
     fn substep(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
         let layout = &self.program.layout;
-        let mut alone = Tile::new(1, self.program.slots(), self.program.constants());
-        for slot in 0..layout.slots() {
-            alone.lane_mut(slot)[0] = self.tile.lane(slot)[lane];
+        let mut alone = Tile::new(1, self.program.registers(), self.program.constants());
+        for register in 0..layout.registers() {
+            alone.lane_mut(register)[0] = self.tile.lane(register)[lane];
         }
         let mut single = Stepper::new(self.program, &alone);
         let start = single.save();
@@ -234,8 +234,8 @@ impl<'p> Stepper<'p> {
                 }
                 // Back to the schedule's step size, so that a fits it.
                 single.set_step_size(h);
-                for slot in layout.state() {
-                    self.tile.lane_mut(slot)[lane] = single.tile.lane(slot)[0];
+                for register in layout.state() {
+                    self.tile.lane_mut(register)[lane] = single.tile.lane(register)[0];
                 }
                 self.newton.counters.iterations += single.newton.counters.iterations;
                 self.newton.counters.rank_revealing += single.newton.counters.rank_revealing;
@@ -249,7 +249,7 @@ impl<'p> Stepper<'p> {
     pub(in crate::simulate) fn worst_equation(&mut self, lane: usize) -> usize {
         self.tile.run(self.program.matrix());
         let sizes = self.program.residual.iter().zip(&self.program.equilibration);
-        let sizes = sizes.map(|(&slot, scale)| (self.tile.lane(slot)[lane] * scale).abs());
+        let sizes = sizes.map(|(&register, scale)| (self.tile.lane(register)[lane] * scale).abs());
         let sizes = sizes.map(|size| if size.is_nan() { f64::INFINITY } else { size });
         sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(equation, _)| equation)
     }
@@ -274,7 +274,7 @@ impl<'p> Stepper<'p> {
         let gain = numbers.error_gain(h).abs();
         for (lane, worst) in errors.iter_mut().enumerate() {
             *worst = LocalError::default();
-            let value = |slot: usize| self.tile.lane(slot)[lane];
+            let value = |register: usize| self.tile.lane(register)[lane];
             for (place, scale) in self.program.scale.iter().enumerate() {
                 let change = if self.newton.is_singular(lane) {
                     // There are no factors.
@@ -304,9 +304,9 @@ impl<'p> Stepper<'p> {
         self.copy(layout.q.clone().chain(layout.v.clone()), into);
     }
 
-    fn copy(&self, slots: impl Iterator<Item = usize>, into: &mut [f64]) {
-        for (row, slot) in into.chunks_exact_mut(self.tile.width()).zip(slots) {
-            row.copy_from_slice(self.tile.lane(slot));
+    fn copy(&self, registers: impl Iterator<Item = usize>, into: &mut [f64]) {
+        for (row, register) in into.chunks_exact_mut(self.tile.width()).zip(registers) {
+            row.copy_from_slice(self.tile.lane(register));
             row.iter_mut().zip(&self.alive).filter(|(_, alive)| !**alive).for_each(|(value, _)| *value = f64::NAN);
         }
     }

@@ -12,7 +12,7 @@ const AT_REST: f64 = 1e-9;
 /// Bands (one an output, or none) and nominal courses, with the outputs' scales.
 pub(super) struct Known {
     outputs: Vec<OutputBounds>,
-    /// Not a number for outputs that have none.
+    /// NaN for outputs that have none.
     scales: Vec<f64>,
 }
 
@@ -26,7 +26,7 @@ fn apart(distance: f64, scale: f64) -> f64 {
     }
 }
 
-/// Lower and upper bound in a row; not a number beyond the last.
+/// Lower and upper bound in a row; NaN beyond the last.
 fn ends(output: &OutputBounds, row: usize) -> [f64; 2] {
     let band = output.bands.first().filter(|band| row < band.lower.len());
     band.map_or([f64::NAN; 2], |band| [band.lower[row], band.upper[row]])

@@ -66,9 +66,9 @@ fn condition(simulator: &Simulator, h: f64) -> f64 {
     stepper.tile_mut().run(program.matrix());
     let size = program.residual.len();
     let mut matrix: DMatrix<f64> = DMatrix::zeros(size, size);
-    for &(row, column, slot) in &program.matrix_entries {
+    for &(row, column, register) in &program.matrix_entries {
         let scale = program.equilibration[row] * program.equilibration[column];
-        matrix[(row, column)] += scale * stepper.tile().lane(slot)[0];
+        matrix[(row, column)] += scale * stepper.tile().lane(register)[0];
     }
     let values = matrix.singular_values();
     values.max() / values.min()

@@ -36,18 +36,18 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
         Binary::Atan2 => libm::atan2(a, b),
         Binary::Min => min(a, b),
         Binary::Max => max(a, b),
-        Binary::Where => select(a, b, 0.0),
-        Binary::Elsewhere => select(a, 0.0, b),
+        Binary::Select => select(a, b, 0.0),
+        Binary::SelectElse => select(a, 0.0, b),
     }
 }
 
-/// b where a is positive or not a number, else c.
+/// b where a is positive or NaN, else c.
 #[inline(always)]
 pub fn select(a: f64, b: f64, c: f64) -> f64 {
     if a <= 0.0 { c } else { b }
 }
 
-/// −1, 0 or 1; unlike `f64::signum`, zero at zero. Not a number stays so.
+/// −1, 0 or 1; unlike `f64::signum`, zero at zero. NaN stays so.
 #[inline(always)]
 pub fn sign(a: f64) -> f64 {
     if a > 0.0 {
@@ -59,13 +59,13 @@ pub fn sign(a: f64) -> f64 {
     }
 }
 
-/// The smaller; not a number if either is not (`f64::min` would hide it).
+/// The smaller; NaN if either is not (`f64::min` would hide it).
 #[inline(always)]
 pub fn min(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-/// The larger; not a number if either is not.
+/// The larger; NaN if either is not.
 #[inline(always)]
 pub fn max(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }

@@ -7,7 +7,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// [lower, upper]; infinite where there is no bound, never not a number.
+/// [lower, upper]; infinite where there is no bound, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     lower: f64,
@@ -28,12 +28,12 @@ impl Interval {
     /// All numbers.
     pub const ENTIRE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
 
-    /// One number; all, where it is not a number.
+    /// One number; all, where it is NaN.
     pub fn point(value: f64) -> Self {
         Self::new(value, value)
     }
 
-    /// Between two numbers, the smaller first; all, where either is not a number.
+    /// Between two numbers, the smaller first; all, where either is NaN.
     pub fn new(lower: f64, upper: f64) -> Self {
         if lower <= upper { Self { lower, upper } } else { Self::ENTIRE }
     }
@@ -159,7 +159,7 @@ impl Neg for Interval {
     }
 }
 
-/// Least and largest of four candidates; all numbers where one is not a number.
+/// Least and largest of four candidates; all numbers where one is NaN.
 fn hull(candidates: [f64; 4]) -> Interval {
     if candidates.iter().any(|candidate| candidate.is_nan()) {
         return Interval::ENTIRE;

@@ -24,7 +24,7 @@ const QUADRANT_2: f64 = f64::from_bits(0x3DD0_B461_1A60_0000);
 /// π/2, the rest to 53 bits.
 const QUADRANT_3: f64 = f64::from_bits(0x3BA3_198A_2E03_7073);
 
-/// (sin x, cos x); not a number where x is not finite.
+/// (sin x, cos x); NaN where x is not finite.
 #[inline(always)]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() < LARGE { reduced(x) } else { (libm::sin(x), libm::cos(x)) }

@@ -193,7 +193,7 @@ impl Graph {
                 let square = self.add(aa, bb);
                 self.div(numerator, square)
             }
-            Binary::Where | Binary::Elsewhere => self.binary(function, a, db),
+            Binary::Select | Binary::SelectElse => self.binary(function, a, db),
             // max = (a + b + |a - b|)/2 and min = (a + b - |a - b|)/2, differentiated.
             Binary::Min | Binary::Max => {
                 let gap = self.sub(a, b);

@@ -47,7 +47,7 @@ impl Graph {
             Binary::Min | Binary::Max if a == b => a,
             Binary::Min | Binary::Max => self.intern(Node::Binary(function, a.min(b), a.max(b))),
             Binary::Atan2 => self.intern(Node::Binary(function, a, b)),
-            Binary::Where | Binary::Elsewhere => self.guard_nodes(function, a, b),
+            Binary::Select | Binary::SelectElse => self.guard_nodes(function, a, b),
         }
     }
 
@@ -159,19 +159,19 @@ impl Graph {
             return value;
         }
         if let Some(number) = self.as_constant(condition) {
-            let kept = (number <= 0.0) == (function == Binary::Elsewhere);
+            let kept = (number <= 0.0) == (function == Binary::SelectElse);
             return if kept { value } else { self.constant(0.0) };
         }
         match self.node(value) {
             Node::Binary(inner, same, _) if inner == function && same == condition => value,
-            Node::Binary(Binary::Where | Binary::Elsewhere, same, _) if same == condition => self.constant(0.0),
+            Node::Binary(Binary::Select | Binary::SelectElse, same, _) if same == condition => self.constant(0.0),
             _ => self.intern(Node::Binary(function, condition, value)),
         }
     }
 
-    /// `value` where `condition` is positive, exactly 0 elsewhere, whatever `value` is there: [`Binary::Where`].
+    /// `value` where `condition` is positive, exactly 0 elsewhere, whatever `value` is there: [`Binary::Select`].
     pub fn only_where(&mut self, condition: Expr, value: Expr) -> Expr {
-        self.binary(Binary::Where, condition, value)
+        self.binary(Binary::Select, condition, value)
     }
 
     /// `a` where `condition` is positive, `b` elsewhere.
@@ -188,7 +188,7 @@ impl Graph {
         if a == b {
             return a;
         }
-        let (a, b) = (self.binary(Binary::Where, condition, a), self.binary(Binary::Elsewhere, condition, b));
+        let (a, b) = (self.binary(Binary::Select, condition, a), self.binary(Binary::SelectElse, condition, b));
         self.add(a, b)
     }
 
@@ -244,7 +244,7 @@ mod tests {
         assert_eq!((g.only_where(one, x), g.only_where(zero, x)), (x, zero));
         let guarded = g.only_where(c, x);
         assert_eq!(g.only_where(c, guarded), guarded);
-        assert_eq!(g.binary(Binary::Elsewhere, c, guarded), zero);
+        assert_eq!(g.binary(Binary::SelectElse, c, guarded), zero);
         assert_eq!(g.select(c, x, x), x);
         let [one_way, other_way] = [g.select(c, x, y), g.select(c, y, x)];
         assert_eq!(g.select(c, one_way, other_way), x);

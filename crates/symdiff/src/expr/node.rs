@@ -65,11 +65,11 @@ pub enum Binary {
     Min,
     /// The larger of both.
     Max,
-    /// b where a is positive (or not a number), 0 elsewhere. What is needed for such b alone is not computed where no sample
+    /// b where a is positive (or NaN), 0 elsewhere. What is needed for such b alone is not computed where no sample
     /// of a tile has a positive a.
-    Where,
-    /// b where a ≤ 0, 0 elsewhere: together with [`Where`](Self::Where) one of both, always.
-    Elsewhere,
+    Select,
+    /// b where a ≤ 0, 0 elsewhere: together with [`Select`](Self::Select) one of both, always.
+    SelectElse,
 }
 
 /// What a node is.

@@ -22,7 +22,7 @@ impl Graph {
             _ => None,
         };
         [(x, y), (y, x)].into_iter().find_map(|(x, y)| {
-            let ((condition, a), (same, b)) = (half(Binary::Where, x)?, half(Binary::Elsewhere, y)?);
+            let ((condition, a), (same, b)) = (half(Binary::Select, x)?, half(Binary::SelectElse, y)?);
             (condition == same).then_some(Choice { condition, halves: [(x, a), (y, b)] })
         })
     }
@@ -31,8 +31,8 @@ impl Graph {
     pub fn assume(&mut self, roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr> {
         let zero = self.constant(0.0);
         self.rebuild(roots, |_, node, image| match node {
-            Node::Binary(function @ (Binary::Where | Binary::Elsewhere), given, value) if given == condition => {
-                Some(if holds == (function == Binary::Where) { image[&value] } else { zero })
+            Node::Binary(function @ (Binary::Select | Binary::SelectElse), given, value) if given == condition => {
+                Some(if holds == (function == Binary::Select) { image[&value] } else { zero })
             }
             _ => None,
         })

@@ -172,7 +172,7 @@ impl<'g> Scalar<'g> {
 
     /// Itself where `condition` is positive, exactly 0 elsewhere: [`Graph::only_where`].
     pub fn only_where(self, condition: Self) -> Self {
-        condition.binary(Binary::Where, self)
+        condition.binary(Binary::Select, self)
     }
 
     /// `a` where it is positive, `b` elsewhere.

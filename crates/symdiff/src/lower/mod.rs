@@ -21,7 +21,7 @@ use self::schedule::{Pending, in_regions};
 use self::stages::UNKNOWN;
 use crate::expr::{Binary, Choice, Expr, Graph, Node, Unary};
 
-/// What a kernel computes: expressions, each with the slot that it must end up in or `None` for any.
+/// What a kernel computes: expressions, each with the register that it must end up in or `None` for any.
 pub type Outputs = Vec<(Expr, Option<u32>)>;
 
 /// Tapes that share one memory.
@@ -33,13 +33,13 @@ pub struct Lowered {
     pub kernels: Vec<Tape>,
     /// Where each kernel's outputs stand after it has run.
     pub outputs: Vec<Vec<u32>>,
-    /// Slots that hold numbers, to be set once.
+    /// Registers that hold numbers, to be set once.
     pub constants: Vec<(u32, f64)>,
-    /// Number of slots of the memory.
-    pub slots: usize,
+    /// Number of registers of the memory.
+    pub registers: usize,
 }
 
-/// Lowers `kernels` with `shared` lower stages; slots below `reserved` belong to the caller.
+/// Lowers `kernels` with `shared` lower stages; registers below `reserved` belong to the caller.
 ///
 /// # Panics
 /// If a kernel depends on a symbol that is not among `inputs`: a defect of the caller.
@@ -64,7 +64,7 @@ pub fn lower_where(
     let mut lowering = Lowering {
         graph,
         stages,
-        slot_of: inputs.iter().map(|input| (input.symbol, input.slot)).collect(),
+        register_of: inputs.iter().map(|input| (input.symbol, input.register)).collect(),
         constants: Vec::new(),
         next: reserved,
     };
@@ -88,11 +88,11 @@ pub fn lower_where(
         }
         stage_bodies.push((body, wanted));
     }
-    // All kept values have their slots now; every tape may use what lies above as scratch.
+    // All kept values have their registers now; every tape may use what lies above as scratch.
     let mut lowered = Lowered::default();
     let mut targets = Vec::with_capacity(kernels.len());
     for outputs in kernels {
-        let replaced: FxHashSet<u32> = outputs.iter().filter_map(|&(_, slot)| slot).collect();
+        let replaced: FxHashSet<u32> = outputs.iter().filter_map(|&(_, register)| register).collect();
         let target =
             |&(expr, slot): &(Expr, Option<u32>)| (expr, slot.unwrap_or_else(|| lowering.keep(expr, &replaced)));
         targets.push(outputs.iter().map(target).collect::<Vec<_>>());
@@ -103,11 +103,11 @@ pub fn lower_where(
     for (kernel, (body, targets)) in bodies.iter().zip(&targets).enumerate() {
         let wanted = targets.iter().map(|&(expr, _)| (expr, guards.get(&(kernel, expr)).copied()));
         lowered.kernels.push(lowering.emit(body, wanted, targets));
-        lowered.outputs.push(targets.iter().map(|&(_, slot)| slot).collect());
+        lowered.outputs.push(targets.iter().map(|&(_, register)| register).collect());
     }
-    let highest = lowered.stages.iter().chain(&lowered.kernels).map(Tape::slots).max().unwrap_or(0);
+    let highest = lowered.stages.iter().chain(&lowered.kernels).map(Tape::registers).max().unwrap_or(0);
     lowered.constants = lowering.constants;
-    lowered.slots = highest.max(lowering.next as usize);
+    lowered.registers = highest.max(lowering.next as usize);
     lowered
 }
 
@@ -115,7 +115,7 @@ struct Lowering<'g> {
     graph: &'g Graph,
     stages: Stages,
     /// Symbols, constants and values that outlive their tape.
-    slot_of: FxHashMap<Expr, u32>,
+    register_of: FxHashMap<Expr, u32>,
     constants: Vec<(u32, f64)>,
     next: u32,
 }
@@ -123,17 +123,17 @@ struct Lowering<'g> {
 impl Lowering<'_> {
     fn pin(&mut self, expr: Expr) -> u32 {
         let next = &mut self.next;
-        *self.slot_of.entry(expr).or_insert_with(|| {
+        *self.register_of.entry(expr).or_insert_with(|| {
             *next += 1;
             *next - 1
         })
     }
 
-    /// A slot in which a kernel's output outlives it: its own where it has one that the kernel does not replace, else a
+    /// A register in which a kernel's output outlives it: its own where it has one that the kernel does not replace, else a
     /// new one.
     fn keep(&mut self, expr: Expr, replaced: &FxHashSet<u32>) -> u32 {
-        match self.slot_of.get(&expr) {
-            Some(&slot) if !replaced.contains(&slot) => slot,
+        match self.register_of.get(&expr) {
+            Some(&register) if !replaced.contains(&register) => register,
             _ => {
                 self.next += 1;
                 self.next - 1
@@ -142,7 +142,7 @@ impl Lowering<'_> {
     }
 
     /// The nodes that one tape has to compute for `wanted`, operands first (depth first, so that what is used together
-    /// stands together). What belongs to a lower stage is noted in `pinned`, constants get their slots.
+    /// stands together). What belongs to a lower stage is noted in `pinned`, constants get their registers.
     fn body(&mut self, stage: usize, wanted: &[Expr], pinned: &mut [FxHashSet<Expr>]) -> Vec<Expr> {
         let mut order = Vec::new();
         let mut done = FxHashSet::default();
@@ -165,9 +165,9 @@ impl Lowering<'_> {
                     );
                 }
                 (_, Node::Constant(bits)) => {
-                    if !self.slot_of.contains_key(&expr) {
-                        let slot = self.pin(expr);
-                        self.constants.push((slot, f64::from_bits(bits)));
+                    if !self.register_of.contains_key(&expr) {
+                        let register = self.pin(expr);
+                        self.constants.push((register, f64::from_bits(bits)));
                     }
                 }
                 (Some(lower), _) if lower < stage => {
@@ -183,7 +183,7 @@ impl Lowering<'_> {
         order
     }
 
-    /// One tape: fused, in regions, grouped, with slots. `wanted` are the nodes that are used outside, some under a guard only.
+    /// One tape: fused, in regions, grouped, with registers. `wanted` are the nodes that are used outside, some under a guard only.
     fn emit(
         &self,
         body: &[Expr],
@@ -193,7 +193,7 @@ impl Lowering<'_> {
         let regions = Regions::new(self.graph, body, wanted);
         let wanted: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
         let pending = self.fuse(body, &wanted, &regions);
-        allocate(&in_regions(pending, &regions), targets, &self.slot_of, self.next)
+        allocate(&in_regions(pending, &regions), targets, &self.register_of, self.next)
     }
 
     /// Nodes → operations: a product that a single sum needs becomes part of it, and sine and cosine of one argument
@@ -212,7 +212,10 @@ impl Lowering<'_> {
             }
         }
         let only_here = |expr: Expr| {
-            inside.contains(&expr) && uses[&expr] == 1 && !wanted.contains(&expr) && !self.slot_of.contains_key(&expr)
+            inside.contains(&expr)
+                && uses[&expr] == 1
+                && !wanted.contains(&expr)
+                && !self.register_of.contains_key(&expr)
         };
         let product = |expr: Expr| match self.graph.node(expr) {
             Node::Binary(Binary::Mul, a, b) if only_here(expr) => Some((a, b)),
@@ -283,7 +286,8 @@ mod tests {
         let root = g.sqrt(p);
         let scaled = g.mul(root, h);
         let kernel = g.mul(scaled, x);
-        let inputs = [(p, 0, 0), (h, 1, 1), (x, 2, 2)].map(|(symbol, stage, slot)| Input { symbol, stage, slot });
+        let inputs =
+            [(p, 0, 0), (h, 1, 1), (x, 2, 2)].map(|(symbol, stage, register)| Input { symbol, stage, register });
         let lowered = lower(&g, &inputs, 2, 3, &[vec![(kernel, None)]]);
         assert_eq!(lowered.stages.iter().map(Tape::len).collect::<Vec<_>>(), [1, 1]);
         assert_eq!(lowered.kernels[0].len(), 1);
@@ -294,9 +298,9 @@ mod tests {
         let mut g = Graph::new();
         let (x, y) = (g.symbol("x"), g.symbol("y"));
         let (sum, difference) = (g.add(x, y), g.sub(x, y));
-        let inputs = [(x, 0, 0), (y, 0, 1)].map(|(symbol, stage, slot)| Input { symbol, stage, slot });
+        let inputs = [(x, 0, 0), (y, 0, 1)].map(|(symbol, stage, register)| Input { symbol, stage, register });
         let lowered = lower(&g, &inputs, 0, 2, &[vec![(sum, Some(0)), (difference, Some(1)), (x, Some(2))]]);
-        let mut tile = Tile::new(1, lowered.slots + 1, &lowered.constants);
+        let mut tile = Tile::new(1, lowered.registers + 1, &lowered.constants);
         tile.lane_mut(0)[0] = 5.0;
         tile.lane_mut(1)[0] = 3.0;
         tile.run(&lowered.kernels[0]);

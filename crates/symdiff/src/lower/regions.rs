@@ -1,6 +1,6 @@
 //! Regions: what is needed only under a condition, found in a tape's nodes and brought together.
 //!
-//! A node belongs to the innermost region that all its uses have in common. The value of a `Where` (`Elsewhere`) node is used
+//! A node belongs to the innermost region that all its uses have in common. The value of a `Select` (`SelectElse`) node is used
 //! in a region of that condition, everything else where the node that uses it stands.
 
 use std::cmp::Reverse;
@@ -39,7 +39,7 @@ impl Regions {
         let mut regions =
             Self { nested: vec![Nested { within: OUTSIDE, guard: None, depth: 0 }], of: FxHashMap::default() };
         let mut known = FxHashMap::default();
-        let guarded = |expr: &Expr| matches!(graph.node(*expr), Node::Binary(Binary::Where | Binary::Elsewhere, ..));
+        let guarded = |expr: &Expr| matches!(graph.node(*expr), Node::Binary(Binary::Select | Binary::SelectElse, ..));
         for (expr, guard) in wanted {
             let region = guard.map_or(OUTSIDE, |guard| regions.enter(&mut known, OUTSIDE, guard));
             if let Some(guard) = guard {
@@ -67,8 +67,8 @@ impl Regions {
                     settled &= !regions.use_in(child, region);
                 };
                 match graph.node(expr) {
-                    Node::Binary(function @ (Binary::Where | Binary::Elsewhere), condition, value) => {
-                        let guard = Guard { condition, elsewhere: function == Binary::Elsewhere };
+                    Node::Binary(function @ (Binary::Select | Binary::SelectElse), condition, value) => {
+                        let guard = Guard { condition, elsewhere: function == Binary::SelectElse };
                         let inner = regions.enter(&mut known, region, guard);
                         note(&mut regions, condition, region);
                         note(&mut regions, value, inner);

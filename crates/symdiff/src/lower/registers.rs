@@ -1,4 +1,4 @@
-//! Which slot each value of a tape takes.
+//! Which register each value of a tape takes.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -6,25 +6,30 @@ use super::schedule::Step;
 use super::tape::{Item, Op, Operands, Tape};
 use crate::expr::Expr;
 
-/// Slots by linear scan: a scratch slot is free again after its value's last use. A target is written at once
-/// unless this tape still reads what stands there; then it is copied at the end. `slot_of` tells where values stand that are
-/// there before or stay; scratch slots begin at `first`.
-pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], slot_of: &FxHashMap<Expr, u32>, first: u32) -> Tape {
+/// Registers by linear scan: a scratch register is free again after its value's last use. A target is written at once
+/// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values stand that are
+/// there before or stay; scratch registers begin at `first`.
+pub(crate) fn allocate(
+    steps: &[Step],
+    targets: &[(Expr, u32)],
+    register_of: &FxHashMap<Expr, u32>,
+    first: u32,
+) -> Tape {
     let mut last_use: FxHashMap<Expr, usize> = FxHashMap::default();
-    let mut read_slots: FxHashSet<u32> = FxHashSet::default();
+    let mut read_registers: FxHashSet<u32> = FxHashSet::default();
     let mut computed: FxHashSet<Expr> = FxHashSet::default();
     for (place, step) in steps.iter().enumerate() {
         for read in step.read() {
             last_use.insert(read, place);
-            read_slots.extend(slot_of.get(&read));
+            read_registers.extend(register_of.get(&read));
         }
         if let Step::Do(instruction) = step {
             computed.extend(instruction.written());
         }
     }
-    read_slots.extend(targets.iter().filter_map(|(expr, _)| slot_of.get(expr)));
+    read_registers.extend(targets.iter().filter_map(|(expr, _)| register_of.get(expr)));
     let placed: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
-    let may_share = |expr: &Expr| computed.contains(expr) && !placed.contains(expr) && !slot_of.contains_key(expr);
+    let may_share = |expr: &Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains_key(expr);
     let shared = Shared::new(steps, &last_use, may_share);
     let mut last_use_of: FxHashMap<Expr, usize> = FxHashMap::default();
     for (&expr, &place) in &last_use {
@@ -33,28 +38,28 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], slot_of: &FxHash
     }
     let mut place_of: FxHashMap<Expr, u32> = FxHashMap::default();
     let mut copies = Vec::new();
-    for &(expr, slot) in targets {
-        if computed.contains(&expr) && !read_slots.contains(&slot) && !place_of.contains_key(&expr) {
-            place_of.insert(expr, slot);
-        } else if slot_of.get(&expr) != Some(&slot) {
-            copies.push((expr, slot));
+    for &(expr, register) in targets {
+        if computed.contains(&expr) && !read_registers.contains(&register) && !place_of.contains_key(&expr) {
+            place_of.insert(expr, register);
+        } else if register_of.get(&expr) != Some(&register) {
+            copies.push((expr, register));
             last_use_of.insert(expr, steps.len());
         }
     }
     let kept = |place_of: &FxHashMap<Expr, u32>, expr: Expr| {
         let root = shared.root(expr);
-        slot_of.get(&root).or_else(|| place_of.get(&root)).copied()
+        register_of.get(&root).or_else(|| place_of.get(&root)).copied()
     };
     let mut free: Vec<u32> = Vec::new();
     let mut next = first;
     let mut items = Vec::with_capacity(steps.len() + copies.len());
     for (place, step) in steps.iter().enumerate() {
-        let slot = |place_of: &FxHashMap<Expr, u32>, expr| {
+        let register = |place_of: &FxHashMap<Expr, u32>, expr| {
             kept(place_of, expr).expect("operands are computed before their use")
         };
         let instruction = match step {
             Step::Enter(guard) => {
-                items.push(Item::Enter(slot(&place_of, guard.condition), guard.elsewhere));
+                items.push(Item::Enter(register(&place_of, guard.condition), guard.elsewhere));
                 continue;
             }
             Step::Leave => {
@@ -64,7 +69,7 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], slot_of: &FxHash
             Step::Do(_) if shared.is_needless(place) => continue,
             Step::Do(instruction) => instruction,
         };
-        let [a, b, c] = instruction.reads.map(|read| slot(&place_of, read));
+        let [a, b, c] = instruction.reads.map(|read| register(&place_of, read));
         let already_free = free.len();
         for read in instruction.read().map(|read| shared.root(read)).filter(|read| last_use_of[read] == place) {
             // An operand may stand there twice.
@@ -98,23 +103,23 @@ pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], slot_of: &FxHash
         free.extend(unused);
     }
     // All copies happen at once: what another copy overwrites is put aside first.
-    let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, slot)| slot).collect();
+    let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, register)| register).collect();
     let copy = |from: u32, to: u32| Item::Do(Op::Copy, Operands { a: from, b: from, c: from, d: to });
     let mut last = Vec::with_capacity(copies.len());
-    for &(expr, slot) in &copies {
+    for &(expr, register) in &copies {
         let mut source = kept(&place_of, expr).expect("an output is a symbol, a constant, kept, or computed here");
         if overwritten.contains(&source) {
             let aside = take(&mut free, &mut next);
             items.push(copy(source, aside));
             source = aside;
         }
-        last.push(copy(source, slot));
+        last.push(copy(source, register));
     }
     items.extend(last);
     Tape::new(items)
 }
 
-/// Values that take one slot after the other: what holds elsewhere, and then the choice that a region makes in its place.
+/// Values that take one register after the other: what holds elsewhere, and then the choice that a region makes in its place.
 #[derive(Debug, Default)]
 struct Shared {
     next: FxHashMap<Expr, Expr>,
@@ -148,7 +153,7 @@ impl Shared {
         shared
     }
 
-    /// The value that all others of its slot become at last.
+    /// The value that all others of its register become at last.
     fn root(&self, mut expr: Expr) -> Expr {
         while let Some(&next) = self.next.get(&expr) {
             expr = next;

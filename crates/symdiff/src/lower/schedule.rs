@@ -1,4 +1,4 @@
-//! A tape's instructions before they have slots, and their order: region by region, equal operations together.
+//! A tape's instructions before they have registers, and their order: region by region, equal operations together.
 
 use rustc_hash::FxHashMap;
 
@@ -10,7 +10,7 @@ use crate::expr::Expr;
 /// is alive within the first-level cache.
 const WINDOW: usize = 256;
 
-/// An instruction before it has slots.
+/// An instruction before it has registers.
 #[derive(Clone, Debug)]
 pub(crate) struct Pending {
     pub op: Op,
@@ -40,7 +40,7 @@ impl Pending {
     }
 }
 
-/// A tape before it has slots.
+/// A tape before it has registers.
 pub(crate) enum Step {
     Do(Pending),
     Enter(Guard),

@@ -13,7 +13,7 @@ pub struct Input {
     /// 0 changes least often.
     pub stage: usize,
     /// Where its value stands. Two symbols may share a slot.
-    pub slot: u32,
+    pub register: u32,
 }
 
 /// At which stage each node of a graph changes; grows with the graph.

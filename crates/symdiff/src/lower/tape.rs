@@ -1,4 +1,4 @@
-//! Tapes: programs of three-address instructions over slots, in one line but for regions that may be skipped.
+//! Tapes: programs of three-address instructions over registers, in one line but for regions that may be skipped.
 //!
 //! What stands in a region only matters where a condition is positive (or only where it is not). A region is skipped where no
 //! sample of the memory wants it. That changes no result: what is read outside a region is chosen, sample by sample, by
@@ -6,7 +6,7 @@
 
 use crate::expr::{Binary, Expr, Unary};
 
-/// What an instruction does with the slots a, b, c.
+/// What an instruction does with the registers a, b, c.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// d = a
@@ -21,14 +21,14 @@ pub enum Op {
     MulSub,
     /// d = c − a·b, rounded twice.
     NegMulAdd,
-    /// d = b where a is positive or not a number, c elsewhere.
+    /// d = b where a is positive or NaN, c elsewhere.
     Select,
     /// d = sin a, b = cos a: `b` is written.
     SinCos,
 }
 
 impl Op {
-    /// Slots that an instruction of this operation names: d, then what it reads (and, for `SinCos`, also writes).
+    /// Registers that an instruction of this operation names: d, then what it reads (and, for `SinCos`, also writes).
     pub(crate) const fn arity(self) -> usize {
         match self {
             Self::Copy | Self::Unary(_) => 2,
@@ -38,7 +38,7 @@ impl Op {
     }
 }
 
-/// Slots of one instruction; what an operation does not use repeats `a`.
+/// Registers of one instruction; what an operation does not use repeats `a`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub struct Operands {
@@ -51,10 +51,10 @@ pub struct Operands {
 impl Operands {
     /// From what a tape holds of them: d, a, and then as many as the operation has.
     #[inline(always)]
-    pub(crate) fn of(slots: &[u32]) -> Self {
-        let a = slots[1];
-        let or_a = |place: usize| slots.get(place).copied().unwrap_or(a);
-        Self { a, b: or_a(2), c: or_a(3), d: slots[0] }
+    pub(crate) fn of(registers: &[u32]) -> Self {
+        let a = registers[1];
+        let or_a = |place: usize| registers.get(place).copied().unwrap_or(a);
+        Self { a, b: or_a(2), c: or_a(3), d: registers[0] }
     }
 }
 
@@ -70,7 +70,7 @@ pub struct Guard {
 /// A stretch of a tape that may be skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Region {
-    /// Slot of the condition.
+    /// Register of the condition.
     pub condition: u32,
     elsewhere: bool,
     /// Part of the tape that follows the region.
@@ -105,7 +105,7 @@ enum Piece {
     Region(Region),
 }
 
-/// What an evaluator meets: instructions of one operation, [`Op::arity`] slots each, or the beginning of a region.
+/// What an evaluator meets: instructions of one operation, [`Op::arity`] registers each, or the beginning of a region.
 pub(crate) enum Part<'t> {
     Run(Op, &'t [u32]),
     Region(&'t Region),
@@ -115,20 +115,20 @@ pub(crate) enum Part<'t> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Item {
     Do(Op, Operands),
-    /// A region begins; its condition's slot, and whether it is wanted elsewhere.
+    /// A region begins; its condition's register, and whether it is wanted elsewhere.
     Enter(u32, bool),
     /// The innermost region ends.
     Leave,
 }
 
-/// A program. Every slot it names is below [`Tape::slots`], which is what the evaluators rely on.
+/// A program. Every register it names is below [`Tape::registers`], which is what the evaluators rely on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tape {
     pieces: Vec<Piece>,
-    /// Slots of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
+    /// Registers of all instructions, no more of each than it has: a large mechanism's tape is read from far away.
     operands: Vec<u32>,
     instructions: usize,
-    slots: usize,
+    registers: usize,
 }
 
 impl Tape {
@@ -152,13 +152,14 @@ impl Tape {
                         _ => tape.pieces.push(Piece::Run { op, start, end }),
                     }
                     joined = true;
-                    tape.slots =
-                        tape.operands[start..].iter().fold(tape.slots, |slots, &slot| slots.max(slot as usize + 1));
+                    tape.registers = tape.operands[start..]
+                        .iter()
+                        .fold(tape.registers, |registers, &register| registers.max(register as usize + 1));
                 }
                 Item::Enter(condition, elsewhere) => {
                     open.push(tape.pieces.len());
                     tape.pieces.push(Piece::Region(Region { condition, elsewhere, end: 0 }));
-                    tape.slots = tape.slots.max(condition as usize + 1);
+                    tape.registers = tape.registers.max(condition as usize + 1);
                 }
                 Item::Leave => {
                     let end = tape.pieces.len();
@@ -195,9 +196,9 @@ impl Tape {
         self.instructions == 0
     }
 
-    /// One more than the highest slot named.
-    pub fn slots(&self) -> usize {
-        self.slots
+    /// One more than the highest register named.
+    pub fn registers(&self) -> usize {
+        self.registers
     }
 
     /// What stands at a place, which moves on to the next.

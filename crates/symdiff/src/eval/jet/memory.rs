@@ -16,38 +16,38 @@ pub struct JetMemory<'s> {
 
 impl<'s> JetMemory<'s> {
     /// Zeros, with `constants` set.
-    pub fn new(space: &'s JetSpace, slots: usize, constants: &[(u32, f64)]) -> Self {
+    pub fn new(space: &'s JetSpace, registers: usize, constants: &[(u32, f64)]) -> Self {
         let length = space.len();
         let (first, second) = (vec![0.0; length], vec![0.0; length]);
         let mut memory =
-            Self { space, scratch: JetScratch::new(space), values: vec![0.0; slots * length], first, second };
-        for &(slot, value) in constants {
-            memory.set_constant(slot as usize, value);
+            Self { space, scratch: JetScratch::new(space), values: vec![0.0; registers * length], first, second };
+        for &(register, value) in constants {
+            memory.set_constant(register as usize, value);
         }
         memory
     }
 
     /// The polynomial in a slot.
-    pub fn jet(&self, slot: usize) -> &[f64] {
-        &self.values[slot * self.space.len()..][..self.space.len()]
+    pub fn jet(&self, register: usize) -> &[f64] {
+        &self.values[register * self.space.len()..][..self.space.len()]
     }
 
     /// The polynomial in a slot.
-    pub fn jet_mut(&mut self, slot: usize) -> &mut [f64] {
+    pub fn jet_mut(&mut self, register: usize) -> &mut [f64] {
         let length = self.space.len();
-        &mut self.values[slot * length..][..length]
+        &mut self.values[register * length..][..length]
     }
 
-    /// A slot becomes a constant.
-    pub fn set_constant(&mut self, slot: usize, value: f64) {
+    /// A register becomes a constant.
+    pub fn set_constant(&mut self, register: usize, value: f64) {
         let space = self.space;
-        space.constant(value, self.jet_mut(slot));
+        space.constant(value, self.jet_mut(register));
     }
 
     /// Runs a tape.
     ///
     /// # Panics
-    /// If the tape names a slot that the memory does not have.
+    /// If the tape names a register that the memory does not have.
     pub fn run(&mut self, tape: &Tape) {
         let length = self.space.len();
         let Self { space, scratch, values, first, second } = self;
@@ -62,7 +62,7 @@ impl<'s> JetMemory<'s> {
                 }
             };
             for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
-                let jet = |slot: u32| &values[slot as usize * length..][..length];
+                let jet = |register: u32| &values[register as usize * length..][..length];
                 let (a, b, c) = (jet(operand.a), jet(operand.b), jet(operand.c));
                 match op {
                     Op::Copy => first.copy_from_slice(a),
@@ -94,10 +94,10 @@ mod tests {
         let (x, y) = (g.symbol("x"), g.symbol("y"));
         let (product, sine) = (g.mul(x, y), g.sin(x));
         let sum = g.add(product, sine);
-        let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol, stage: 0, slot });
+        let inputs = [(x, 0), (y, 1)].map(|(symbol, register)| Input { symbol, stage: 0, register });
         let lowered = lower(&g, &inputs, 0, 2, &[vec![(sum, None)]]);
         let space = JetSpace::new(2, 2);
-        let mut memory = JetMemory::new(&space, lowered.slots, &lowered.constants);
+        let mut memory = JetMemory::new(&space, lowered.registers, &lowered.constants);
         space.variable(0, 0.5, 1.0, memory.jet_mut(0));
         space.variable(1, 2.0, 1.0, memory.jet_mut(1));
         memory.run(&lowered.kernels[0]);

@@ -8,7 +8,7 @@
 //!
 //! Where a function has a kink the branch is that of the constant term, and at the kink itself the mean of both sides,
 //! as in [`Graph::derivative`](crate::Graph::derivative). Where it has a singularity (√0, log 0, asin 1, …) the
-//! coefficients are infinite or not a number, unless the argument is a constant.
+//! coefficients are infinite or NaN, unless the argument is a constant.
 
 mod memory;
 mod monomials;
@@ -36,13 +36,13 @@ pub struct JetSpace {
 /// Room for intermediate jets, so that no operation allocates.
 #[derive(Clone, Debug)]
 pub struct JetScratch {
-    slots: [Vec<f64>; 4],
+    registers: [Vec<f64>; 4],
 }
 
 impl JetScratch {
     /// For jets of this shape.
     pub fn new(space: &JetSpace) -> Self {
-        Self { slots: std::array::from_fn(|_| vec![0.0; space.len()]) }
+        Self { registers: std::array::from_fn(|_| vec![0.0; space.len()]) }
     }
 }
 
@@ -193,7 +193,7 @@ impl JetSpace {
 
     /// `sine = sin a`, `cosine = cos a`: E s = c E a, E c = -s E a.
     pub fn sin_cos(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], scratch: &mut JetScratch) {
-        self.sin_cos_with(a, sine, cosine, &mut scratch.slots[0]);
+        self.sin_cos_with(a, sine, cosine, &mut scratch.registers[0]);
     }
 
     fn sin_cos_with(&self, a: &[f64], sine: &mut [f64], cosine: &mut [f64], slope: &mut [f64]) {
@@ -214,7 +214,7 @@ impl JetSpace {
         if is_constant(a) {
             return self.constant(value, out);
         }
-        let [first, second, third, _] = &mut scratch.slots;
+        let [first, second, third, _] = &mut scratch.registers;
         match function {
             Unary::Neg => out.iter_mut().zip(a).for_each(|(h, a)| *h = -a),
             Unary::Sin => self.sin_cos_with(a, out, first, second),
@@ -288,10 +288,10 @@ impl JetSpace {
                 }
                 out[0] = functions::binary(function, a[0], b[0]);
             }
-            Binary::Where | Binary::Elsewhere if (a[0] <= 0.0) == (function == Binary::Elsewhere) => {
+            Binary::Select | Binary::SelectElse if (a[0] <= 0.0) == (function == Binary::SelectElse) => {
                 out.copy_from_slice(b);
             }
-            Binary::Where | Binary::Elsewhere => out.fill(0.0),
+            Binary::Select | Binary::SelectElse => out.fill(0.0),
         }
     }
 
@@ -341,7 +341,7 @@ impl JetSpace {
     /// `out = a^b`. For a constant b = p: a E h = p h E a. Otherwise h = exp(b log a): E h = h E(b log a).
     fn power(&self, a: &[f64], b: &[f64], out: &mut [f64], scratch: &mut JetScratch) {
         let value = functions::binary(Binary::Pow, a[0], b[0]);
-        let [first, second, third, fourth] = &mut scratch.slots;
+        let [first, second, third, fourth] = &mut scratch.registers;
         if !is_constant(b) {
             self.euler(a, first);
             self.integrate(first, a, functions::unary(Unary::Log, a[0]), second, third);
@@ -381,7 +381,7 @@ impl JetSpace {
         if is_constant(a) && is_constant(b) {
             return self.constant(value, out);
         }
-        let [first, second, third, right] = &mut scratch.slots;
+        let [first, second, third, right] = &mut scratch.registers;
         self.euler(a, first);
         self.euler(b, second);
         self.mul(b, first, third);

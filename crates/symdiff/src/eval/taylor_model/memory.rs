@@ -18,32 +18,32 @@ pub struct ModelMemory<'s> {
 
 impl<'s> ModelMemory<'s> {
     /// Zeros, with `constants` set.
-    pub fn new(space: &'s ModelSpace, slots: usize, constants: &[(u32, f64)]) -> Self {
+    pub fn new(space: &'s ModelSpace, registers: usize, constants: &[(u32, f64)]) -> Self {
         let size = space.size();
         let (first, second) = (vec![0.0; size], vec![0.0; size]);
         let mut memory =
-            Self { space, scratch: ModelScratch::new(space), values: vec![0.0; slots * size], first, second };
-        for &(slot, value) in constants {
-            space.constant(Interval::point(value), memory.model_mut(slot as usize));
+            Self { space, scratch: ModelScratch::new(space), values: vec![0.0; registers * size], first, second };
+        for &(register, value) in constants {
+            space.constant(Interval::point(value), memory.model_mut(register as usize));
         }
         memory
     }
 
     /// The model in a slot.
-    pub fn model(&self, slot: usize) -> &[f64] {
-        &self.values[slot * self.space.size()..][..self.space.size()]
+    pub fn model(&self, register: usize) -> &[f64] {
+        &self.values[register * self.space.size()..][..self.space.size()]
     }
 
     /// The model in a slot.
-    pub fn model_mut(&mut self, slot: usize) -> &mut [f64] {
+    pub fn model_mut(&mut self, register: usize) -> &mut [f64] {
         let size = self.space.size();
-        &mut self.values[slot * size..][..size]
+        &mut self.values[register * size..][..size]
     }
 
     /// Runs a tape.
     ///
     /// # Panics
-    /// If the tape names a slot that the memory does not have.
+    /// If the tape names a register that the memory does not have.
     pub fn run(&mut self, tape: &Tape) {
         let size = self.space.size();
         let Self { space, scratch, values, first, second } = self;
@@ -59,7 +59,7 @@ impl<'s> ModelMemory<'s> {
                 }
             };
             for operand in operands.chunks_exact(op.arity()).map(Operands::of) {
-                let model = |slot: u32| &values[slot as usize * size..][..size];
+                let model = |register: u32| &values[register as usize * size..][..size];
                 let (a, b, c) = (model(operand.a), model(operand.b), model(operand.c));
                 match op {
                     Op::Copy => first.copy_from_slice(a),

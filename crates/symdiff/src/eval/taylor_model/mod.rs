@@ -4,7 +4,7 @@
 //! |f(ξ) − Σ aᵣ ξ^r| ≤ e for every ξ of the box. Polynomials are computed by the jets' arithmetic, and the radius is
 //! proven afterwards from the equation that defines the result: a quotient h = a/b by the size of a − h b, a root by a − h², sine and cosine by
 //! their differential equation. So rounding, cut-off terms and the operands' radii are bounded in one way, and a jet that were computed wrongly would
-//! only make its radius large. A radius that is infinite, or not a number, says that nothing is known.
+//! only make its radius large. A radius that is infinite, or NaN, says that nothing is known.
 //!
 //! Sums of magnitudes are rounded to nearest and enlarged by [`up`]. A coefficient of a product of monomials' coefficients sums at most
 //! (D+1)^k terms, D its degree, and D+1 ≤ (d+1)(d'+1) for the degrees d, d' of its factors; hence the weights (d+1)^k
@@ -67,13 +67,13 @@ pub struct ModelSpace {
 #[derive(Clone, Debug)]
 pub struct ModelScratch {
     jets: JetScratch,
-    slots: [Vec<f64>; 2],
+    registers: [Vec<f64>; 2],
 }
 
 impl ModelScratch {
     /// For models of this shape.
     pub fn new(space: &ModelSpace) -> Self {
-        Self { jets: JetScratch::new(&space.jets), slots: std::array::from_fn(|_| vec![0.0; space.size()]) }
+        Self { jets: JetScratch::new(&space.jets), registers: std::array::from_fn(|_| vec![0.0; space.size()]) }
     }
 }
 
@@ -215,7 +215,7 @@ impl ModelSpace {
         let (x, y) = (self.split(a).0, self.split(b).0);
         self.jets.div(x, y, self.split_mut(out).0);
         *self.split_mut(out).1 = 0.0;
-        let residual = &mut scratch.slots[0];
+        let residual = &mut scratch.registers[0];
         self.jets.sub_mul(self.split(out).0, y, x, self.split_mut(residual).0);
         let (left, quotient, right) = (self.norms(a), self.norms(out), self.norms(b));
         let missed = self.product_radius(&quotient, &right) + left.radius + f64::EPSILON * left.total;
@@ -235,7 +235,7 @@ impl ModelSpace {
         let x = self.split(a).0;
         self.jets.unary(Unary::Sqrt, x, self.split_mut(out).0, &mut scratch.jets);
         *self.split_mut(out).1 = 0.0;
-        let residual = &mut scratch.slots[0];
+        let residual = &mut scratch.registers[0];
         let root = self.split(out).0;
         self.jets.sub_mul(root, root, x, self.split_mut(residual).0);
         let (argument, norms) = (self.norms(a), self.norms(out));
@@ -258,7 +258,7 @@ impl ModelSpace {
         *self.split_mut(cosine).1 = 0.0;
         let (exact_sine, exact_cosine) = Interval::point(x[0]).sin_cos();
         let mut missed = exact_sine.radius_about(sine[0]) + exact_cosine.radius_about(cosine[0]) + e;
-        let [slope, residual] = &mut scratch.slots;
+        let [slope, residual] = &mut scratch.registers;
         for ((slope, &c), &degree) in slope.iter_mut().zip(x).zip(&self.degrees) {
             *slope = degree as f64 * c;
         }
@@ -307,8 +307,8 @@ impl ModelSpace {
             Binary::Sub => self.sub(a, b, out),
             Binary::Mul => self.mul(a, b, out),
             Binary::Div => self.div(a, b, out, scratch),
-            Binary::Where | Binary::Elsewhere => match self.sign(a) {
-                Some(sign) if (sign <= 0.0) == (function == Binary::Elsewhere) => out.copy_from_slice(b),
+            Binary::Select | Binary::SelectElse => match self.sign(a) {
+                Some(sign) if (sign <= 0.0) == (function == Binary::SelectElse) => out.copy_from_slice(b),
                 Some(_) => out.fill(0.0),
                 None => self.unknown(out),
             },
@@ -353,7 +353,7 @@ pub fn encloses(node: Node) -> bool {
         ),
         Node::Binary(function, ..) => matches!(
             function,
-            Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Where | Binary::Elsewhere
+            Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Select | Binary::SelectElse
         ),
     }
 }

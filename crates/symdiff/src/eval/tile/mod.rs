@@ -17,11 +17,11 @@ pub const WIDTHS: [usize; 6] = [1, 4, 8, 16, 32, 64];
 #[repr(C, align(64))]
 struct Line([f64; 8]);
 
-/// Memory of a program for `width` samples: `slots` rows of `width` lanes.
+/// Memory of a program for `width` samples: `registers` rows of `width` lanes.
 #[derive(Clone, Debug)]
 pub struct Tile {
     width: usize,
-    slots: usize,
+    registers: usize,
     lines: Vec<Line>,
 }
 
@@ -30,11 +30,11 @@ impl Tile {
     ///
     /// # Panics
     /// If `width` is not one of [`WIDTHS`].
-    pub fn new(width: usize, slots: usize, constants: &[(u32, f64)]) -> Self {
+    pub fn new(width: usize, registers: usize, constants: &[(u32, f64)]) -> Self {
         assert!(WIDTHS.contains(&width), "a tile is one of {WIDTHS:?} wide");
-        let mut tile = Self { width, slots, lines: vec![Line([0.0; 8]); (slots * width).div_ceil(8)] };
-        for &(slot, value) in constants {
-            tile.lane_mut(slot as usize).fill(value);
+        let mut tile = Self { width, registers, lines: vec![Line([0.0; 8]); (registers * width).div_ceil(8)] };
+        for &(register, value) in constants {
+            tile.lane_mut(register as usize).fill(value);
         }
         tile
     }
@@ -45,10 +45,10 @@ impl Tile {
         self.width
     }
 
-    /// Number of slots.
+    /// Number of registers.
     #[inline]
-    pub fn slots(&self) -> usize {
-        self.slots
+    pub fn registers(&self) -> usize {
+        self.registers
     }
 
     /// The memory, slot by slot.
@@ -56,7 +56,7 @@ impl Tile {
     pub fn values(&self) -> &[f64] {
         // SAFETY: `Line` is `repr(C)` around `[f64; 8]`, so the lines are `8 · len` consecutive f64.
         let all = unsafe { std::slice::from_raw_parts(self.lines.as_ptr().cast::<f64>(), self.lines.len() * 8) };
-        &all[..self.slots * self.width]
+        &all[..self.registers * self.width]
     }
 
     /// The memory, slot by slot.
@@ -65,34 +65,34 @@ impl Tile {
         // SAFETY: as in `values`; the borrow is exclusive.
         let all =
             unsafe { std::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<f64>(), self.lines.len() * 8) };
-        &mut all[..self.slots * self.width]
+        &mut all[..self.registers * self.width]
     }
 
-    /// A slot's value in every sample.
+    /// A register's value in every sample.
     #[inline]
-    pub fn lane(&self, slot: usize) -> &[f64] {
-        &self.values()[slot * self.width..][..self.width]
+    pub fn lane(&self, register: usize) -> &[f64] {
+        &self.values()[register * self.width..][..self.width]
     }
 
-    /// A slot's value in every sample.
+    /// A register's value in every sample.
     #[inline]
-    pub fn lane_mut(&mut self, slot: usize) -> &mut [f64] {
+    pub fn lane_mut(&mut self, register: usize) -> &mut [f64] {
         let width = self.width;
-        &mut self.values_mut()[slot * width..][..width]
+        &mut self.values_mut()[register * width..][..width]
     }
 
     /// Runs a tape over all samples.
     ///
     /// # Panics
-    /// If the tape names a slot that the tile does not have.
+    /// If the tape names a register that the tile does not have.
     pub fn run(&mut self, tape: &Tape) {
         self.run_with(tape, InstructionSet::detect());
     }
 
     fn run_with(&mut self, tape: &Tape, set: InstructionSet) {
-        assert!(tape.slots() <= self.slots, "the tape belongs to a larger memory");
+        assert!(tape.registers() <= self.registers, "the tape belongs to a larger memory");
         let memory = self.lines.as_mut_ptr().cast::<f64>();
-        // The memory has `slots · width` values and the tape's slots are below `self.slots`: just asserted, and `Tape::slots`
+        // The memory has `registers · width` values and the tape's registers are below `self.registers`: just asserted, and `Tape::registers`
         // is computed from the instructions. `Interpretation` relies on it.
         match self.width {
             1 => set.run(Interpretation::<1, 1> { tape, memory }),
@@ -116,7 +116,7 @@ impl<const W: usize, const C: usize> Vectorise for Interpretation<'_, W, C> {
 
     #[inline(always)]
     fn run(self) {
-        // SAFETY: whoever made this has seen to it that the memory has all slots of the tape.
+        // SAFETY: whoever made this has seen to it that the memory has all registers of the tape.
         unsafe { interpret::<W, C>(self.tape, self.memory) }
     }
 }
@@ -146,8 +146,8 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
                 Op::Binary(Binary::Sub) => each::<W, C, 3>(operands, memory, |a, b, _| a - b),
                 Op::Binary(Binary::Mul) => each::<W, C, 3>(operands, memory, |a, b, _| a * b),
                 Op::Select => each::<W, C, 4>(operands, memory, functions::select),
-                Op::Binary(Binary::Where) => each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, b, 0.0)),
-                Op::Binary(Binary::Elsewhere) => {
+                Op::Binary(Binary::Select) => each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, b, 0.0)),
+                Op::Binary(Binary::SelectElse) => {
                     each::<W, C, 3>(operands, memory, |a, b, _| functions::select(a, 0.0, b))
                 }
                 Op::Binary(Binary::Min) => each::<W, C, 3>(operands, memory, |a, b, _| functions::min(a, b)),
@@ -164,7 +164,7 @@ unsafe fn interpret<const W: usize, const C: usize>(tape: &Tape, memory: *mut f6
     }
 }
 
-/// `d = function(a, b, c)` for each instruction (of `A` slots) and lane.
+/// `d = function(a, b, c)` for each instruction (of `A` registers) and lane.
 #[inline(always)]
 unsafe fn each<const W: usize, const C: usize, const A: usize>(
     operands: &[u32],
@@ -174,7 +174,7 @@ unsafe fn each<const W: usize, const C: usize, const A: usize>(
     for operand in operands.chunks_exact(A).map(Operands::of) {
         let mut lane = 0;
         while lane < W {
-            // SAFETY: slots are in range (the caller's promise) and `lane + C ≤ W`.
+            // SAFETY: registers are in range (the caller's promise) and `lane + C ≤ W`.
             unsafe {
                 let a = memory.add(operand.a as usize * W + lane).cast::<[f64; C]>().read();
                 let b = memory.add(operand.b as usize * W + lane).cast::<[f64; C]>().read();
@@ -193,7 +193,7 @@ unsafe fn each<const W: usize, const C: usize, const A: usize>(
 /// Whether any lane wants a region.
 #[inline(always)]
 unsafe fn wanted<const W: usize>(region: &Region, memory: *mut f64) -> bool {
-    // SAFETY: slots are in range (the caller's promise).
+    // SAFETY: registers are in range (the caller's promise).
     let condition = unsafe { memory.add(region.condition as usize * W).cast::<[f64; W]>().read() };
     condition.iter().fold(false, |wanted, &condition| wanted | region.wants(condition))
 }
@@ -237,7 +237,7 @@ mod tests {
         let slope = g.unary(Unary::Spline(table, 1), product);
         let smaller = g.mul(looked_up, slope);
         let last = g.sub(smaller, product);
-        let inputs = [(x, 0), (y, 1)].map(|(symbol, slot)| Input { symbol, stage: 0, slot }).to_vec();
+        let inputs = [(x, 0), (y, 1)].map(|(symbol, register)| Input { symbol, stage: 0, register }).to_vec();
         (g, inputs, vec![(sum, None), (tangent, None), (last, None), (s, None)])
     }
 
@@ -253,7 +253,7 @@ mod tests {
         }
         for width in WIDTHS {
             for &set in &sets {
-                let mut tile = Tile::new(width, lowered.slots, &lowered.constants);
+                let mut tile = Tile::new(width, lowered.registers, &lowered.constants);
                 let (x, y) = (|lane: usize| 0.37 * lane as f64 - 3.0, |lane: usize| 1.5 + 0.1 * lane as f64);
                 for lane in 0..width {
                     tile.lane_mut(0)[lane] = x(lane);
@@ -263,8 +263,8 @@ mod tests {
                 for lane in 0..width {
                     let direct =
                         g.evaluate(&roots, |symbol| if symbol == inputs[0].symbol { x(lane) } else { y(lane) });
-                    for (slot, value) in lowered.outputs[0].iter().zip(direct) {
-                        assert_eq!(tile.lane(*slot as usize)[lane].to_bits(), value.to_bits(), "{width} {set:?}");
+                    for (register, value) in lowered.outputs[0].iter().zip(direct) {
+                        assert_eq!(tile.lane(*register as usize)[lane].to_bits(), value.to_bits(), "{width} {set:?}");
                     }
                 }
             }
