@@ -27,3 +27,13 @@ fn the_first_screen_has_the_two_commands() {
     let before = README.split("cargo test").next().unwrap();
     assert!(before.lines().count() < 24, "they have left the first screen");
 }
+
+#[test]
+fn its_rust_is_the_example_of_the_crate_page() {
+    // Which is a doctest.
+    let guide = include_str!("../../docs/guides/rust.md");
+    assert_eq!(blocks("rust").count(), 1);
+    for example in blocks("rust") {
+        assert!(guide.contains(&format!("```rust\n{example}```")), "the README has\n{example}");
+    }
+}
