@@ -3,6 +3,7 @@
 //! - `start`: a consistent start, the rank of the constraints there;
 //! - `simulator`: a mechanism assembled and compiled, and `error`: why it cannot be;
 //! - `step`: one step of a scheme for a tile of samples: stepper, Newton's iteration, the rank-revealing solve;
+//! - `time_functions`: functions of the time in the equations, and the steps that resolve them;
 //! - `control`: the step schedule that all samples share, fixed or from a tolerance;
 //! - `ensemble`: many samples, or one jet in the parameters, over a schedule;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
@@ -18,9 +19,10 @@ mod error;
 mod simulator;
 mod start;
 mod step;
+mod time_functions;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use control::{Controller, Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use control::{Controller, Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
@@ -28,3 +30,4 @@ pub use error::{NamedValues, SimulationError};
 pub use simulator::Simulator;
 pub use start::Mobility;
 pub use step::{Counters, LocalError, StepFailure, Stepper};
+pub use time_functions::TimeFunctions;

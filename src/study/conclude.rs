@@ -81,11 +81,15 @@ fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Ba
             })
             .collect();
         let surrogate = &outcome.result.surrogate[output][..rows];
+        let mut error = BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance);
+        if let Some(unresolved) = results.unresolved_from.and_then(|row| error.unresolved.get_mut(row..)) {
+            unresolved.fill(true);
+        }
         Band {
             method: *method,
             lower: ranges.iter().map(|range| range.lower).collect(),
             upper: ranges.iter().map(|range| range.upper).collect(),
-            error: BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance),
+            error,
         }
     };
     results.methods.iter().enumerate().map(band).collect()

@@ -8,7 +8,7 @@ use super::single::{Outcome, Results, Study, simulation_error, timed, validation
 use super::step_search::StepSearch;
 use crate::methods::{Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
-use crate::simulate::{Schedule, SimulationError};
+use crate::simulate::{Divided, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every sampled method's bounds are the nominal motion.
@@ -20,12 +20,13 @@ impl Study<'_> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
         let mut steps = StepSearch::new(schedule);
         loop {
-            let schedule = steps.schedule();
+            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let halved = schedule.refined(2);
             let motions = self.motions(&schedule, tolerance, &progress);
             let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
             let mut results = Results {
                 schedule: schedule.clone(),
+                unresolved_from,
                 nominal,
                 singular,
                 validation: None,

@@ -10,7 +10,10 @@ use crate::methods::{
 use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, corners, probes, validation};
 use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{Schedule, SimulationError, Simulator, SingularPass, ToleranceSchedule, schedule_for_tolerance};
+use crate::simulate::{
+    Divided, Schedule, SimulationError, Simulator, SingularPass, TimeFunctions, ToleranceSchedule,
+    schedule_for_tolerance,
+};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
 const CONTROLLING_CORNERS: usize = 16;
@@ -24,6 +27,8 @@ pub(super) struct Study<'a> {
     pub(super) simulator: Simulator,
     pub(super) domain: ParameterBox,
     pub(super) request: BoundsRequest,
+    /// Functions of the time in the equations of motion, where there are any.
+    time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
@@ -40,6 +45,8 @@ pub(super) struct Outcome {
 /// What one schedule yields.
 pub(super) struct Results {
     pub schedule: Schedule,
+    /// The first row before which a step does not resolve a function of the time.
+    pub unresolved_from: Option<usize>,
     pub nominal: Outcome,
     /// Singular configurations that the nominal motion passes.
     pub singular: Vec<SingularPass>,
@@ -125,19 +132,29 @@ impl<'a> Study<'a> {
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
-        Ok(Self { description, simulator, domain, request, certify_time, progress, interrupted })
+        let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
+        Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, interrupted })
     }
 
     /// The same over a part of the box.
     pub(super) fn over<'b>(&'b self, part: &ParameterBox, progress: &'b (dyn Fn(f64) + Sync)) -> Study<'b> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
-        Study { domain: part.clone(), request, progress, simulator: self.simulator.clone(), ..*self }
+        let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
+        Study { domain: part.clone(), request, progress, simulator, time_functions, ..*self }
     }
 
     /// Rows of output that are asked for.
     pub(super) fn rows(&self) -> usize {
         Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
+    }
+
+    /// A schedule with those steps divided that do not resolve a function of the time.
+    pub(super) fn divided(&self, schedule: Schedule) -> Divided {
+        match &self.time_functions {
+            Some(functions) => functions.divided(&schedule),
+            None => Divided { schedule, unresolved_from: None },
+        }
     }
 
     /// The motions under a schedule.
@@ -156,7 +173,7 @@ impl<'a> Study<'a> {
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         match simulation.stepping {
             Stepping::Fixed(step) => {
-                let schedule = Schedule::fixed(duration, step, output_step);
+                let Divided { schedule, .. } = self.divided(Schedule::fixed(duration, step, output_step));
                 let halved = schedule.refined(2);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let [direct, halved] = [&schedule, &halved].map(|schedule| self.motions(schedule, None, &progress));
@@ -238,11 +255,11 @@ impl<'a> Study<'a> {
             return self.deterministic(schedule, tolerance);
         }
         let progress = Progress::new(self.total_work(schedule), self.progress);
-        let (schedule, validation) = if self.request.is_empty() {
-            (schedule.clone(), None)
+        let (Divided { schedule, unresolved_from }, validation) = if self.request.is_empty() {
+            (self.divided(schedule.clone()), None)
         } else {
-            let (schedule, validation) = self.balance(schedule, tolerance, &progress)?;
-            (schedule, Some(validation))
+            let (divided, validation) = self.balance(schedule, tolerance, &progress)?;
+            (divided, Some(validation))
         };
         let motions = self.motions(&schedule, tolerance, &progress);
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
@@ -256,7 +273,7 @@ impl<'a> Study<'a> {
             }
         }
         drop(motions);
-        Ok(Results { schedule, nominal, singular, validation, methods, halved })
+        Ok(Results { schedule, unresolved_from, nominal, singular, validation, methods, halved })
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
@@ -265,7 +282,7 @@ impl<'a> Study<'a> {
         schedule: &Schedule,
         tolerance: Option<f64>,
         progress: &Progress,
-    ) -> Result<(Schedule, (Validation, MethodSummary)), SimulationError> {
+    ) -> Result<(Divided, (Validation, MethodSummary)), SimulationError> {
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
@@ -273,7 +290,7 @@ impl<'a> Study<'a> {
         let mut steps = StepSearch::new(schedule);
         loop {
             let begun = std::time::Instant::now();
-            let schedule = steps.schedule();
+            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let halved = schedule.refined(2);
             let direct = self.motions(&schedule, tolerance, progress);
             let halved = self.motions(&halved, None, progress);
@@ -286,7 +303,7 @@ impl<'a> Study<'a> {
             };
             drop((direct, halved));
             if enough {
-                return Ok((schedule, (validation, summary)));
+                return Ok((Divided { schedule, unresolved_from }, (validation, summary)));
             }
         }
     }

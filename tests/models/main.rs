@@ -33,5 +33,6 @@ mod snapshots;
 mod spatial_linkages;
 mod step_control;
 mod tables;
+mod time_steps;
 mod tolerance;
 mod urdf;

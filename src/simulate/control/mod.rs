@@ -1,9 +1,12 @@
-//! The step schedule that all samples share: fixed, or controlled by a tolerance.
+//! The step schedule that all samples share: fixed, or controlled by a tolerance; in both cases divided where functions of the
+//! time ask for it.
 
 mod controller;
+mod division;
 mod samples;
 mod schedule;
 
 pub use controller::Controller;
+pub use division::Divided;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};
 pub use schedule::Schedule;

@@ -7,6 +7,7 @@ use super::schedule::Schedule;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
+use crate::simulate::time_functions::TimeFunctions;
 
 /// The first step, as a share of the output step.
 const FIRST_STEP: f64 = 1e-2;
@@ -87,6 +88,7 @@ struct Control<'s> {
     controller: Controller,
     output_step: f64,
     stepper: Stepper<'s>,
+    functions: Option<TimeFunctions>,
     /// The step size to try next, s.
     h: f64,
     /// Accepted steps.
@@ -116,7 +118,8 @@ impl<'s> Control<'s> {
         let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let mut stepper = Stepper::new(&simulator.program, &start);
         stepper.estimate_errors();
-        Ok(Self { simulator, samples, controller, output_step, stepper, h, count: 0, dropped: Vec::new() })
+        let functions = TimeFunctions::of(simulator, controller.duration);
+        Ok(Self { simulator, samples, controller, output_step, stepper, functions, h, count: 0, dropped: Vec::new() })
     }
 
     /// Whether no sample runs any more, or the schedule has as many steps as it may have.
@@ -131,6 +134,10 @@ impl<'s> Control<'s> {
             h if h >= left * (1.0 - 1e-9) => (left, goal),
             h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
             h => (h, time + h),
+        };
+        let (step, end) = match self.functions.as_ref().map(|functions| functions.longest_step(time, step)) {
+            Some(shorter) if shorter < step => (shorter, time + shorter),
+            _ => (step, end),
         };
         self.stepper.set_step_size(step);
         let before = self.stepper.save();

@@ -1,11 +1,15 @@
-//! Evaluation of tapes: over samples ([`tile`]), polynomials ([`jet`]) and their enclosures ([`taylor_model`]).
+//! Evaluation of tapes: over samples ([`tile`]), polynomials ([`jet`]) and their enclosures ([`taylor_model`]); and of expressions
+//! over intervals (`ranges`).
 
+mod enclosed;
 pub(crate) mod functions;
 pub mod interval;
 pub mod jet;
+mod ranges;
 pub mod sincos;
 pub mod taylor_model;
 pub mod tile;
 mod vectorised;
 
+pub use ranges::Ranges;
 pub use vectorised::{Vectorise, vectorised};

@@ -10,6 +10,8 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+use crate::eval::interval::Interval;
+
 /// A spline; equal if its points are.
 #[derive(Clone, Copy)]
 pub struct Spline(&'static Pieces);
@@ -67,8 +69,12 @@ impl Spline {
 
     /// Taylor coefficients, of powers 0 to 3, of the derivative of this order about x.
     pub(crate) fn taylor(self, order: u8, x: f64) -> [f64; 4] {
+        self.taylor_of(self.0.knots.partition_point(|knot| *knot <= x), order, x)
+    }
+
+    /// The same of the cubic of a piece, which x need not be in.
+    fn taylor_of(self, piece: usize, order: u8, x: f64) -> [f64; 4] {
         let Pieces { knots, cubics } = self.0;
-        let piece = knots.partition_point(|knot| *knot <= x);
         let s = x - knots[piece.max(1) - 1];
         let [a, b, c, d] = cubics[piece];
         let about = [a + s * (b + s * (c + s * d)), b + s * (2.0 * c + 3.0 * s * d), c + 3.0 * s * d, d];
@@ -79,6 +85,31 @@ impl Spline {
             3 => [6.0 * about[3], 0.0, 0.0, 0.0],
             _ => [0.0; 4],
         }
+    }
+
+    /// What the derivative of this order may be over an interval.
+    pub(crate) fn enclose(self, order: u8, x: Interval) -> Interval {
+        if !x.magnitude().is_finite() {
+            return Interval::ENTIRE;
+        }
+        let knots = &self.0.knots;
+        let pieces =
+            knots.partition_point(|knot| *knot <= x.lower())..=knots.partition_point(|knot| *knot <= x.upper());
+        let of_piece = |piece: usize| {
+            let [first, last] = [piece.wrapping_sub(1), piece].map(|knot| knots.get(knot).copied());
+            let (first, last) = (x.lower().max(first.unwrap_or(x.lower())), x.upper().min(last.unwrap_or(x.upper())));
+            let middle = 0.5 * (first + last);
+            let from = Interval::new(first, last) - Interval::point(middle);
+            let [a, b, c, d] = self.taylor_of(piece, order, middle).map(Interval::point);
+            let value = a + from * (b + from * (c + from * d));
+            // The coefficients are rounded.
+            let allowance = 1e-14 * value.magnitude();
+            Interval::new(value.lower() - allowance, value.upper() + allowance)
+        };
+        let ranges = pieces.map(of_piece);
+        ranges
+            .reduce(|a, b| Interval::new(a.lower().min(b.lower()), a.upper().max(b.upper())))
+            .unwrap_or(Interval::ENTIRE)
     }
 
     /// The first and the last x.

@@ -1,0 +1,277 @@
+//! Whether steps resolve the functions of the time: bounds of their rates of change, and of the number of times that they jump.
+
+use symdiff::{Expr, Graph, Interval, Ranges};
+
+use super::terms::functions;
+use crate::simulate::simulator::Simulator;
+
+/// A step is divided where a function may change by more than this, as a share of its own size.
+pub(in crate::simulate) const TOO_FAST: f64 = 1.0;
+
+/// What it may change by within a part of a divided step.
+pub(in crate::simulate) const RESOLVED: f64 = 0.5;
+
+/// Jumps are this many steps apart.
+const APART: f64 = 4.0;
+
+/// Halvings of a step. A mechanism's constraints are divided by the square of the step, and so is their rounding.
+const MOST_HALVINGS: u32 = 24;
+const MOST_HALVINGS_WITH_CONSTRAINTS: u32 = 10;
+
+/// Pieces looked at to find a function's size.
+const PIECES: usize = 400;
+
+/// Pieces of a step over which a function is enclosed whose rate has no bound.
+const PARTS: usize = 16;
+
+/// Parts of the box of parameters looked at to tell how often a step is switched, and how often a part is halved.
+const MOST_PARTS: usize = 300;
+const DEEPEST: u32 = 14;
+
+/// The functions of the time in a mechanism's equations of motion.
+#[derive(Clone, Debug)]
+pub struct TimeFunctions {
+    /// s
+    duration: f64,
+    /// Intervals of the parameters.
+    parameters: Vec<Interval>,
+    terms: Vec<Term>,
+    switches: Vec<Switch>,
+    /// Most halvings of a step.
+    halvings: u32,
+}
+
+/// A function of the time.
+#[derive(Clone, Debug)]
+struct Term {
+    /// Value and rate.
+    ranges: Ranges,
+    /// Half the width of its range.
+    size: f64,
+    /// Whether it depends on the state too, of which it has the values at the start.
+    frozen: bool,
+}
+
+/// What a jump depends on: value and rate.
+#[derive(Clone, Debug)]
+struct Switch(Ranges);
+
+/// Whether something switches at some time of an interval.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Switches {
+    Never,
+    /// At most once, or once for sure.
+    Once {
+        surely: bool,
+    },
+    Unknown,
+}
+
+impl TimeFunctions {
+    /// Of a mechanism over its box of parameters; `None` where no equation of motion depends on the time.
+    pub fn of(simulator: &Simulator, duration: f64) -> Option<Self> {
+        let mut functions = functions(simulator)?;
+        let system = &simulator.system;
+        let symbols: Vec<Expr> =
+            std::iter::once(system.time).chain(system.parameters.iter().map(|parameter| parameter.symbol)).collect();
+        let graph = &mut functions.graph;
+        let mut with_rate = |of: Expr| {
+            let rate = graph.derivative(of, system.time);
+            ranges_of(graph, &symbols, [of, rate])
+        };
+        let parameters: Vec<Interval> =
+            system.parameters.iter().map(|parameter| Interval::new(parameter.lower, parameter.upper)).collect();
+        let nominal: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let mut terms = Vec::new();
+        for (expr, frozen) in functions.terms {
+            let ranges = with_rate(expr);
+            if let Some(size) = size(&ranges, &parameters, &nominal, duration) {
+                terms.push(Term { ranges, size, frozen });
+            }
+        }
+        let switches: Vec<Switch> = functions.conditions.into_iter().map(|expr| Switch(with_rate(expr))).collect();
+        let halvings = if system.constraint.is_empty() { MOST_HALVINGS } else { MOST_HALVINGS_WITH_CONSTRAINTS };
+        let found = Self { duration, parameters, terms, switches, halvings };
+        (!(found.terms.is_empty() && found.switches.is_empty())).then_some(found)
+    }
+
+    /// Most halvings of a step.
+    pub(in crate::simulate) fn halvings(&self) -> u32 {
+        self.halvings
+    }
+
+    /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a step.
+    pub(in crate::simulate) fn are_resolved(
+        &self,
+        (a, b): (f64, f64),
+        h: f64,
+        share: f64,
+        work: &mut Vec<Interval>,
+    ) -> bool {
+        self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work))
+            && self.jumps_are_apart((a, b), h, work)
+    }
+
+    /// The longest step from a time, of `step` halved and halved again, that resolves all functions of the time.
+    pub fn longest_step(&self, from: f64, step: f64) -> f64 {
+        let mut work = Vec::new();
+        let mut h = step;
+        for _ in 0..self.halvings {
+            let share = if h < step { RESOLVED } else { TOO_FAST };
+            if self.are_resolved((from, from + h), h, share, &mut work) {
+                break;
+            }
+            h *= 0.5;
+        }
+        h
+    }
+
+    /// The symbols' intervals for a span of time.
+    fn over(&self, a: f64, b: f64) -> Vec<Interval> {
+        std::iter::once(Interval::new(a, b)).chain(self.parameters.iter().copied()).collect()
+    }
+
+    /// Whether no more than one jump lies in a step and those beside it, for all parameters.
+    fn jumps_are_apart(&self, (a, b): (f64, f64), h: f64, work: &mut Vec<Interval>) -> bool {
+        if self.switches.is_empty() {
+            return true;
+        }
+        let (first, last) = ((a - APART * h).max(0.0), (b + APART * h).min(self.duration));
+        let mut boxes = vec![(self.over(first, last), 0)];
+        let mut seen = 0;
+        while let Some((symbols, depth)) = boxes.pop() {
+            let (mut possible, mut sure, mut unknown) = (0, 0, false);
+            for switch in &self.switches {
+                match switch.over(&symbols, work) {
+                    Switches::Never => {}
+                    Switches::Once { surely } => {
+                        possible += 1;
+                        sure += usize::from(surely);
+                    }
+                    Switches::Unknown => unknown = true,
+                }
+            }
+            if !unknown && possible <= 1 {
+                continue;
+            }
+            seen += 1;
+            let widest = (1..symbols.len()).max_by(|&i, &j| {
+                let share =
+                    |place: usize| (symbols[place].upper() - symbols[place].lower()) / symbols[place].magnitude();
+                share(i).total_cmp(&share(j))
+            });
+            let splits = widest.filter(|_| sure < 2 && depth < DEEPEST && seen < MOST_PARTS);
+            let Some(place) = splits.filter(|&place| symbols[place].upper() > symbols[place].lower()) else {
+                return false;
+            };
+            let (range, middle) = (symbols[place], symbols[place].middle());
+            for half in [Interval::new(range.lower(), middle), Interval::new(middle, range.upper())] {
+                let mut symbols = symbols.clone();
+                symbols[place] = half;
+                boxes.push((symbols, depth + 1));
+            }
+        }
+        true
+    }
+}
+
+impl Term {
+    /// Value and rate over a box.
+    fn over(&self, symbols: &[Interval], work: &mut Vec<Interval>) -> (Interval, Interval) {
+        pair(&self.ranges, symbols, work)
+    }
+
+    fn is_slow(&self, all: &TimeFunctions, (a, b): (f64, f64), h: f64, share: f64, work: &mut Vec<Interval>) -> bool {
+        let (_, rate) = self.over(&all.over(a, b), work);
+        if rate.magnitude().is_finite() {
+            return rate.magnitude() * h <= share * self.size;
+        }
+        if b - a > 1.5 * h {
+            return false;
+        }
+        // A rate without bound, as that of a root where it begins: what counts is how far the value goes beyond those at the ends.
+        let [first, last] = [a, b].map(|t| self.over(&all.over(t, t), work).0);
+        let beyond = share * self.size;
+        let (least, most) = (first.lower().min(last.lower()) - beyond, first.upper().max(last.upper()) + beyond);
+        let part = |part: usize| a + (b - a) * part as f64 / PARTS as f64;
+        let within = (0..PARTS).all(|place| {
+            let (value, _) = self.over(&all.over(part(place), part(place + 1)), work);
+            least <= value.lower() && value.upper() <= most
+        });
+        // Elsewhere in the state it may have one.
+        within || self.frozen
+    }
+}
+
+impl Switch {
+    fn over(&self, symbols: &[Interval], work: &mut Vec<Interval>) -> Switches {
+        let (value, rate) = pair(&self.0, symbols, work);
+        if value.lower() > 0.0 || value.upper() < 0.0 {
+            return Switches::Never;
+        }
+        if rate.contains(0.0) {
+            return Switches::Unknown;
+        }
+        let mut at = |t: f64| {
+            let point: Vec<Interval> =
+                std::iter::once(Interval::point(t)).chain(symbols[1..].iter().copied()).collect();
+            pair(&self.0, &point, work).0
+        };
+        let (first, last) = (at(symbols[0].lower()), at(symbols[0].upper()));
+        let surely = first.upper() < 0.0 && last.lower() > 0.0 || first.lower() > 0.0 && last.upper() < 0.0;
+        Switches::Once { surely }
+    }
+}
+
+fn ranges_of(graph: &Graph, symbols: &[Expr], roots: [Expr; 2]) -> Ranges {
+    Ranges::new(graph, symbols, &roots)
+}
+
+fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Vec<Interval>) -> (Interval, Interval) {
+    let mut found = ranges.enclose(symbols, work);
+    let mut next = || found.next().unwrap_or(Interval::ENTIRE);
+    (next(), next())
+}
+
+/// Half the width of the range of a function over the duration, to a factor of two; `None` where it is constant, or has no bound.
+fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64) -> Option<f64> {
+    let mut work = Vec::new();
+    let mut over = |a: f64, b: f64| {
+        let symbols: Vec<Interval> = std::iter::once(Interval::new(a, b)).chain(parameters.iter().copied()).collect();
+        pair(ranges, &symbols, &mut work).0
+    };
+    let mut at_work = Vec::new();
+    let mut at = |t: f64| {
+        let point: Vec<Interval> = std::iter::once(t).chain(nominal.iter().copied()).map(Interval::point).collect();
+        pair(ranges, &point, &mut at_work).0.middle()
+    };
+    let (mut least, mut most) = (at(0.0).min(at(duration)), at(0.0).max(at(duration)));
+    let mut pieces = vec![(0.0, duration, over(0.0, duration))];
+    let mut width = f64::INFINITY;
+    while pieces.len() < PIECES {
+        let extreme = |sign: f64| {
+            let end = |piece: &(f64, f64, Interval)| if sign > 0.0 { piece.2.upper() } else { -piece.2.lower() };
+            let place = (0..pieces.len()).max_by(|&i, &j| end(&pieces[i]).total_cmp(&end(&pieces[j])));
+            place.map(|place| (place, end(&pieces[place])))
+        };
+        let (Some((lowest, lower)), Some((highest, upper))) = (extreme(-1.0), extreme(1.0)) else { break };
+        width = upper + lower;
+        if width <= 2.0 * (most - least) {
+            break;
+        }
+        // The piece that may go furthest beyond what is known to be reached.
+        let place = if upper - most > least + lower { highest } else { lowest };
+        let (a, b, _) = pieces.swap_remove(place);
+        let middle = 0.5 * (a + b);
+        (least, most) = (least.min(at(middle)), most.max(at(middle)));
+        pieces.extend([(a, middle, over(a, middle)), (middle, b, over(middle, b))]);
+    }
+    let negligible = |width: f64| width <= 1e-12 * least.abs().max(most.abs());
+    match most - least {
+        seen if !seen.is_finite() => None,
+        seen if !negligible(seen) => Some(0.5 * seen),
+        // Nothing was seen of what may be there.
+        _ if width.is_finite() && !negligible(width) => Some(0.5 * width),
+        _ => None,
+    }
+}

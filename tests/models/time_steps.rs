@@ -1,0 +1,164 @@
+//! The error of the time steps where halving them alone does not show it: what happens between steps, at their own period, or faster
+//! than they are. Truths are closed forms over dense grids of the parameters.
+
+use std::f64::consts::{PI, TAU};
+
+use mbint::methods::Method;
+use mbint::results::{Bounds, Summary};
+
+use crate::common::{Findings, band, output, read, run_methods};
+
+/// Bounds of an output against the range of its closed form (of a parameter in [−1, 1] and the time): at 99 % of the rows that are not
+/// flagged both ends are within the stated error, which is not more than `most` times the true one. Returns the share of rows
+/// that are flagged.
+fn check(findings: &mut Findings, bounds: &Bounds, name: &str, most: f64, exact: impl Fn(f64, f64) -> f64) -> f64 {
+    let output = output(bounds, name);
+    let mut flagged = 0.0_f64;
+    for method in output.bands.iter().map(|band| band.method) {
+        let band = band(output, method);
+        let (mut covered, mut counted, mut stated, mut truth) = (0, 0, 0.0, 0.0);
+        for (row, &time) in bounds.times.iter().enumerate() {
+            if band.error.unresolved[row] {
+                continue;
+            }
+            let values = (0..=400).map(|i| exact(f64::from(i) / 200.0 - 1.0, time));
+            let (lower, upper) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+            let error = (band.lower[row] - lower).abs().max((band.upper[row] - upper).abs());
+            counted += 1;
+            covered += usize::from(error <= band.error.total[row] + 1e-12);
+            stated += band.error.total[row];
+            truth += error;
+        }
+        flagged = flagged.max(1.0 - f64::from(counted) / bounds.times.len() as f64);
+        let (share, ratio) = (covered as f64 / f64::from(counted.max(1)), stated / truth);
+        println!("{name}.{}: {:.1} % covered, {ratio:.2} times, {flagged} flagged", method.name(), 100.0 * share);
+        let what = format_args!("{name}.{} is covered at {share}, {ratio} times, {flagged} flagged", method.name());
+        findings.check(counted == 0 || share >= 0.99 && ratio <= most, what);
+    }
+    flagged
+}
+
+fn steps(summary: &Summary) -> usize {
+    summary.methods[0].steps
+}
+
+/// An oscillator of 2 kg and 50 N/m ± 2 %, at rest 0.03 m from its equilibrium, under a force.
+fn oscillator(force: &str, parameters: &str, simulation: &str) -> (Bounds, Summary) {
+    let text = format!(
+        "
+parameters: {{ k: {{ value: 50, unit: N/m, tolerance: 2% }}{parameters} }}
+bodies: {{ block: {{ mass: 2, coordinates: [x] }} }}
+effects: {{ push: {{ force: {{ on: block, value: [\"-k*block.x + {force}\", 0] }} }} }}
+initial: {{ block.x: 0.03, block.vx: 0 }}
+outputs: {{ x: block.x, v: block.vx }}
+simulation: {{ duration: 4, output_step: 0.08, {simulation} }}
+bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 25 }} }}
+"
+    );
+    run_methods(&read(&text), Some(vec![Method::Chebyshev, Method::Scan]))
+}
+
+/// Its free motion with ξ of the stiffness.
+fn free(xi: f64, t: f64) -> f64 {
+    0.03 * (frequency(xi) * t).cos()
+}
+
+fn frequency(xi: f64) -> f64 {
+    (25.0 * (1.0 + 0.02 * xi)).sqrt()
+}
+
+/// A blow of 0.4 N s within 45 µs, between two steps of 2 ms and of 1 ms.
+#[test]
+fn a_pulse_between_steps_is_found() {
+    let (centre, width) = (1.230_31, 1.5e-5);
+    let force = format!("0.4/({width}*sqrt({PI}))*exp(-((t - {centre})/{width})^2)");
+    let exact = |xi: f64, t: f64| {
+        let omega = frequency(xi);
+        let blow = if t > centre { 0.4 / (2.0 * omega) * (omega * (t - centre)).sin() } else { 0.0 };
+        free(xi, t) + blow
+    };
+    let mut findings = Findings::default();
+    for simulation in ["step: 2e-3", "tolerance: 1e-4", "step: 2e-2"] {
+        let (bounds, summary) = oscillator(&force, "", simulation);
+        println!("{simulation}: {} steps", steps(&summary));
+        let flagged = check(&mut findings, &bounds, "x", 40.0, exact);
+        findings.check(flagged == 0.0, format_args!("{simulation}: flagged"));
+    }
+    findings.none();
+}
+
+/// A rectangular pulse of 0.1 ms whose time is known to ± 3 ms: one jump up and one down between two steps.
+#[test]
+fn jumps_between_steps_are_found() {
+    let force = "2000*(sign(t - t0) - sign(t - t0 - 1e-4))";
+    let text = format!(
+        "
+parameters: {{ t0: {{ value: 1.5004, unit: s, tolerance: 3 ms }} }}
+bodies: {{ block: {{ mass: 2, coordinates: [x] }} }}
+effects: {{ push: {{ force: {{ on: block, value: [\"-50*block.x + {force}\", 0] }} }} }}
+initial: {{ block.x: 0.03, block.vx: 0 }}
+outputs: {{ x: block.x }}
+simulation: {{ duration: 4, output_step: 0.1, step: 2e-3 }}
+bounds: {{ scan: {{ points: 61 }} }}
+"
+    );
+    let (bounds, summary) = run_methods(&read(&text), Some(vec![Method::Scan]));
+    let exact = |xi: f64, t: f64| {
+        let start = 1.5004 + 3e-3 * xi;
+        let after = |t: f64| if t > 0.0 { 1.0 - (5.0 * t).cos() } else { 0.0 };
+        0.03 * (5.0 * t).cos() + 4000.0 / 50.0 * (after(t - start) - after(t - start - 1e-4))
+    };
+    let mut findings = Findings::default();
+    println!("{} steps", steps(&summary));
+    check(&mut findings, &bounds, "x", 40.0, exact);
+    findings.none();
+}
+
+/// Forces whose period is that of a step, and half of it; with the coordinate in the phase too.
+#[test]
+fn a_force_with_the_period_of_a_step_is_seen() {
+    let mut findings = Findings::default();
+    for (hertz, phase) in [(500.0, "0.4"), (1000.0, "1.1"), (1000.0, "1.1 + 1e-9*block.x")] {
+        let (bounds, _) = oscillator(&format!("0.7*cos({TAU}*{hertz}*t + {phase})"), "", "step: 2e-3");
+        let (fast, phase): (f64, f64) = (TAU * hertz, phase[..3].parse().unwrap());
+        let exact = |xi: f64, t: f64| {
+            let omega = frequency(xi);
+            let size = 0.35 / (omega * omega - fast * fast);
+            let (x, v) = (0.03 - size * phase.cos(), size * fast * phase.sin());
+            x * (omega * t).cos() + v / omega * (omega * t).sin() + size * (fast * t + phase).cos()
+        };
+        check(&mut findings, &bounds, "x", 40.0, exact);
+    }
+    findings.none();
+}
+
+/// A position that is prescribed with a fast ripple: its acceleration is what counts.
+#[test]
+fn a_ripple_of_a_prescribed_position_is_seen() {
+    let text = "
+parameters: { k: { value: 50, unit: N/m, tolerance: 2% } }
+bodies: { cart: { mass: 1, coordinates: [x] }, block: { mass: 2, coordinates: [x] } }
+joints: { drive: { equation: \"cart.x = 0.2*t + 1e-5*sin(6283.185307179586*t)\" } }
+effects: { spring: { force: { on: block, value: [\"-k*block.x\", 0] } } }
+initial: { block.x: 0.03, block.vx: 0 }
+outputs: { a: cart.ax + 0*block.x }
+simulation: { duration: 0.5, output_step: 0.0101, step: 0.0101 }
+bounds: { chebyshev: { order: 2 } }
+";
+    let (bounds, summary) = run_methods(&read(text), Some(vec![Method::Chebyshev]));
+    println!("{} steps", steps(&summary));
+    assert!(steps(&summary) > 1000);
+    drop(bounds);
+}
+
+/// Functions of the time that are smooth over a step leave the steps alone.
+#[test]
+fn smooth_forces_leave_the_steps_alone() {
+    for force in
+        ["0.7*cos(40*t)", "0.2*t^2 - 3*exp(-t)", "abs(sin(3*t))", "sign(t - 1.0003)", "2*sqrt(t)", "tanh(8*(t-2))"]
+    {
+        let (_, summary) = oscillator(force, "", "step: 2e-3");
+        assert_eq!(steps(&summary), 2000, "{force}");
+    }
+}
