@@ -1,7 +1,7 @@
 //! Every file of `models/` is one that a user can run.
 
-use mbint::model;
-use mbint::results::Method;
+use mbint::inner::model;
+use mbint::inner::results::Method;
 
 use crate::common::{load, load_all, model_files, run_methods};
 

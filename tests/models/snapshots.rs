@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use mbint::results::{Bounds, OutputBounds};
+use mbint::inner::results::{Bounds, OutputBounds};
 
 use crate::common::{load_all, model_files, run};
 

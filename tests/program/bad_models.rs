@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use mbint::{
+use mbint::inner::{
     model::{self, Override},
     syntax::Diagnostics,
 };

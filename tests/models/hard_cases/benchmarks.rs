@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::model::Description;
-use mbint::results::Bounds;
+use mbint::inner::model::Description;
+use mbint::inner::results::Bounds;
 
 use crate::common::{Findings, Vary, curve, largest, model, nominal, order, read, reference, row, run_methods};
 
