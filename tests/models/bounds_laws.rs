@@ -21,6 +21,7 @@ fn outside(output: &mbint::inner::results::OutputBounds, inner: Method, outer: M
 }
 
 #[test]
+#[ignore = "20 s: a scan of every model"]
 fn scans_lie_within_chebyshev_bounds() {
     // What a scan finds is really taken, but for the time steps' error.
     let mut findings = Findings::default();

@@ -91,6 +91,7 @@ fn no_width_gives_the_nominal_motion() {
 }
 
 #[test]
+#[ignore = "10 s: a box is halved again and again"]
 fn what_is_lost_is_unknown_and_said() {
     // A box in which cranks turn over and others do not: no polynomial follows.
     let (bounds, failure) =

@@ -201,6 +201,7 @@ fn instructions(description: &Description) -> (bool, usize) {
 }
 
 #[test]
+#[ignore = "10 s: chains of up to a hundred links"]
 fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_joint_ones() {
     for spatial in [false, true] {
         let [(_, short), (_, long)] = [20, 100].map(|links| instructions(&chain(links, spatial, "absolute")));
