@@ -45,9 +45,9 @@ pub struct Scene {
 #[error("there is no scene `{name}`: {help}")]
 pub struct UnknownScene {
     /// As it was asked for.
-    pub name: String,
+    name: String,
     /// What would be right.
-    pub help: String,
+    help: String,
 }
 
 impl Reading {

@@ -121,7 +121,7 @@ pub struct ErrorSummary {
 pub struct ContributionSummary {
     pub output: String,
     pub parameter: String,
-    pub main: f64,
+    main: f64,
     pub total: f64,
 }
 

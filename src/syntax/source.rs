@@ -16,7 +16,7 @@ pub struct Source {
     /// The text; empty where it could not be read.
     pub text: String,
     /// Offset of its first byte.
-    pub start: usize,
+    start: usize,
     /// Where its lines begin, counted from its own start.
     lines: Vec<usize>,
 }
