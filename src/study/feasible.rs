@@ -32,7 +32,7 @@ pub struct Survey {
     first: SimulationError,
     /// All that were tried, and those that cannot be.
     samples: usize,
-    #[allow(missing_docs)]
+    /// How many of them fail.
     failing: usize,
     /// Where these lie, parameter by parameter, where that says something.
     places: Vec<Place>,
@@ -40,8 +40,8 @@ pub struct Survey {
 
 /// Where samples fail along one parameter.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Place {
+    /// Name of the parameter.
     parameter: String,
     /// Least and largest value of samples that fail.
     lower: f64,

@@ -23,9 +23,10 @@ pub struct Source {
 
 /// A place as people count it, both from 1; columns are characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Place {
+    /// From 1.
     pub line: usize,
+    /// In characters, from 1.
     pub column: usize,
 }
 
