@@ -29,7 +29,7 @@ pub struct Summary {
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,
-    /// The integrator's α of HHT-I3; of another scheme the one it corresponds to.
+    /// The parameter α of HHT-I3.
     pub alpha: f64,
     /// Length of the run, s.
     pub duration: f64,
