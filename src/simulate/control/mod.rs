@@ -6,7 +6,6 @@ mod division;
 mod samples;
 mod schedule;
 
-pub use controller::Controller;
 pub use division::Divided;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};
 pub use schedule::Schedule;
