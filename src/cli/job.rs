@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::args::RunArgs;
 use super::console::Console;
-use super::overview::{excluded, unreliable};
+use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
 use super::{Failure, Status, interrupt};
 use crate::export::write_results;
@@ -111,6 +111,9 @@ pub(super) fn report(done: &Done, console: &Console) {
         return;
     }
     if let Some(message) = unreliable(&done.summary) {
+        console.warning(&format!("{name}: {message}"));
+    }
+    if let Some(message) = damped(&done.summary) {
         console.warning(&format!("{name}: {message}"));
     }
     if let Some(message) = excluded(&done.bounds, &done.summary) {

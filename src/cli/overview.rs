@@ -65,6 +65,16 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
     Some(format!("bounds of `{first}` are unreliable from {from} s{others}{more}: {help}"))
 }
 
+/// The mode that the steps damp.
+pub(super) fn damped(summary: &Summary) -> Option<String> {
+    let mode = summary.damped_mode.as_ref()?;
+    Some(format!(
+        "the steps damp a mode near {:.0} Hz that the start excites: shorten them to {:e} s, or accept that its amplitude counts as \
+         error",
+        mode.frequency, mode.step
+    ))
+}
+
 /// Singular configurations, and reactions that equilibrium does not determine.
 fn singular(summary: &Summary) -> String {
     const MOST: usize = 4;
@@ -189,6 +199,7 @@ mod tests {
             undetermined_outputs: vec![],
             singular_at_start: vec![],
             singular_configurations: vec![],
+            damped_mode: None,
             alpha: -0.1,
             duration: 2.0,
             parameters: vec![],

@@ -105,6 +105,7 @@ mod tests {
             undetermined_outputs: vec![],
             singular_at_start: vec![],
             singular_configurations: vec![],
+            damped_mode: None,
             alpha: -0.1,
             duration: 1.0,
             parameters: vec![],

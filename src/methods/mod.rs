@@ -25,7 +25,7 @@ pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult, Sensitivity};
 pub use scan::Scan;
 pub use taylor::Taylor;
-pub use validation::Validation;
+pub use validation::{Ensembles, Validation};
 
 registry::methods! {
     /// A Chebyshev polynomial in the parameters.

@@ -1,7 +1,9 @@
 //! Validation samples: held out from every surrogate, simulated with the steps as they are and some with each step halved.
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
-use crate::numerics::{BandError, Range, largest, probes, time_error, validation};
+use crate::numerics::{
+    BandError, Correction, Differences, Range, corrections, largest, probes, time_error, validation,
+};
 
 /// All values of a few samples in all rows.
 #[derive(Clone, Debug)]
@@ -73,6 +75,29 @@ impl ValidationTable {
     }
 }
 
+/// A few of the samples, simulated with steps that are no multiple of the others and shorter than halved ones.
+#[derive(Debug)]
+pub struct OddSteps {
+    /// Numbers of the samples.
+    places: Vec<usize>,
+    table: ValidationTable,
+    /// Length of these steps over that of the schedule's.
+    ratio: f64,
+}
+
+/// The validation samples of one box under one schedule, and the same with other steps.
+#[derive(Clone, Copy)]
+pub struct Ensembles<'e> {
+    /// With the schedule's steps.
+    pub direct: &'e dyn Ensemble,
+    /// With each step halved.
+    pub halved: &'e dyn Ensemble,
+    /// With steps at odds with both,
+    pub odd: &'e dyn Ensemble,
+    /// and their length over that of the schedule's.
+    pub ratio: f64,
+}
+
 /// The validation samples of one box under one schedule.
 #[derive(Debug)]
 pub struct Validation {
@@ -82,6 +107,8 @@ pub struct Validation {
     pub direct: ValidationTable,
     /// The first of them, with each step halved.
     pub halved: ValidationTable,
+    /// A few of those with steps at odds with both.
+    pub odd: OddSteps,
     /// Number of simulations.
     pub simulations: usize,
     /// What all of them took.
@@ -92,23 +119,44 @@ pub struct Validation {
     pub spans: Vec<f64>,
 }
 
+impl OddSteps {
+    /// Simulates the sample nearest to the middle of the box and two at opposite ends.
+    fn run(ensembles: Ensembles, points: &[Vec<f64>], finish: bool) -> Result<(Self, Effort), EnsembleError> {
+        let size = |place: &usize| points[*place].iter().map(|xi| xi.abs()).sum::<f64>();
+        let sum = |place: &usize| points[*place].iter().sum::<f64>();
+        let all = || 0..points.len();
+        let mut places: Vec<usize> = all().min_by(|a, b| size(a).total_cmp(&size(b))).into_iter().collect();
+        places.extend(all().min_by(|a, b| sum(a).total_cmp(&sum(b))));
+        places.extend(all().max_by(|a, b| sum(a).total_cmp(&sum(b))));
+        places.sort_unstable();
+        places.dedup();
+        let chosen: Vec<Vec<f64>> = places.iter().map(|&place| points[place].clone()).collect();
+        let samples = ensembles.direct.domain().points(&chosen);
+        let (table, simulated) = ValidationTable::of(ensembles.odd, &samples, Observed::Outputs, finish)?;
+        Ok((Self { places, table, ratio: ensembles.ratio }, simulated.effort))
+    }
+}
+
 impl Validation {
-    /// Simulates them; `halved` is the ensemble with each step halved.
+    /// Simulates them.
     ///
     /// # Errors
     /// Where one cannot be assembled.
-    pub fn run(ensemble: &dyn Ensemble, halved: &dyn Ensemble, observed: Observed) -> Result<Self, EnsembleError> {
+    pub fn run(ensembles: Ensembles, observed: Observed) -> Result<Self, EnsembleError> {
+        let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let domain = ensemble.domain();
         let points = validation(domain.dimension());
         let first = probes(domain.dimension()).len();
         let samples = domain.points(&points);
         let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
         let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;
+        let (odd, with_odd_steps) = OddSteps::run(ensembles, &points[..first], false)?;
         let mut effort = simulated.effort;
         effort += with_halved_steps.effort;
-        let simulations = points.len() + first;
+        effort += with_odd_steps;
+        let simulations = points.len() + first + odd.places.len();
         let spans = direct.spans(ensemble);
-        Ok(Self { points, direct, halved, simulations, effort, simulated, spans })
+        Ok(Self { points, direct, halved, odd, simulations, effort, simulated, spans })
     }
 
     /// Where nothing is uncertain: the nominal motion, of which so many rows are known, is the only sample, and is simulated with each
@@ -116,27 +164,47 @@ impl Validation {
     ///
     /// # Errors
     /// Where it cannot be assembled.
-    pub fn of_nominal(
-        ensemble: &dyn Ensemble,
-        halved: &dyn Ensemble,
-        (nominal, reached): (&[Vec<Range>], usize),
-    ) -> Result<Self, EnsembleError> {
+    pub fn of_nominal(ensembles: Ensembles, (nominal, reached): (&[Vec<Range>], usize)) -> Result<Self, EnsembleError> {
+        let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let points = validation(0);
         let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
         let values = (0..reached).flat_map(at).collect();
         let direct = ValidationTable { motions: 0, outputs: ensemble.outputs(), samples: points.len(), values };
         let samples = ensemble.domain().points(&points);
         let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;
-        let simulations = points.len();
+        let (odd, with_odd_steps) = OddSteps::run(ensembles, &points, true)?;
+        let simulations = points.len() + odd.places.len();
         let spans = direct.spans(ensemble);
-        let effort = simulated.effort;
-        Ok(Self { points, direct, halved, simulations, effort, simulated: Simulated::default(), spans })
+        let mut effort = simulated.effort;
+        effort += with_odd_steps;
+        Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })
+    }
+
+    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2.
+    pub fn corrections(&self, output: usize, rows: usize) -> Vec<Correction> {
+        let of_row = |row: usize| {
+            let (direct, halved) = (self.direct.at(row, output), self.halved.at(row, output));
+            let odd = self.odd.table.at(row, output);
+            let mut found = Differences::default();
+            for (&place, odd) in self.odd.places.iter().zip(odd) {
+                let (direct, halved) = (direct[place], halved[place]);
+                found.halved = largest([found.halved, halved - direct]);
+                found.finer = largest([found.finer, odd - halved]);
+                found.all = largest([found.all, odd - direct]);
+            }
+            found
+        };
+        corrections(&(0..rows).map(of_row).collect::<Vec<Differences>>(), self.odd.ratio)
     }
 
     /// The time steps' error of an output in each row, as if its range were that of the validation samples.
     pub fn time_error(&self, output: usize, rows: usize) -> Vec<f64> {
         let ranges: Vec<Range> = (0..rows).map(|row| Range::of(&self.direct.at(row, output))).collect();
-        let of_row = |row: usize| time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
+        let corrections = self.corrections(output, rows);
+        let of_row = |row: usize| {
+            let error = time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
+            corrections[row].of(error)
+        };
         let time: Vec<f64> = (0..rows).map(of_row).collect();
         BandError::new(&ranges, &vec![0.0; rows], &time, self.spans[output], None).total
     }

@@ -8,8 +8,9 @@
 //! values lie near it.
 //!
 //! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held up by
-//! its neighbours and by a share of the largest so far.
+//! its neighbours and by a share of the largest so far, and that of the steps by the peaks before and after it.
 
+use super::envelope::envelope;
 use super::range::Range;
 
 /// A probe whose value lies within this share of the band's width from its end carries that end.
@@ -84,7 +85,7 @@ impl BandError {
     /// longer follows the response.
     pub fn new(ranges: &[Range], surrogate: &[f64], time: &[f64], span: f64, tolerance: Option<f64>) -> Self {
         let surrogate = held_up(surrogate, SAFETY_OF_SURROGATE);
-        let time = held_up(time, SAFETY_OF_STEPS);
+        let time = held_up(&envelope(time), SAFETY_OF_STEPS);
         let total: Vec<f64> = surrogate.iter().zip(&time).map(|(surrogate, time)| surrogate + time).collect();
         let mut lost = false;
         let mut unresolved = Vec::with_capacity(total.len());

@@ -12,11 +12,13 @@
 mod bernstein;
 mod chebyshev;
 mod domain;
+mod envelope;
 mod error;
 #[cfg(test)]
 mod evaluation;
 mod extremes;
 mod leja;
+mod observed_order;
 mod peak;
 mod polynomial_range;
 mod range;
@@ -36,6 +38,7 @@ pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extremes::{Extent, extremes, extremes_near};
+pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};

@@ -29,6 +29,9 @@ pub struct Summary {
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,
+    /// A fast mode that the start excites and the steps damp, where that moves an output.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damped_mode: Option<DampedMode>,
     /// The parameter α of HHT-I3.
     pub alpha: f64,
     /// Length of the run, s.
@@ -74,6 +77,14 @@ pub struct SingularSummary {
     pub time: f64,
     /// Names of the constraints.
     pub constraints: Vec<String>,
+}
+
+/// A mode that the steps damp: its frequency, Hz, and steps that would not, s.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct DampedMode {
+    pub frequency: f64,
+    pub step: f64,
 }
 
 /// An uncertain parameter.

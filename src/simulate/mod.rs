@@ -8,6 +8,7 @@
 //! - `ensemble`: many samples, or one jet in the parameters, over a schedule;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
 //! - `closure`: the motion from independent coordinates, without integration;
+//! - `modes`: fast modes that the start excites and the steps damp;
 //! - `enclosure`: certified motions over a box of parameters.
 
 mod closure;
@@ -16,6 +17,7 @@ mod diagnostics;
 mod enclosure;
 mod ensemble;
 mod error;
+mod modes;
 mod simulator;
 mod start;
 mod step;
@@ -27,6 +29,7 @@ pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
 pub use error::SimulationError;
+pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::Simulator;
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;

@@ -4,14 +4,20 @@ use super::single::{Outcome, Ran, Results, Study};
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::{BandError, time_error, time_error_certified};
 use crate::results::{
-    Band, Bounds, Contribution, ContributionSummary, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
-    SingularSummary, Summary,
+    Band, Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds,
+    ParameterSummary, SingularSummary, Summary,
 };
-use crate::simulate::{OpenConstraint, SimulationError};
+use crate::simulate::{ExcitedMode, OpenConstraint, SimulationError};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
     "interrupted: methods that were done are kept, of the one that was not what it had found of every sample";
+
+/// A mode is reported that moves an output by more than this share of its range.
+const WORTH_TELLING: f64 = 1e-3;
+
+/// A step resolves a mode that turns by this angle, rad, in it.
+const RESOLVING: f64 = 0.1;
 
 impl Study<'_> {
     /// Bounds up to the last row of which something is known, and the summary.
@@ -68,18 +74,22 @@ fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contr
 /// An output's band by every method, with its error.
 fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
+    let corrections = validation.corrections(output, rows);
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let ranges = &outcome.result.bands[output][..rows];
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
-        let time: Vec<f64> = (0..rows)
-            .map(|row| match halved {
-                Some(halved) => time_error_certified(ranges[row], halved[row]),
-                // Either is enough: what the validation samples near the ends show, and what the coordinates' errors do to the ends,
-                // which is nothing where a range is saturated. (`min` passes over NaN.)
-                None => time_error(ranges[row], &validation.direct.at(row, output), &validation.halved.at(row, output))
-                    .min(outcome.result.steps[output][row]),
-            })
-            .collect();
+        let by_halving = |row: usize| match halved {
+            Some(halved) => time_error_certified(ranges[row], halved[row]),
+            // Either is enough: what the validation samples near the ends show, and what the coordinates' errors do to the ends,
+            // which is nothing where a range is saturated. (`min` passes over NaN.)
+            None => time_error(ranges[row], &validation.direct.at(row, output), &validation.halved.at(row, output))
+                .min(outcome.result.steps[output][row]),
+        };
+        // What halved steps have damped away too is added.
+        let damped = |row: usize| -> f64 {
+            results.damped.iter().map(|mode| mode.lost(output, results.schedule.time(row))).sum()
+        };
+        let time: Vec<f64> = (0..rows).map(|row| corrections[row].of(by_halving(row)) + damped(row)).collect();
         let surrogate = &outcome.result.surrogate[output][..rows];
         let mut error = BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance);
         if let Some(unresolved) = results.unresolved_from.and_then(|row| error.unresolved.get_mut(row..)) {
@@ -117,10 +127,27 @@ fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
     }
 }
 
+/// The mode whose damping by the steps moves an output most.
+fn damped_mode(results: &Results, bounds: &Bounds) -> Option<DampedMode> {
+    let (validation, _) = results.validation.as_ref()?;
+    let end = bounds.times.last().copied()?;
+    let moved = |mode: &ExcitedMode| {
+        let share = |output: usize| mode.lost(output, end) / validation.spans[output];
+        (0..bounds.outputs.len()).map(share).filter(|share| share.is_finite()).fold(0.0, f64::max)
+    };
+    let worst = results.damped.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))?;
+    (moved(worst) > WORTH_TELLING).then(|| {
+        let step = RESOLVING / worst.frequency;
+        let digit = 10.0_f64.powf(step.log10().floor());
+        DampedMode { frequency: worst.frequency / std::f64::consts::TAU, step: (step / digit).floor() * digit }
+    })
+}
+
 fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
     let system = &study.simulator.system;
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
+    let damped_mode = damped_mode(&results, bounds);
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -133,6 +160,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         singular_at_start: names(&mobility.singular_at_start),
         singular_configurations: singular.collect(),
+        damped_mode,
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         parameters: system

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::ensemble::Progress;
 use super::single::{Outcome, Results, Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
-use crate::methods::{Method, MethodResult, Simulated, Validation};
+use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
 use crate::simulate::{Divided, Schedule, SimulationError};
 
@@ -21,12 +21,13 @@ impl Study<'_> {
         let mut steps = StepSearch::new(schedule);
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
-            let halved = schedule.refined(2);
+            let (halved, odd) = (schedule.refined(2), schedule.at_odds());
             let motions = self.motions(&schedule, tolerance, &progress);
             let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
             let mut results = Results {
                 schedule: schedule.clone(),
                 unresolved_from,
+                damped: self.damped_modes(&schedule),
                 nominal,
                 singular,
                 validation: None,
@@ -38,9 +39,11 @@ impl Study<'_> {
             }
             let begun = Instant::now();
             let nominal = &results.nominal.result;
-            let finer = self.motions(&halved, None, &progress);
-            let validation = Validation::of_nominal(&motions, &finer, (&nominal.bands, nominal.reached))
-                .map_err(simulation_error)?;
+            let [finer, at_odds] = [&halved, &odd].map(|schedule| self.motions(schedule, None, &progress));
+            let ratio = schedule.ratio_to(&odd);
+            let ensembles = Ensembles { direct: &motions, halved: &finer, odd: &at_odds, ratio };
+            let validation =
+                Validation::of_nominal(ensembles, (&nominal.bands, nominal.reached)).map_err(simulation_error)?;
             if let Some(allowed) = self.request.tolerance
                 && steps.adjust(validation.worst_share(allowed, schedule.rows))
             {

@@ -17,6 +17,7 @@ mod feasible;
 mod formulation;
 mod single;
 mod step_search;
+mod steps;
 mod subsystems;
 
 use crate::assemble::BuildError;

@@ -11,7 +11,7 @@ use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, corners, probes, validation};
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{
-    Divided, Schedule, SimulationError, Simulator, SingularPass, TimeFunctions, ToleranceSchedule,
+    Divided, ExcitedMode, Schedule, SimulationError, Simulator, SingularPass, TimeFunctions, ToleranceSchedule,
     schedule_for_tolerance,
 };
 
@@ -28,7 +28,7 @@ pub(super) struct Study<'a> {
     pub(super) domain: ParameterBox,
     pub(super) request: BoundsRequest,
     /// Functions of the time in the equations of motion, where there are any.
-    time_functions: Option<TimeFunctions>,
+    pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
     certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
@@ -47,6 +47,8 @@ pub(super) struct Results {
     pub schedule: Schedule,
     /// The first row before which a step does not resolve a function of the time.
     pub unresolved_from: Option<usize>,
+    /// Fast modes that the start excites and the steps damp.
+    pub damped: Vec<ExcitedMode>,
     pub nominal: Outcome,
     /// Singular configurations that the nominal motion passes.
     pub singular: Vec<SingularPass>,
@@ -149,14 +151,6 @@ impl<'a> Study<'a> {
         Schedule::rows_of(self.description.simulation.duration, self.description.simulation.output_step)
     }
 
-    /// A schedule with those steps divided that do not resolve a function of the time.
-    pub(super) fn divided(&self, schedule: Schedule) -> Divided {
-        match &self.time_functions {
-            Some(functions) => functions.divided(&schedule),
-            None => Divided { schedule, unresolved_from: None },
-        }
-    }
-
     /// The motions under a schedule.
     pub(super) fn motions<'s>(
         &'s self,
@@ -174,10 +168,8 @@ impl<'a> Study<'a> {
         match simulation.stepping {
             Stepping::Fixed(step) => {
                 let Divided { schedule, .. } = self.divided(Schedule::fixed(duration, step, output_step));
-                let halved = schedule.refined(2);
                 let progress = Progress::new(usize::MAX, self.progress);
-                let [direct, halved] = [&schedule, &halved].map(|schedule| self.motions(schedule, None, &progress));
-                let validation = Validation::run(&direct, &halved, Observed::Outputs).map_err(simulation_error)?;
+                let validation = self.validation(&schedule, None, Observed::Outputs, &progress)?;
                 let Validation { points, simulated, .. } = validation;
                 Ok(Tried {
                     reached: simulated.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
@@ -273,7 +265,8 @@ impl<'a> Study<'a> {
             }
         }
         drop(motions);
-        Ok(Results { schedule, unresolved_from, nominal, singular, validation, methods, halved })
+        let damped = self.damped_modes(&schedule);
+        Ok(Results { schedule, unresolved_from, damped, nominal, singular, validation, methods, halved })
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
@@ -291,17 +284,13 @@ impl<'a> Study<'a> {
         loop {
             let begun = std::time::Instant::now();
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
-            let halved = schedule.refined(2);
-            let direct = self.motions(&schedule, tolerance, progress);
-            let halved = self.motions(&halved, None, progress);
-            let validation = Validation::run(&direct, &halved, observed).map_err(simulation_error)?;
+            let validation = self.validation(&schedule, tolerance, observed, progress)?;
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
             let summary = validation_summary(&schedule, &validation, stop, begun);
             let enough = match self.request.tolerance {
                 Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
                 None => true,
             };
-            drop((direct, halved));
             if enough {
                 return Ok((Divided { schedule, unresolved_from }, (validation, summary)));
             }

@@ -3,9 +3,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use mbint::methods::Method;
-use mbint::results::{Bounds, Summary};
+use mbint::inner::methods::Method;
+use mbint::inner::results::{Bounds, Summary};
 
+use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Findings, band, output, read, run_methods};
 
 /// Bounds of an output against the range of its closed form (of a parameter in [−1, 1] and the time): at 99 % of the rows that are not
@@ -161,4 +162,97 @@ fn smooth_forces_leave_the_steps_alone() {
         let (_, summary) = oscillator(force, "", "step: 2e-3");
         assert_eq!(steps(&summary), 2000, "{force}");
     }
+}
+
+/// Two carts on springs in proportion to their masses, κ = 9 1/s² ± 2 %, with a stiff spring between them: they swing together slowly, and
+/// against each other at 116 Hz, which steps of 5 ms and of 2.5 ms damp within the first rows alike.
+#[test]
+fn a_mode_that_the_steps_damp_counts_as_error() {
+    let mut findings = Findings::default();
+    for (stretch, rate) in [(0.004, 0.0), (0.0, 3.0)] {
+        let text = format!(
+            "
+parameters: {{ kappa: {{ value: 9, unit: N/m, tolerance: 2% }} }}
+bodies: {{ one: {{ mass: 1, coordinates: [x] }}, two: {{ mass: 3, coordinates: [x] }} }}
+effects:
+  first: {{ force: {{ on: one, value: [\"-kappa*one.x - 4e5*(one.x - two.x)\", 0] }} }}
+  second: {{ force: {{ on: two, value: [\"-3*kappa*two.x + 4e5*(one.x - two.x)\", 0] }} }}
+initial: {{ one.x: {}, two.x: {}, one.vx: {}, two.vx: {} }}
+outputs: {{ x: one.x, v: one.vx, both: 0.25*one.x + 0.75*two.x }}
+simulation: {{ duration: 6, step: 5e-3, output_step: 0.1 }}
+bounds: {{ chebyshev: {{ order: 6 }}, scan: {{ points: 25 }} }}
+",
+            0.1 + 0.75 * stretch,
+            0.1 - 0.25 * stretch,
+            0.75 * rate,
+            -0.25 * rate
+        );
+        let (bounds, summary) = run_methods(&read(&text), Some(vec![Method::Chebyshev, Method::Scan]));
+        let slow = |xi: f64| (9.0 * (1.0 + 0.02 * xi)).sqrt();
+        let fast = |xi: f64| (9.0 * (1.0 + 0.02 * xi) + 4e5 * (4.0 / 3.0)).sqrt();
+        let both = |xi: f64, t: f64| 0.1 * (slow(xi) * t).cos();
+        let x = |xi: f64, t: f64| {
+            let omega = fast(xi);
+            both(xi, t) + 0.75 * (stretch * (omega * t).cos() + rate / omega * (omega * t).sin())
+        };
+        let v = |xi: f64, t: f64| {
+            let omega = fast(xi);
+            let swing = rate * (omega * t).cos() - stretch * omega * (omega * t).sin();
+            0.75 * swing - 0.1 * slow(xi) * (slow(xi) * t).sin()
+        };
+        let flagged = check(&mut findings, &bounds, "x", 10.0, x);
+        findings.check(flagged == 0.0, "x is flagged");
+        check(&mut findings, &bounds, "v", 10.0, v);
+        // What the mode does not move has no part of it.
+        let flagged = check(&mut findings, &bounds, "both", 10.0, both);
+        findings.check(flagged == 0.0, "both is flagged");
+        let found = summary.damped_mode.expect("the mode is reported");
+        findings.check((found.frequency - 116.2).abs() < 0.5, format_args!("{found:?}"));
+    }
+    findings.none();
+}
+
+/// A heavy top about a fixed point, at steps that are long for its spin: what halving changes is zero now and then, where the error is
+/// not.
+#[test]
+fn errors_of_a_fast_top_are_honest() {
+    let (height, moment, spin_moment, weight): (f64, f64, f64, f64) =
+        (0.12, 0.012 + 0.8 * 0.12 * 0.12, 0.0012, 0.8 * 9.81);
+    let text = "
+parameters: { w3: { value: 90, unit: rad/s, tolerance: 1% } }
+bodies: { top: { mass: 0.8, inertia: [0.012, 0.012, 0.0012], points: { o: [0, 0, -0.12] } } }
+joints: { s: { spherical: [ground, top.o] } }
+effects: { w: { gravity: { acceleration: [0, 0, -9.81] } } }
+initial: { top.orientation: { axis: x, angle: 0.6 }, top.omega: [0, \"w3*sin(0.6)*(-1)\", \"w3*cos(0.6)\"] }
+outputs: { x: top.x, y: top.y, z: top.z }
+simulation: { duration: 2, step: 1e-3, output_step: 0.02 }
+bounds: { taylor: { order: 3 }, scan: { points: 15 } }
+";
+    let (bounds, _) = run_methods(&read(text), None);
+    let rows = bounds.times.len();
+    let axis = [0.0, -(0.6_f64.sin()), 0.6_f64.cos()];
+    // The axis n and the angular momentum L about the point: ṅ = (L − (L·n) n)/A × n, L̇ = n × weight.
+    let curves: Vec<Vec<[f64; 6]>> = (0..=100)
+        .map(|sample| {
+            let spin = 90.0 * (1.0 + 0.01 * (f64::from(sample) / 50.0 - 1.0));
+            let start: [f64; 6] = std::array::from_fn(|i| {
+                // The rotation is about the axis alone.
+                if i < 3 { axis[i] } else { spin_moment * spin * axis[i - 3] }
+            });
+            let motion = |[a, b, c, p, q, r]: [f64; 6]| {
+                let along = p * a + q * b + r * c;
+                let [u, v, w] = [(p - along * a) / moment, (q - along * b) / moment, (r - along * c) / moment];
+                let torque = height * weight;
+                [v * c - w * b, w * a - u * c, u * b - v * a, -torque * b, torque * a, 0.0]
+            };
+            runge_kutta(motion, start, 0.02, rows, 200)
+        })
+        .collect();
+    let mut findings = Findings::default();
+    for (place, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let row = |t: f64| (t / 0.02).round() as usize;
+        let nearest = |xi: f64| (50.0 * (xi + 1.0)).round() as usize;
+        check(&mut findings, &bounds, name, 10.0, |xi, t| height * curves[nearest(xi)][row(t)][place]);
+    }
+    findings.none();
 }

@@ -18,6 +18,13 @@ enum Steps {
     Listed(Vec<Vec<f64>>),
 }
 
+/// Steps for each of those that they are at odds with.
+const FINER: f64 = 2.7;
+
+fn are_coprime(a: usize, b: usize) -> bool {
+    if b == 0 { a == 1 } else { are_coprime(b, a % b) }
+}
+
 /// Rows that fit into a duration (with the slack of rounded decimals).
 fn rows(duration: f64, output_step: f64) -> usize {
     (duration / output_step * (1.0 + 1e-12) + 1e-9).floor() as usize + 1
@@ -52,6 +59,47 @@ impl Schedule {
             }
         };
         Self { steps, ..*self }
+    }
+
+    /// The same rows with between two and three steps for each, none of which ends where a step or half a step does but at the rows.
+    #[must_use]
+    pub fn at_odds(&self) -> Self {
+        let others = |count: usize| {
+            let least = (FINER * count as f64).round() as usize;
+            (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
+        };
+        let Steps::Listed(ends) = &self.steps else {
+            return self.with_steps_per_row(others(self.steps_per_row().unwrap_or(1)));
+        };
+        let of_row = |row: usize| {
+            let mut times = vec![self.time(row - 1)];
+            times.extend(&ends[row - 1]);
+            let (count, others) = (times.len() - 1, others(times.len() - 1));
+            let end = |other: usize| {
+                let (whole, part) = (other * count / others, other * count % others);
+                match part {
+                    0 => times[whole],
+                    _ => times[whole] + (times[whole + 1] - times[whole]) * part as f64 / others as f64,
+                }
+            };
+            (1..=others).map(end).collect()
+        };
+        Self { steps: Steps::Listed((1..=ends.len()).map(of_row).collect()), ..*self }
+    }
+
+    /// Length of other steps over that of these, on average.
+    pub fn ratio_to(&self, other: &Self) -> f64 {
+        let [these, others] =
+            [self, other].map(|schedule| schedule.steps_before(schedule.rows.saturating_sub(1)) as f64);
+        if others > 0.0 { these / others } else { 1.0 / FINER }
+    }
+
+    /// The longest of the steps, s.
+    pub fn longest_step(&self) -> f64 {
+        match self.steps {
+            Steps::Fixed { step, .. } => step,
+            Steps::Listed(_) => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
+        }
     }
 
     /// Number of steps between rows, if all steps have one length.
@@ -130,6 +178,23 @@ mod tests {
         let schedule = Schedule::listed(0.1, vec![vec![0.05, 0.1], vec![0.2]]);
         let steps: Vec<(f64, f64)> = schedule.steps_to(1).chain(schedule.steps_to(2)).collect();
         assert_eq!(steps, [(0.05, 0.05), (0.05, 0.1), (0.1, 0.2)]);
+    }
+
+    #[test]
+    fn steps_at_odds_meet_the_rows_alone() {
+        for per_row in 1..40 {
+            let schedule = Schedule::fixed(1.0, 1.0 / per_row as f64, 1.0);
+            let listed = Schedule::listed(1.0, vec![schedule.steps_to(1).map(|(_, end)| end).collect()]);
+            for schedule in [schedule, listed] {
+                let ends: Vec<f64> = schedule.refined(2).steps_to(1).map(|(_, end)| end).collect();
+                let others: Vec<f64> = schedule.at_odds().steps_to(1).map(|(_, end)| end).collect();
+                let finer = others.len() as f64 / per_row as f64;
+                assert!((2.2..4.0).contains(&finer), "{per_row}: {finer}");
+                let meets = |end: &&f64| others.iter().any(|other| (*end - other).abs() < 1e-9);
+                assert_eq!(ends.iter().filter(meets).count(), 1, "{per_row}");
+                assert!((others[others.len() - 1] - 1.0).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

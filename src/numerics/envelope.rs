@@ -1,0 +1,76 @@
+//! What an error that changes its sign now and then says of the time between: the line through its peaks.
+
+/// Estimates of an error, in the order of time, none below the line from the peak before it to the one after it.
+///
+/// An estimate by halved steps is zero where both curves cross, where the error need not be. Between peaks the line is geometric, so
+/// that an error which grows or decays over decades is not taken for the larger of its ends. After the last peak it is held
+/// for as long as the last two are apart.
+pub fn envelope(estimates: &[f64]) -> Vec<f64> {
+    let at = |row: usize| estimates[row];
+    let is_peak = |row: &usize| {
+        let before = row.checked_sub(1).map_or(0.0, at);
+        let after = estimates.get(row + 1).copied().unwrap_or(0.0);
+        at(*row) > 0.0 && at(*row) >= before && at(*row) >= after
+    };
+    let mut peaks = (0..estimates.len()).filter(is_peak).collect::<Vec<usize>>();
+    // The end of a rise that goes on is none.
+    if peaks.len() > 1 && peaks.last() == Some(&(estimates.len() - 1)) {
+        let last = estimates.len() - 1;
+        if peaks[peaks.len() - 2] + 1 < last && at(last) > at(peaks[peaks.len() - 2]) {
+            peaks.pop();
+        }
+    }
+    let mut held = estimates.to_vec();
+    for pair in peaks.windows(2) {
+        let (first, last) = (pair[0], pair[1]);
+        let (from, to) = (at(first).ln(), at(last).ln());
+        for row in first + 1..last {
+            let share = (row - first) as f64 / (last - first) as f64;
+            let line = (from + share * (to - from)).exp();
+            // `max` would pass over NaN.
+            held[row] = if held[row] < line { line } else { held[row] };
+        }
+    }
+    if let [.., before, last] = peaks[..] {
+        let until = (2 * last - before + 1).min(estimates.len());
+        held[last..until].iter_mut().for_each(|value| *value = if *value < at(last) { at(last) } else { *value });
+    }
+    held
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wave_is_held_at_its_peaks() {
+        let wave: Vec<f64> = (0..200).map(|row| (0.1 * f64::from(row)).sin().abs()).collect();
+        let held = envelope(&wave);
+        assert!(held[16..].iter().all(|value| *value > 0.99), "{held:?}");
+        assert!(held.iter().zip(&wave).all(|(held, wave)| held >= wave));
+    }
+
+    #[test]
+    fn growth_and_decay_stay_as_they_are() {
+        let growing: Vec<f64> = (0..100).map(|row| 1e-9 * (0.2 * f64::from(row)).exp()).collect();
+        assert_eq!(envelope(&growing), growing);
+        let decaying: Vec<f64> = growing.iter().rev().copied().collect();
+        assert_eq!(envelope(&decaying), decaying);
+        // A wave that grows by decades is held on its own line.
+        let wave: Vec<f64> =
+            (0..300).map(|row| (0.05 * f64::from(row)).exp() * (0.3 * f64::from(row)).sin().abs()).collect();
+        let held = envelope(&wave);
+        assert!(
+            (20..280)
+                .all(|row| held[row] < 2.0 * (0.05 * row as f64).exp() && held[row] > 0.5 * (0.05 * row as f64).exp())
+        );
+    }
+
+    #[test]
+    fn what_is_unknown_stays_unknown() {
+        let held = envelope(&[0.0, 1.0, f64::NAN, 1.0, 0.5, 1.0]);
+        assert!(held[2].is_nan());
+        assert_eq!(envelope(&[0.0; 4]), [0.0; 4]);
+        assert_eq!(envelope(&[]), Vec::<f64>::new());
+    }
+}

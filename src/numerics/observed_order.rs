@@ -1,0 +1,116 @@
+//! The order at which three steps of different length agree: what the error by halving is worth.
+//!
+//! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near 2, the error is not
+//! what a second-order scheme's would be: steps are too long for what they resolve, or the motion is not smooth.
+
+use super::envelope::envelope;
+
+/// Orders below this are not that of the scheme.
+const LEAST_ORDER: f64 = 1.5;
+
+/// Below this order nothing converges, and the difference of two steps tells nothing of their error.
+const NO_ORDER: f64 = 0.25;
+
+/// Where the order is not that of the scheme, the largest difference counts so many times.
+const OF_DIFFERENCES: f64 = 1.5;
+
+/// Differences of an output at some samples in one row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Differences {
+    /// Between steps h and h/2.
+    pub halved: f64,
+    /// Between steps h/2 and r h.
+    pub finer: f64,
+    /// Between steps h and r h.
+    pub all: f64,
+}
+
+/// What a row's error by halving, for order 2, is to be corrected by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Correction {
+    /// It is multiplied by this, 1 or more,
+    pub factor: f64,
+    /// and is at least this.
+    pub least: f64,
+}
+
+impl Correction {
+    /// None.
+    pub const NONE: Self = Self { factor: 1.0, least: 0.0 };
+
+    /// The corrected error.
+    pub fn of(self, error: f64) -> f64 {
+        let scaled = self.factor * error;
+        if scaled < self.least { self.least } else { scaled }
+    }
+}
+
+/// Corrections of every row from the differences in all of them; `ratio` is r < 1/2.
+pub fn corrections(rows: &[Differences], ratio: f64) -> Vec<Correction> {
+    let pick = |pick: fn(&Differences) -> f64| envelope(&rows.iter().map(pick).collect::<Vec<f64>>());
+    let (halved, finer, all) = (pick(|row| row.halved), pick(|row| row.finer), pick(|row| row.all));
+    let of_row = |row: usize| {
+        let order = order(finer[row] / halved[row], ratio);
+        // Written so that what is unknown needs none.
+        if !(order < LEAST_ORDER) {
+            return Correction::NONE;
+        }
+        let factor = (1.0 - 0.25) / (1.0 - 0.5_f64.powf(order.max(NO_ORDER)));
+        Correction { factor, least: OF_DIFFERENCES * halved[row].max(finer[row]).max(all[row]) }
+    };
+    (0..rows.len()).map(of_row).collect()
+}
+
+/// The order q at which (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ) is `found`, which falls with q; between 0 and 8, NaN where it is not known.
+fn order(found: f64, ratio: f64) -> f64 {
+    if found.is_nan() {
+        return f64::NAN;
+    }
+    let of = |q: f64| (0.5_f64.powf(q) - ratio.powf(q)) / (1.0 - 0.5_f64.powf(q));
+    let (mut low, mut high) = (1e-3, 8.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if of(middle) > found {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn differences(q: f64, ratio: f64) -> Vec<Differences> {
+        let (coarse, half, fine) = (1.0, 0.5_f64.powf(q), ratio.powf(q));
+        vec![Differences { halved: coarse - half, finer: half - fine, all: coarse - fine }; 3]
+    }
+
+    #[test]
+    fn the_order_is_found() {
+        for q in [0.5, 1.0, 1.9, 3.0] {
+            let row = differences(q, 0.37)[0];
+            assert!((order(row.finer / row.halved, 0.37) - q).abs() < 1e-6);
+        }
+        assert!(order(f64::NAN, 0.37).is_nan());
+    }
+
+    #[test]
+    fn a_lower_order_makes_the_error_larger() {
+        assert_eq!(corrections(&differences(2.0, 0.37), 0.37), [Correction::NONE; 3]);
+        let [first, ..] = corrections(&differences(1.0, 0.37), 0.37)[..] else { unreachable!() };
+        // The error is 1, halving changes 0.5, and 4/3 of that is 2/3.
+        assert!((first.of(2.0 / 3.0) - 1.0).abs() < 1e-6, "{first:?}");
+        // No convergence at all.
+        let stuck = Differences { halved: 1e-6, finer: 0.3, all: 0.3 };
+        assert_eq!(corrections(&[stuck; 2], 0.37)[0].of(1e-6), OF_DIFFERENCES * 0.3);
+    }
+
+    #[test]
+    fn what_is_unknown_or_exact_needs_none() {
+        let unknown = Differences { halved: f64::NAN, ..Differences::default() };
+        assert_eq!(corrections(&[unknown, Differences::default()], 0.37), [Correction::NONE; 2]);
+    }
+}

@@ -1,0 +1,235 @@
+//! Fast modes that the start excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
+//! halving the steps does not show what they swallow.
+//!
+//! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
+//! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): what is slow has hardly any part in φᵀMw/ω².
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use symdiff::{Expr, Graph};
+
+use super::simulator::Simulator;
+use crate::compile::Coefficients;
+
+/// Largest mechanism whose modes are looked at, in coordinates.
+const MOST_COORDINATES: usize = 120;
+
+/// Modes are looked at whose frequency is above this over the step.
+const SLOWEST: f64 = 0.05;
+
+/// Eigenvalues of Φ_qᵀ Φ_q below this share of the largest belong to motions that the constraints allow.
+const ALLOWED: f64 = 1e-12;
+
+/// Steps over which the decay of a mode's amplitude is measured, after as many.
+const DECAY_STEPS: i32 = 64;
+
+/// A mode that the start excites.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExcitedMode {
+    /// ω, rad/s.
+    pub frequency: f64,
+    /// Its own decay, 1/s.
+    pub decay: f64,
+    /// Its decay by the scheme with halved steps, 1/s.
+    pub swallowed: f64,
+    /// Its amplitude in each output, in the output's unit.
+    pub amplitudes: Vec<f64>,
+}
+
+impl ExcitedMode {
+    /// What halved steps have swallowed of its amplitude in an output up to a time, of what is there.
+    pub fn lost(&self, output: usize, time: f64) -> f64 {
+        let left = (-self.decay * time).exp();
+        self.amplitudes[output] * left * -(-self.swallowed * time).exp_m1()
+    }
+}
+
+/// The modes of a mechanism at its nominal start that steps of length h damp, the fastest last.
+pub fn excited_modes(simulator: &Simulator, h: f64) -> Vec<ExcitedMode> {
+    let n = simulator.system.q.len();
+    if n > MOST_COORDINATES {
+        return Vec::new();
+    }
+    let linear = Linearised::at_start(simulator);
+    linear.modes(simulator, h).unwrap_or_default()
+}
+
+/// The equations about the nominal start.
+struct Linearised {
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    /// Φ_q.
+    constraint: DMatrix<f64>,
+    velocity: DVector<f64>,
+    acceleration: DVector<f64>,
+    /// Derivatives of the outputs by q, v, w and λ.
+    outputs: [DMatrix<f64>; 4],
+}
+
+impl Linearised {
+    fn at_start(simulator: &Simulator) -> Self {
+        let (system, layout) = (&simulator.system, &simulator.program.layout);
+        let mut graph = system.graph.clone();
+        let constraint = jacobian(&mut graph, &system.constraint, &system.q);
+        let mut motion: Vec<Expr> = Vec::with_capacity(system.q.len());
+        for (&inertia, &force) in system.inertia.iter().zip(&system.force) {
+            motion.push(graph.sub(inertia, force));
+        }
+        for &(row, column, value) in &constraint {
+            let force = graph.mul(value, system.lambda[row]);
+            motion[column] = graph.add(motion[column], force);
+        }
+        let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
+        let by = [&system.q, &system.v, &system.w, &system.lambda];
+        let [stiffness, damping, mass] = [0, 1, 2].map(|place| jacobian(&mut graph, &motion, by[place]));
+        let of_outputs = by.map(|by| jacobian(&mut graph, &outputs, by));
+        let registers =
+            [(&system.q, &layout.q), (&system.v, &layout.v), (&system.w, &layout.w), (&system.lambda, &layout.lambda)];
+        let mut values = rustc_hash::FxHashMap::default();
+        for (symbols, registers) in registers {
+            values.extend(symbols.iter().copied().zip(registers.clone().map(|register| simulator.nominal[register])));
+        }
+        for parameter in &system.parameters {
+            values.insert(parameter.symbol, parameter.nominal);
+        }
+        // The time is zero.
+        let number = |expr: Expr| values.get(&expr).copied().unwrap_or(0.0);
+        let dense = |entries: &[(usize, usize, Expr)], rows: usize, columns: usize| {
+            let roots: Vec<Expr> = entries.iter().map(|&(_, _, value)| value).collect();
+            let mut matrix = DMatrix::zeros(rows, columns);
+            for (&(row, column, _), value) in entries.iter().zip(graph.evaluate(&roots, number)) {
+                matrix[(row, column)] += value;
+            }
+            matrix
+        };
+        let (n, m) = (system.q.len(), system.lambda.len());
+        let vector =
+            |registers: &std::ops::Range<usize>| DVector::from_column_slice(&simulator.nominal[registers.clone()]);
+        let columns = [n, n, n, m];
+        Self {
+            mass: dense(&mass, n, n),
+            damping: dense(&damping, n, n),
+            stiffness: dense(&stiffness, n, n),
+            constraint: dense(&constraint, m, n),
+            velocity: vector(&layout.v),
+            acceleration: vector(&layout.w),
+            outputs: [0, 1, 2, 3].map(|place| dense(&of_outputs[place], outputs.len(), columns[place])),
+        }
+    }
+
+    /// `None` where M is not positive on the motions that the constraints allow.
+    fn modes(&self, simulator: &Simulator, h: f64) -> Option<Vec<ExcitedMode>> {
+        let allowed = self.allowed_motions()?;
+        let on_allowed = |matrix: &DMatrix<f64>| allowed.transpose() * matrix * &allowed;
+        let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
+        let root = symmetric(on_allowed(&self.mass)).cholesky()?;
+        let half = root.l().solve_lower_triangular(&symmetric(on_allowed(&self.stiffness)))?;
+        let scaled = symmetric(root.l().solve_lower_triangular(&half.transpose())?);
+        if scaled.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let eigen = SymmetricEigen::new(scaled);
+        let shapes = &allowed * root.l().transpose().solve_upper_triangular(&eigen.eigenvectors)?;
+        let mut modes = Vec::new();
+        for (place, &square) in eigen.eigenvalues.iter().enumerate() {
+            if square.sqrt() * h > SLOWEST {
+                let shape = shapes.column(place).into_owned();
+                modes.push(self.mode(&shape, square.sqrt(), h, simulator.program.coefficients));
+            }
+        }
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        Some(modes)
+    }
+
+    fn mode(&self, shape: &DVector<f64>, omega: f64, h: f64, coefficients: Coefficients) -> ExcitedMode {
+        let weighted = &self.mass * shape;
+        let by_acceleration = weighted.dot(&self.acceleration) / (omega * omega);
+        let amplitude = by_acceleration.hypot(weighted.dot(&self.velocity) / omega);
+        // The constraints' forces hold the rest of (K − ω² M) φ.
+        let rest = (&self.stiffness * shape - &weighted * (omega * omega)) * -1.0;
+        let reactions = match self.constraint.nrows() {
+            0 => DVector::zeros(0),
+            m => self.constraint.transpose().svd(true, true).solve(&rest, 1e-12).unwrap_or_else(|_| DVector::zeros(m)),
+        };
+        let [by_q, by_v, by_w, by_lambda] = &self.outputs;
+        let parts = [by_q * shape, by_v * shape * omega, by_w * shape * (omega * omega), by_lambda * reactions];
+        // Displacements, accelerations and reactions are in phase, velocities a quarter behind.
+        let in_phase = &parts[0] - &parts[2] + &parts[3];
+        let amplitudes = in_phase.iter().zip(parts[1].iter()).map(|(a, b)| amplitude * a.hypot(*b)).collect();
+        let decay = (0.5 * shape.dot(&(&self.damping * shape))).clamp(0.0, omega);
+        ExcitedMode {
+            frequency: omega,
+            decay,
+            swallowed: decay_by_scheme(coefficients, 0.5 * h * omega) / (0.5 * h),
+            amplitudes,
+        }
+    }
+
+    /// A basis of the motions with Φ_q δq = 0: columns.
+    fn allowed_motions(&self) -> Option<DMatrix<f64>> {
+        let n = self.mass.nrows();
+        if self.constraint.nrows() == 0 {
+            return Some(DMatrix::identity(n, n));
+        }
+        let normal = self.constraint.transpose() * &self.constraint;
+        if normal.iter().any(|value| !value.is_finite()) {
+            return None;
+        }
+        let eigen = SymmetricEigen::new(normal);
+        let largest = eigen.eigenvalues.max();
+        let columns: Vec<DVector<f64>> = (0..n)
+            .filter(|&place| eigen.eigenvalues[place] <= ALLOWED * largest)
+            .map(|place| eigen.eigenvectors.column(place).into_owned())
+            .collect();
+        (!columns.is_empty()).then(|| DMatrix::from_columns(&columns))
+    }
+}
+
+fn jacobian(graph: &mut Graph, of: &[Expr], by: &[Expr]) -> Vec<(usize, usize, Expr)> {
+    graph.jacobian(of, by).entries().collect()
+}
+
+/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`.
+fn decay_by_scheme(coefficients: Coefficients, step: f64) -> f64 {
+    let Coefficients { beta, gamma, .. } = coefficients;
+    let (of_new, of_old, of_algorithmic) =
+        (coefficients.of_new(), coefficients.of_old(), coefficients.of_algorithmic());
+    let (mut q, mut v, mut a, mut w) = (1.0_f64, 0.0_f64, -1.0_f64, -1.0_f64);
+    let mut fallen = 0.0;
+    for count in 0..2 * DECAY_STEPS {
+        let known = of_old * w - of_algorithmic * a;
+        let q_known = q + step * v + step * step * ((0.5 - beta) * a + beta * known);
+        let v_known = v + step * ((1.0 - gamma) * a + gamma * known);
+        let new = -q_known / (1.0 + beta * step * step * of_new);
+        (q, v) = (q_known + beta * step * step * of_new * new, v_known + gamma * step * of_new * new);
+        (a, w) = (of_new * new + known, new);
+        // Slow waves keep q² + v², fast ones alternate and keep what is largest.
+        let size = (q * q + v * v + a * a + w * w).sqrt();
+        [&mut q, &mut v, &mut a, &mut w].into_iter().for_each(|value| *value /= size);
+        fallen -= if count >= DECAY_STEPS { size.ln() } else { 0.0 };
+    }
+    (fallen / f64::from(DECAY_STEPS)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::Scheme;
+
+    #[test]
+    fn fast_waves_are_damped_as_the_spectral_radius_says() {
+        for alpha in [-0.05, -0.1, -0.3] {
+            let scheme = Scheme::Hht { alpha };
+            let radius = (-decay_by_scheme(scheme.coefficients(), 1e4)).exp();
+            assert!((radius - scheme.spectral_radius()).abs() < 0.03, "{alpha}: {radius}");
+        }
+    }
+
+    #[test]
+    fn slow_waves_are_hardly_damped() {
+        // The damping ratio is of third order.
+        let decay = |step: f64| decay_by_scheme(Scheme::Hht { alpha: -0.1 }.coefficients(), step);
+        assert!(decay(0.1) < 1e-4 && decay(0.05) < 1e-5, "{} {}", decay(0.1), decay(0.05));
+        assert_eq!(decay_by_scheme(Scheme::TrapezoidalIndex2.coefficients(), 3.0).max(1e-9), 1e-9);
+    }
+}
