@@ -28,8 +28,8 @@ mod urdf;
 pub use crate::elements::JointKind;
 pub use crate::elements::effects::*;
 pub use crate::grammar::{
-    Coordinate, EnergyKind, FrictionMode, JointCoordinate, OnJoint, PointRef, ReactionComponent, Reference, Rotating,
-    Rotation, Sensor, Symbol, TimeOrder,
+    Coordinate, EnergyKind, JointCoordinate, PointRef, ReactionComponent, Reference, Rotation, Sensor, Symbol,
+    TimeOrder,
 };
 pub use description::*;
 pub use file::schema;

@@ -29,10 +29,10 @@ use crate::simulate::{SimulationError, Simulator};
 
 use subsystems::Prepared;
 
-pub use cost::{CostError, CostOptions, cost};
+pub use cost::{CostOptions, cost};
 pub use effect_costs::language_costs;
 pub use explain::{explain, explain_whole};
-pub use feasible::{Place, Survey};
+pub use feasible::Survey;
 
 /// How to run.
 pub struct Options<'a> {
