@@ -1,15 +1,15 @@
 //! Accelerations and reactions at rows of output: of order two down to rounding with fixed steps, and they converge with the
 //! tolerance where steps are controlled. Constraints leave ε/h² in those of the steps, and each change of h disturbs them.
 
-use mbint::model::Description;
-use mbint::results::Method;
+use mbint::inner::model::Description;
+use mbint::inner::results::Method;
 
 use crate::common::{Vary, band, curve, distance, largest, nominal, order, read, run};
 
-/// A rod on a hinge off its centre, in absolute coordinates: m = 1.5 kg, d = 0.6 m, J about the hinge 0.09 + m d².
+/// A rod on a hinge off its centre, in absolute coordinates: m = 1.5 kg, d = 0.6 m, radius of gyration 0.25 m.
 const ROD: &str = "
-parameters: { m: { value: 1.5, unit: kg, tolerance: 2% } }
-bodies: { rod: { mass: m, inertia: 0.06*m, points: { hinge: [-0.6, 0] } } }
+parameters: { m: { value: 1.5, unit: kg, tolerance: 2% }, r: 0.25 m }
+bodies: { rod: { mass: m, inertia: m*r^2, points: { hinge: [-0.6, 0] } } }
 joints: { hinge: { revolute: [ground, rod.hinge] } }
 effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
 initial: { rod.angle: -20 deg, rod.angular_velocity: 2 }
@@ -58,7 +58,7 @@ fn accelerations_and_reactions_have_no_floor_at_short_steps() {
 fn reactions_balance_the_motion_of_their_row() {
     let bounds = nominal(&read(ROD).step(1e-5));
     let (m, d, g) = (1.5, 0.6, 9.81);
-    let moment = 0.06 * m + m * d * d;
+    let moment = m * (0.25 * 0.25 + d * d);
     for row in 0..bounds.times.len() {
         let at = |name: &str| curve(&bounds, name)[row];
         let (sin, cos) = at("angle").sin_cos();
