@@ -23,6 +23,7 @@ mod space;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod text_file;
 mod urdf;
 
 pub use crate::elements::JointKind;
