@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
-use crate::verdict::Verdict;
+use crate::verdict::{Failure, Verdict};
 
 /// Bands of a family by a method.
 #[derive(Default)]
@@ -58,8 +58,12 @@ impl Table {
         (draws[0], draws[4]) = (draws[0] + 1.0, draws[4] + seconds);
     }
 
-    /// A draw without bands: 1 refused, 2 panicked, 3 out of time.
-    pub fn add_failure(&mut self, family: &'static str, kind: usize) {
+    pub fn add_failure(&mut self, family: &'static str, failure: &Failure) {
+        let kind = match failure {
+            Failure::Refused(_) => 1,
+            Failure::Panicked => 2,
+            Failure::OutOfTime => 3,
+        };
         let draws = self.draws.entry(family).or_default();
         (draws[0], draws[kind]) = (draws[0] + 1.0, draws[kind] + 1.0);
     }
@@ -69,14 +73,9 @@ impl Table {
         self.lines.iter().filter(|((of, _), _)| *of == family).map(|(_, line)| line.missed).sum()
     }
 
-    /// Bands of a family by a method that are missed so far.
-    pub fn seen(&self, family: &'static str, method: &'static str) -> usize {
-        self.lines.get(&(family, method)).map_or(0, |line| line.missed)
-    }
-
-    /// Draws that panicked or took too long.
+    /// Draws without bands.
     pub fn failures(&self) -> usize {
-        self.draws.values().map(|draws| (draws[2] + draws[3]) as usize).sum()
+        self.draws.values().map(|draws| (draws[1] + draws[2] + draws[3]) as usize).sum()
     }
 }
 

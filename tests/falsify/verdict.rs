@@ -21,9 +21,18 @@ const MISSES: f64 = 0.01;
 pub enum Outcome {
     /// Every band, and the seconds of the run.
     Judged(Vec<Verdict>, f64),
+    Failed(Failure),
+}
+
+/// Why a draw has no bands.
+#[derive(thiserror::Error, Debug)]
+pub enum Failure {
     /// The model was not accepted, or could not be run.
+    #[error("refused: {0}")]
     Refused(String),
+    #[error("panicked")]
     Panicked,
+    #[error("took too long")]
     OutOfTime,
 }
 
@@ -72,13 +81,13 @@ impl Verdict {
 pub fn examine(draw: &Draw) -> Outcome {
     let begun = Instant::now();
     let result = match catch_unwind(AssertUnwindSafe(|| run(draw, begun))) {
-        Err(_) => return Outcome::Panicked,
-        Ok(Err(error)) => return Outcome::Refused(error.to_string()),
+        Err(_) => return Outcome::Failed(Failure::Panicked),
+        Ok(Err(error)) => return Outcome::Failed(Failure::Refused(error.to_string())),
         Ok(Ok(result)) => result,
     };
     let seconds = begun.elapsed().as_secs_f64();
     if begun.elapsed() > PATIENCE {
-        return Outcome::OutOfTime;
+        return Outcome::Failed(Failure::OutOfTime);
     }
     let truth = truth::ranges(draw, result.times(), 0);
     let none = vec![vec![0.0; result.times().len()]; draw.outputs.len()];
