@@ -164,7 +164,8 @@ impl Draw {
         for parameter in self.terms.iter().flat_map(|term| &term.parameters) {
             let Parameter { name, value, half, .. } = parameter;
             let [lower, upper] = parameter.interval();
-            let value = if *half > 0.0 { format!("{{ interval: [{lower:?}, {upper:?}] }}") } else { format!("{value:?}") };
+            let value =
+                if *half > 0.0 { format!("{{ interval: [{lower:?}, {upper:?}] }}") } else { format!("{value:?}") };
             writeln!(text, "  {name}: {value}").unwrap();
         }
         if self.terms.iter().any(|term| term.spatial) {

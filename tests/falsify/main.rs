@@ -50,8 +50,12 @@ fn describe(draw: &Draw, verdict: &Verdict, number: u64) -> String {
         let side = if worst.inside { "too narrow" } else { "too wide" };
         let verdict::Miss { time, truth, found, stated, off, .. } = worst;
         writeln!(text, "# at {time} s the truth is [{:.9e}, {:.9e}],", truth.lower, truth.upper).unwrap();
-        writeln!(text, "# the band [{:.9e}, {:.9e}], {side} by {off:.2e}; stated: {stated:.2e}", found.lower, found.upper)
-            .unwrap();
+        writeln!(
+            text,
+            "# the band [{:.9e}, {:.9e}], {side} by {off:.2e}; stated: {stated:.2e}",
+            found.lower, found.upper
+        )
+        .unwrap();
         writeln!(text, "# largest width {:.3e}", verdict.width).unwrap();
     }
     text + &draw.yaml()

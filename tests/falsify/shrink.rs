@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::draw::{Bounds, Combine, Draw, Stepping, Wrap};
+use crate::draw::{Bounds, Combine, Draw, Wrap};
 use crate::random::digits;
 use crate::verdict::{Outcome, Verdict, examine};
 
@@ -13,6 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(15);
 pub fn shrink(draw: &Draw, verdict: &Verdict) -> (Draw, Verdict) {
     let begun = Instant::now();
     let mut best = (only(draw, verdict), verdict.clone());
+    // It is to stay about as bad.
+    let enough = (0.5 * badness(verdict)).min(10.0);
     match missed(&best.0) {
         Some(verdict) => best.1 = verdict,
         None => return (draw.clone(), verdict.clone()),
@@ -22,7 +24,7 @@ pub fn shrink(draw: &Draw, verdict: &Verdict) -> (Draw, Verdict) {
             if begun.elapsed() > PATIENCE {
                 return best;
             }
-            if let Some(verdict) = missed(&candidate) {
+            if let Some(verdict) = missed(&candidate).filter(|verdict| badness(verdict) >= enough) {
                 best = (candidate, verdict);
                 continue 'simpler;
             }
@@ -44,6 +46,11 @@ fn only(draw: &Draw, verdict: &Verdict) -> Draw {
         ..all
     };
     draw
+}
+
+/// How many times the stated error the true one is, at worst.
+fn badness(verdict: &Verdict) -> f64 {
+    verdict.worst().map_or(0.0, |miss| miss.off / miss.stated)
 }
 
 fn missed(draw: &Draw) -> Option<Verdict> {
@@ -69,9 +76,11 @@ fn simpler(draw: &Draw, verdict: &Verdict) -> Vec<Draw> {
     push(&|draw| std::mem::replace(&mut draw.outputs[0].combine, Combine::Sum) != Combine::Sum);
     let last = verdict.misses.iter().map(|miss| miss.row).max().unwrap_or(draw.time.rows);
     for rows in [draw.time.rows / 2, last, draw.time.rows - 1] {
-        push(&|draw| std::mem::replace(&mut draw.time.rows, rows.max(2)) > rows.max(2));
+        push(&|draw| std::mem::replace(&mut draw.time.rows, rows.max(5)) > rows.max(5));
     }
-    for (term, parameter) in draw.terms.iter().enumerate().flat_map(|(t, term)| (0..term.parameters.len()).map(move |p| (t, p))) {
+    for (term, parameter) in
+        draw.terms.iter().enumerate().flat_map(|(t, term)| (0..term.parameters.len()).map(move |p| (t, p)))
+    {
         push(&|draw| {
             let many = draw.uncertain_count() > 1;
             many && std::mem::take(&mut draw.terms[term].parameters[parameter].half) != 0.0
@@ -86,13 +95,6 @@ fn simpler(draw: &Draw, verdict: &Verdict) -> Vec<Draw> {
     }
     push(&|draw| lowered(&mut draw.bounds));
     push(&|draw| std::mem::take(&mut draw.bounds.expand_output));
-    push(&|draw| match &mut draw.time.stepping {
-        Stepping::Steps(steps) if *steps > 1 => {
-            *steps /= 2;
-            true
-        }
-        _ => false,
-    });
     all
 }
 
@@ -124,5 +126,5 @@ fn lowered(bounds: &mut Bounds) -> bool {
         }
         _ => false,
     };
-    lower(&mut bounds.chebyshev, 1) | lower(&mut bounds.taylor, 1) | lower(&mut bounds.scan, 2)
+    lower(&mut bounds.chebyshev, 1) | lower(&mut bounds.taylor, 1) | lower(&mut bounds.scan, 3)
 }

@@ -81,7 +81,10 @@ impl Table {
 
 impl Display for Table {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        writeln!(f, "| family | method | bands | missed | rows covered | flagged | excess, median row | median band | mean band |")?;
+        writeln!(
+            f,
+            "| family | method | bands | missed | rows covered | flagged | excess, median row | median band | mean band |"
+        )?;
         writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
         let mut total = Line::default();
         for ((family, method), line) in &self.lines {

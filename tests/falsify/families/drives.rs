@@ -77,7 +77,8 @@ pub fn slider_crank(random: &mut Random, scale: &Scale) -> Term {
             removable("e", place, offset, 0.3),
             parameter("w", place, omega, 0.1),
         ],
-        bodies: [lines(&CRANK, place), vec![named("s#: { mass: 1, coordinates: [x], held: { y: e# } }", place)]].concat(),
+        bodies: [lines(&CRANK, place), vec![named("s#: { mass: 1, coordinates: [x], held: { y: e# } }", place)]]
+            .concat(),
         joints: lines(
             &["p#: { revolute: [ground, c#.A] }", "q#: { revolute: [c#.B, d#.B] }", "u#: { revolute: [d#.C, s#] }"],
             place,
@@ -100,7 +101,7 @@ pub fn slider_crank(random: &mut Random, scale: &Scale) -> Term {
 pub fn four_bar(random: &mut Random, scale: &Scale) -> Term {
     let place = scale.place;
     let base = random.scale(0.2, 2.0);
-    let [r, l, s] = random.pick(&[[0.333, 0.867, 0.733], [0.3, 1.0, 0.9], [0.25, 1.1, 0.4], [0.4, 0.8, 0.85]]);
+    let [r, l, s] = random.pick(&[[0.333, 0.867, 0.733], [0.3, 1.0, 0.9], [0.4, 0.8, 0.85]]);
     let [r, l, s] = [r, l, s].map(|length| crate::random::digits(base * length, 3));
     let omega = speed(random, scale);
     let curves = closed_form(|p, t| {

@@ -76,7 +76,8 @@ pub fn slider_crank(random: &mut Random, scale: &Scale) -> Term {
             let crank = [y[0], 1.0, 0.0];
             let pin = along(REST, r, y[0], 1.0, 0.0);
             let wrist = along(pin, l, rod_angle[0], rod_angle[1], rod_angle[2]);
-            let slider = Ride { mass: m3, inertia: 0.0, first: [wrist[0][0], 0.0, 0.0], second: [wrist[1][0], 0.0, 0.0] };
+            let slider =
+                Ride { mass: m3, inertia: 0.0, first: [wrist[0][0], 0.0, 0.0], second: [wrist[1][0], 0.0, 0.0] };
             let x = r * y[0].cos() + l * rod_angle[0].cos();
             let push = -spring * (x - l) - damper * wrist[0][0] * y[1];
             let rides = [bar(REST, m1, r, crank), bar(pin, m2, l, rod_angle), slider];
@@ -149,8 +150,7 @@ fn loop_angles([base, r, l, s]: [f64; 4], angle: f64) -> [[f64; 3]; 2] {
         [(-cs * x - ss * y) / determinant, (-cl * x - sl * y) / determinant]
     };
     let [phi, psi] = solve(r * sin, -r * cos);
-    let [phi2, psi2] =
-        solve(r * cos + cl * phi * phi - cs * psi * psi, r * sin + sl * phi * phi - ss * psi * psi);
+    let [phi2, psi2] = solve(r * cos + cl * phi * phi - cs * psi * psi, r * sin + sl * phi * phi - ss * psi * psi);
     [[coupler, phi, phi2], [rocker, psi, psi2]]
 }
 
@@ -211,10 +211,7 @@ pub fn four_bar(random: &mut Random, scale: &Scale) -> Term {
         effects: vec![named("f#: { gravity: { acceleration: [0, -g#] } }", place)],
         initial: lines(&["b#.angle: 0.7", "b#.angular_velocity: w#"], place),
         guess: lines(&["d#.angle: 50 deg", "e#.angle: 110 deg"], place),
-        channels: lines(
-            &["b#.angle", "b#.angular_velocity", "e#.angle", "d#.angle", "e#.angular_velocity"],
-            place,
-        ),
+        channels: lines(&["b#.angle", "b#.angular_velocity", "e#.angle", "d#.angle", "e#.angular_velocity"], place),
         curves,
         integrated: true,
         size: base + l,

@@ -126,9 +126,8 @@ fn make_uncertain(random: &mut Random, terms: &mut [Term]) {
     let mut count = 0;
     for round in 0..4 {
         for term in &mut *terms {
-            let possible = |parameter: &&mut Parameter| {
-                parameter.most > 0.0 && parameter.value != 0.0 && parameter.half == 0.0
-            };
+            let possible =
+                |parameter: &&mut Parameter| parameter.most > 0.0 && parameter.value != 0.0 && parameter.half == 0.0;
             let mut free: Vec<&mut Parameter> = term.parameters.iter_mut().filter(possible).collect();
             // What is integrated is sampled on a grid.
             let full = term.integrated && round >= 2;

@@ -85,10 +85,7 @@ pub fn parametric(random: &mut Random, scale: &Scale) -> Term {
         ],
         bodies: vec![named("b#: { mass: 1, coordinates: [x] }", place)],
         joints: vec![],
-        effects: vec![named(
-            "f#: { force: { on: b#, value: [\"-(k# + d#*cos(w#*t))*b#.x - c#*b#.vx\", 0] } }",
-            place,
-        )],
+        effects: vec![named("f#: { force: { on: b#, value: [\"-(k# + d#*cos(w#*t))*b#.x - c#*b#.vx\", 0] } }", place)],
         initial: lines(&["b#.x: x#", "b#.vx: 0"], place),
         guess: vec![],
         channels: lines(&["b#.x", "b#.vx"], place),

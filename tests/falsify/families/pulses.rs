@@ -24,18 +24,8 @@ const SHAPES: [Shape; 4] = [
         kinks: &[-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0],
         area: 1.772_453_850_905_516,
     },
-    Shape {
-        formula: "max(0, 1 - ((t - T#)/D#)^2)",
-        value: |s| 1.0 - s * s,
-        kinks: &[-1.0, 0.0, 1.0],
-        area: 4.0 / 3.0,
-    },
-    Shape {
-        formula: "max(0, 1 - abs(t - T#)/D#)",
-        value: |s| 1.0 - s.abs(),
-        kinks: &[-1.0, 0.0, 1.0],
-        area: 1.0,
-    },
+    Shape { formula: "max(0, 1 - ((t - T#)/D#)^2)", value: |s| 1.0 - s * s, kinks: &[-1.0, 0.0, 1.0], area: 4.0 / 3.0 },
+    Shape { formula: "max(0, 1 - abs(t - T#)/D#)", value: |s| 1.0 - s.abs(), kinks: &[-1.0, 0.0, 1.0], area: 1.0 },
     Shape {
         formula: "0.5*(sign(t - T# + D#) - sign(t - T# - D#))",
         value: |_| 1.0,

@@ -27,7 +27,11 @@ pub fn friction(random: &mut Random, scale: &Scale) -> Term {
         // Half a unit of the logarithm a panel where the integrand bends, none where it is straight or 0.
         let (bend, flat) = (to.max(20.0_f64.min(from)), to.max(-40.0));
         let straight = 0.5 * (from - bend) * (from + bend + 2.0 * std::f64::consts::LN_2);
-        let bent = if bend > flat { integral(flat, bend, 1 + (2.0 * (bend - flat)) as usize, |y| [asinh_exp(y), 0.0])[0] } else { 0.0 };
+        let bent = if bend > flat {
+            integral(flat, bend, 1 + (2.0 * (bend - flat)) as usize, |y| [asinh_exp(y), 0.0])[0]
+        } else {
+            0.0
+        };
         [regular / rate * (straight + bent), regular * asinh_exp(to)]
     });
     Term {
@@ -73,10 +77,7 @@ pub fn drag(random: &mut Random, scale: &Scale) -> Term {
         ],
         bodies: vec![named("b#: { mass: m#, coordinates: [y] }", place)],
         joints: vec![],
-        effects: lines(
-            &["f#: { force: { on: b#, value: [0, \"-m#*g# - q#*b#.vy*abs(b#.vy)\"] } }"],
-            place,
-        ),
+        effects: lines(&["f#: { force: { on: b#, value: [0, \"-m#*g# - q#*b#.vy*abs(b#.vy)\"] } }"], place),
         initial: lines(&["b#.y: 0", "b#.vy: 0"], place),
         guess: vec![],
         channels: lines(&["b#.y", "b#.vy", "b#.ay"], place),

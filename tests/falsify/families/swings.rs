@@ -46,10 +46,7 @@ pub fn pendulum(random: &mut Random, scale: &Scale) -> Term {
             parameter("g", place, GRAVITY, 0.01),
             parameter("m", place, 1.0, 0.2),
         ],
-        bodies: vec![named(
-            "b#: { mass: m#, inertia: m#*l#^2/12, points: { A: [-l#/2, 0], B: [l#/2, 0] } }",
-            place,
-        )],
+        bodies: vec![named("b#: { mass: m#, inertia: m#*l#^2/12, points: { A: [-l#/2, 0], B: [l#/2, 0] } }", place)],
         joints: vec![named("j#: { revolute: [ground, b#.A] }", place)],
         effects: vec![named("f#: { gravity: { acceleration: [0, -g#] } }", place)],
         initial: lines(&["b#.angle: a#", "b#.angular_velocity: w#"], place),
@@ -108,10 +105,7 @@ pub fn double_pendulum(random: &mut Random, scale: &Scale) -> Term {
         ),
         joints: lines(&["j#: { revolute: [ground, b#.A] }", "k#: { revolute: [b#.B, c#.B] }"], place),
         effects: vec![named("f#: { gravity: { acceleration: [0, -9.81] } }", place)],
-        initial: lines(
-            &["b#.angle: a#", "b#.angular_velocity: 0", "c#.angle: q#", "c#.angular_velocity: 0"],
-            place,
-        ),
+        initial: lines(&["b#.angle: a#", "b#.angular_velocity: 0", "c#.angle: q#", "c#.angular_velocity: 0"], place),
         guess: vec![],
         channels: lines(&["c#.angle", "c#.C.x", "c#.C.y", "c#.C.vx"], place),
         curves,
