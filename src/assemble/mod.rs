@@ -37,9 +37,6 @@ mod system;
 pub(crate) mod tests;
 mod tree;
 
-pub use crate::multibody::{BuildError, Context};
+pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use system::{
-    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, ResidualUnit, Start,
-    StartCondition, System, UncertainParameter,
-};
+pub use system::{ConstraintInfo, FormulationInfo, ResidualUnit, StartCondition, System};

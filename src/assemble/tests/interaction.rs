@@ -3,12 +3,10 @@
 use super::model::{formula, pair};
 use super::numbers::State;
 use super::power::{potential_rate, power, two_bodies, value};
-use crate::grammar::{Direction, PerAxis};
+use crate::elements::effects::{Exponent, RestitutionLaw};
+use crate::grammar::{Direction, PerAxis, Rotating};
 use crate::model::bushing::SixBySix;
-use crate::model::{
-    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Friction, Impact, Preload,
-    RestitutionLaw, Rotating,
-};
+use crate::model::{Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Friction, Impact, Preload};
 
 fn elastic(stiffness: &str) -> Impact {
     Impact {
