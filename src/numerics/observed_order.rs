@@ -51,8 +51,7 @@ pub fn corrections(rows: &[Differences], ratio: f64) -> Vec<Correction> {
     let (halved, finer, all) = (pick(|row| row.halved), pick(|row| row.finer), pick(|row| row.all));
     let of_row = |row: usize| {
         let order = order(finer[row] / halved[row], ratio);
-        // Written so that what is unknown needs none.
-        if !(order < LEAST_ORDER) {
+        if order.is_nan() || order >= LEAST_ORDER {
             return Correction::NONE;
         }
         let factor = (1.0 - 0.25) / (1.0 - 0.5_f64.powf(order.max(NO_ORDER)));

@@ -78,7 +78,7 @@ pub(crate) fn magnitude(a: Interval) -> Interval {
 /// A wave of period 2π between −1 and 1 with a crest at `crest`.
 fn wave(a: Interval, crest: f64, function: impl Fn(f64) -> f64) -> Interval {
     let whole = Interval::new(-1.0, 1.0);
-    if !(a.upper() - a.lower() < TAU) {
+    if a.upper() - a.lower() >= TAU {
         return whole;
     }
     // Whether a point crest + n 2π lies within, to rounding.
