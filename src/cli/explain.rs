@@ -76,28 +76,10 @@ fn text(explanation: &Explanation) -> String {
     }
     section(count(e.effects.len(), "effect", "effects"), effects.render(2));
 
-    let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
-    for (stage, when, instructions) in e.instructions.stages() {
-        let apart = e.apart.as_ref().and_then(|apart| apart.stages().into_iter().find(|other| other.0 == stage));
-        let apart = apart.filter(|apart| apart.2 != instructions);
-        let apart = apart.map_or(String::new(), |(_, _, fewer)| format!(", {fewer} while nothing touches"));
-        stages.row([stage.to_owned(), instructions.to_string(), format!("{when}{apart}")]);
-    }
     let total: usize = e.instructions.stages().iter().map(|stage| stage.2).sum();
-    section(count(total, "instruction", "instructions"), stages.render(2));
+    section(count(total, "instruction", "instructions"), stages(e));
 
-    let n = &e.newton;
-    let mut newton = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
-    let part = |k: usize| format!("{:.0} % of the square", 100.0 * k as f64 / (n.size * n.size).max(1) as f64);
-    newton.row(["nonzeros".into(), n.nonzeros.to_string(), part(n.nonzeros)]);
-    let fill = format!("{}, {} of fill", part(n.factor_nonzeros), n.fill);
-    newton.row(["nonzeros of L and U".into(), n.factor_nonzeros.to_string(), fill]);
-    let mut body = newton.render(2);
-    if !n.pivots.is_empty() {
-        let pivots = n.pivots.iter().map(|(row, column)| format!("({row}, {column})"));
-        body += &format!("  pivots (row, column)\n{}", indented(&list(&pivots.collect::<Vec<_>>())));
-    }
-    section(format!("Newton matrix, {0} × {0}", n.size), body);
+    section(format!("Newton matrix, {0} × {0}", e.newton.size), newton(e));
 
     let mut left_out = Table::new([("", Align::Left), ("", Align::Left)]);
     for item in &e.left_out {
@@ -109,6 +91,34 @@ fn text(explanation: &Explanation) -> String {
         section("saved".to_owned(), decisions(&e.decisions));
     }
     text
+}
+
+/// The stages of a step, how many instructions each has and when they are run.
+fn stages(e: &Explanation) -> String {
+    let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    for (stage, when, instructions) in e.instructions.stages() {
+        let apart = e.apart.as_ref().and_then(|apart| apart.stages().into_iter().find(|other| other.0 == stage));
+        let apart = apart.filter(|apart| apart.2 != instructions);
+        let apart = apart.map_or(String::new(), |(_, _, fewer)| format!(", {fewer} while nothing touches"));
+        stages.row([stage.to_owned(), instructions.to_string(), format!("{when}{apart}")]);
+    }
+    stages.render(2)
+}
+
+/// Nonzeros and pivots of the Newton matrix.
+fn newton(e: &Explanation) -> String {
+    let n = &e.newton;
+    let mut newton = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    let part = |k: usize| format!("{:.0} % of the square", 100.0 * k as f64 / (n.size * n.size).max(1) as f64);
+    newton.row(["nonzeros".into(), n.nonzeros.to_string(), part(n.nonzeros)]);
+    let fill = format!("{}, {} of fill", part(n.factor_nonzeros), n.fill);
+    newton.row(["nonzeros of L and U".into(), n.factor_nonzeros.to_string(), fill]);
+    let mut body = newton.render(2);
+    if !n.pivots.is_empty() {
+        let pivots = n.pivots.iter().map(|(row, column)| format!("({row}, {column})"));
+        body += &format!("  pivots (row, column)\n{}", indented(&list(&pivots.collect::<Vec<_>>())));
+    }
+    body
 }
 
 /// A line each, and what it saves below.

@@ -8,6 +8,7 @@ use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dime
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
+use crate::grammar::unknown;
 use crate::grammar::{Coordinate, ReactionComponent, Symbol, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -30,19 +31,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     if let Some(value) = turning_value(reader, entry, velocities) {
         return value;
     }
-    let symbol = match reader
-        .model
-        .symbol(name)
-        .ok_or_else(|| crate::grammar::unknown::unknown(&reader.model, name, Context::Equation))
-    {
-        Ok(symbol) => symbol,
-        Err(error) => {
-            let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
-            let verbatim = entry.key_span.len() == name.len();
-            reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
-            return None;
-        }
-    };
+    let symbol = start_symbol(reader, entry)?;
     let (order, dimension) = match symbol {
         Symbol::Coordinate { body, coordinate, order } if !matches!(coordinate, Coordinate::Euler(_)) => {
             if !reader.model.bodies[body].coordinates.contains(&coordinate) {
@@ -85,6 +74,19 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
         }
         _ => None,
     }
+}
+
+/// What a start value is of; reports a name that stands for nothing.
+fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
+    let name = entry.key.as_str();
+    let found = reader.model.symbol(name);
+    if found.is_none() {
+        let error = unknown::unknown(&reader.model, name, Context::Equation);
+        let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
+        let verbatim = entry.key_span.len() == name.len();
+        reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
+    }
+    found
 }
 
 /// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
