@@ -97,10 +97,12 @@ fn text(explanation: &Explanation) -> String {
 fn stages(e: &Explanation) -> String {
     let mut stages = Table::new([("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     for (stage, when, instructions) in e.instructions.stages() {
-        let apart = e.apart.as_ref().and_then(|apart| apart.stages().into_iter().find(|other| other.0 == stage));
-        let apart = apart.filter(|apart| apart.2 != instructions);
-        let apart = apart.map_or(String::new(), |(_, _, fewer)| format!(", {fewer} while nothing touches"));
-        stages.row([stage.to_owned(), instructions.to_string(), format!("{when}{apart}")]);
+        let inactive =
+            e.inactive.as_ref().and_then(|inactive| inactive.stages().into_iter().find(|other| other.0 == stage));
+        let inactive = inactive.filter(|inactive| inactive.2 != instructions);
+        let inactive =
+            inactive.map_or(String::new(), |(_, _, fewer)| format!(", {fewer} while conditional effects are inactive"));
+        stages.row([stage.to_owned(), instructions.to_string(), format!("{when}{inactive}")]);
     }
     stages.render(2)
 }
@@ -163,7 +165,7 @@ mod tests {
         let added = |step, factor, iteration| StepInstructions { step, factor, iteration };
         let effect =
             |name: &str, kind: &str, expressions, adds: Option<(StepInstructions, Option<StepInstructions>)>| {
-                let adds = adds.map(|(acting, apart)| EffectCost { acting, apart });
+                let adds = adds.map(|(active, inactive)| EffectCost { active, inactive });
                 EffectExplanation { name: name.into(), kind: kind.into(), forces: 1, expressions, adds }
             };
         let names = |names: &str| names.split(' ').map(str::to_owned).collect::<Vec<_>>();
@@ -193,7 +195,7 @@ mod tests {
                 advance: 40,
                 observe: 2,
             },
-            apart: Some(InstructionCounts {
+            inactive: Some(InstructionCounts {
                 sample: 21,
                 step_size: 4,
                 step: 30,
@@ -231,14 +233,14 @@ mod tests {
         3 effects
           drive   torque         on 1 coordinate  1 expression
           spring  spring_damper  on 1 coordinate  9 expressions   adds 4 an iteration, 0 a factorisation, 2 a step
-          floor   contact        on 1 coordinate  40 expressions  adds 30 an iteration, -3 a factorisation, 0 a step; apart 2, -5, 0
+          floor   contact        on 1 coordinate  40 expressions  adds 30 an iteration, -3 a factorisation, 0 a step; inactive 2, -5, 0
 
         313 instructions
           sample      21  once a sample
           step size    4  once a step size
           step        30  once a step
-          factor      94  when the Newton matrix is factored, 90 while nothing touches
-          correct    122  every Newton iteration, 94 while nothing touches
+          factor      94  when the Newton matrix is factored, 90 while conditional effects are inactive
+          correct    122  every Newton iteration, 94 while conditional effects are inactive
           advance     40  once a step, at its end
           observe      2  once a row of output
 

@@ -1,6 +1,6 @@
 //! What to say of a name in a formula that stands for nothing.
 
-use super::motions::{JOINT_MOTIONS, MOTIONS, TURNING, is_motion};
+use super::motions::{ANGULAR_MOTIONS, JOINT_MOTIONS, MOTIONS, is_motion};
 use super::names::{Context, ENERGIES, NameError, motions};
 use super::quantity::Dimension;
 use super::symbols::{Sensor, SymbolTable};
@@ -134,7 +134,7 @@ fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usiz
         let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
         return NameError { message, part: start..name.len(), help };
     }
-    if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
+    if let Some((vector, ..)) = ANGULAR_MOTIONS.iter().find(|(vector, ..)| *vector == member) {
         let message = format!("`{vector}` is a vector: it has the parts x, y and z");
         let help = Some(format!("e.g. `{owner}.{vector}.z`"));
         return NameError { message, part: 0..name.len(), help };

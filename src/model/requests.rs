@@ -4,7 +4,7 @@ use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::file;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
-use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use crate::grammar::motions::{ANGULAR_MOTIONS, ORIENTATION, joint_dimension, motion_dimension, motion_name};
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
@@ -28,7 +28,7 @@ pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) ->
 
 fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<StartValue> {
     let name = entry.key.as_str();
-    if let Some(value) = turning_value(reader, entry, velocities) {
+    if let Some(value) = rotation_value(reader, entry, velocities) {
         return value;
     }
     let symbol = start_symbol(reader, entry)?;
@@ -90,9 +90,9 @@ fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
 }
 
 /// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
-fn turning_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
+fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
     let (owner, part) = entry.key.split_once('.')?;
-    let velocity = TURNING.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
+    let velocity = ANGULAR_MOTIONS.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
     if part != ORIENTATION && velocity.is_none() {
         return None;
     }

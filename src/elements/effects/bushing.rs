@@ -75,7 +75,7 @@ impl ForceElement for Bushing {
         });
         let (first, second) = (pair.first.point, pair.second.point);
         let omega = [first, second].map(|point| forces.angular_velocity(point.body).exprs());
-        let turning = space::sub(g, omega[1], omega[0]);
+        let spin_in_ground = space::sub(g, omega[1], omega[0]);
         let q = pair.relative(g);
         let e = rotation::vector_part(q);
 
@@ -93,7 +93,7 @@ impl ForceElement for Bushing {
         let twisted = weighted(g, stiffness.torsional, e);
         let half = conjugate(g, q[0], e, twisted);
         let elastic = half.map(|component| g.scale(2.0, component));
-        let spin = axes.map(|axis| space::dot(g, axis, turning));
+        let spin = axes.map(|axis| space::dot(g, axis, spin_in_ground));
         let viscous = weighted(g, damping.torsional, spin);
         let mut torque = space::add(g, elastic, viscous);
 
