@@ -101,7 +101,7 @@ mod tests {
         let many: Vec<String> = (0..50).map(|index| format!("point{index}")).chain(["wheel".to_owned()]).collect();
         let many = || many.iter().map(String::as_str);
         assert_eq!(
-            help("wing", "points", many()).unwrap(),
+            help("whee_of_cart", "points", many()).unwrap(),
             "there are 51 points, most like it `wheel`, `point0` and `point1`"
         );
         assert_eq!(help("wing", "points", many().take(30)).unwrap().matches("point").count(), 31);

@@ -12,7 +12,8 @@ const GRAVITY: f64 = 9.81;
 
 /// A cam at constant speed that lifts a mass in a guide over its centre, in the plane or in space.
 fn run(space: &str, follower: &str, lift: &str, tables: &str) -> Bounds {
-    let tilt = if space == "spatial" { "guide.torque.z" } else { "guide.torque" };
+    // In space `torque` is a magnitude.
+    let about = if space == "spatial" { "torque.z" } else { "torque" };
     nominal(&read(&format!(
         "
 space: {space}
@@ -32,8 +33,8 @@ outputs:
   height: slider.y
   contact: nose.force
   side: guide.force.x
-  tilt: {tilt}
-  torque: drive.torque
+  tilt: guide.{about}
+  torque: drive.{about}
 simulation: {{ duration: 1.3, step: 5e-4, output_step: 5e-3 }}
 "
     )))
