@@ -69,7 +69,7 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
 pub(super) fn damped(summary: &Summary) -> Option<String> {
     let mode = summary.damped_mode.as_ref()?;
     Some(format!(
-        "the steps damp a mode near {:.0} Hz that the start excites: shorten them to {:e} s, or accept that its amplitude counts as \
+        "the steps damp a mode near {:.0} Hz that the start excites: shorten them to {:.0e} s, or accept that its amplitude counts as \
          error",
         mode.frequency, mode.step
     ))

@@ -1,10 +1,10 @@
 //! Fast modes that the start excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
-//! halving the steps does not show what they swallow.
+//! halving the steps does not show what they damp.
 //!
 //! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
 //! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): what is slow has hardly any part in φᵀMw/ω².
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use symdiff::{Expr, Graph};
 
 use super::simulator::Simulator;
@@ -14,13 +14,10 @@ use crate::compile::Coefficients;
 const MOST_COORDINATES: usize = 120;
 
 /// Modes are looked at whose frequency is above this over the step.
-const SLOWEST: f64 = 0.05;
+const SLOWEST: f64 = 0.2;
 
 /// Eigenvalues of Φ_qᵀ Φ_q below this share of the largest belong to motions that the constraints allow.
 const ALLOWED: f64 = 1e-12;
-
-/// Steps over which the decay of a mode's amplitude is measured, after as many.
-const DECAY_STEPS: i32 = 64;
 
 /// A mode that the start excites.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,17 +26,19 @@ pub struct ExcitedMode {
     pub frequency: f64,
     /// Its own decay, 1/s.
     pub decay: f64,
-    /// Its decay by the scheme with halved steps, 1/s.
-    pub swallowed: f64,
+    /// Its decay by the scheme with these steps and with halved ones, 1/s.
+    pub by_scheme: [f64; 2],
     /// Its amplitude in each output, in the output's unit.
     pub amplitudes: Vec<f64>,
 }
 
 impl ExcitedMode {
-    /// What halved steps have swallowed of its amplitude in an output up to a time, of what is there.
+    /// What the steps have damped of its amplitude in an output up to a time, of what is left then, and halving them does not show
+    /// (4/3 of the difference is what it shows).
     pub fn lost(&self, output: usize, time: f64) -> f64 {
         let left = (-self.decay * time).exp();
-        self.amplitudes[output] * left * -(-self.swallowed * time).exp_m1()
+        let [whole, halved] = self.by_scheme.map(|decay| -(-decay * time).exp_m1());
+        self.amplitudes[output] * left * ((4.0 * halved - whole) / 3.0).max(0.0)
     }
 }
 
@@ -160,7 +159,7 @@ impl Linearised {
         ExcitedMode {
             frequency: omega,
             decay,
-            swallowed: decay_by_scheme(coefficients, 0.5 * h * omega) / (0.5 * h),
+            by_scheme: [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * omega) / h),
             amplitudes,
         }
     }
@@ -189,26 +188,24 @@ fn jacobian(graph: &mut Graph, of: &[Expr], by: &[Expr]) -> Vec<(usize, usize, E
     graph.jacobian(of, by).entries().collect()
 }
 
-/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`.
+/// By how much the logarithm of the amplitude of q̈ + q = 0 falls in a step of the scheme whose length is `step`: from the spectral
+/// radius of its matrix in (q, v, a), since w = −q.
 fn decay_by_scheme(coefficients: Coefficients, step: f64) -> f64 {
     let Coefficients { beta, gamma, .. } = coefficients;
     let (of_new, of_old, of_algorithmic) =
         (coefficients.of_new(), coefficients.of_old(), coefficients.of_algorithmic());
-    let (mut q, mut v, mut a, mut w) = (1.0_f64, 0.0_f64, -1.0_f64, -1.0_f64);
-    let mut fallen = 0.0;
-    for count in 0..2 * DECAY_STEPS {
-        let known = of_old * w - of_algorithmic * a;
+    let gain = beta * step * step * of_new;
+    let advance = |[q, v, a]: [f64; 3]| {
+        let known = -of_old * q - of_algorithmic * a;
         let q_known = q + step * v + step * step * ((0.5 - beta) * a + beta * known);
         let v_known = v + step * ((1.0 - gamma) * a + gamma * known);
-        let new = -q_known / (1.0 + beta * step * step * of_new);
-        (q, v) = (q_known + beta * step * step * of_new * new, v_known + gamma * step * of_new * new);
-        (a, w) = (of_new * new + known, new);
-        // Slow waves keep q² + v², fast ones alternate and keep what is largest.
-        let size = (q * q + v * v + a * a + w * w).sqrt();
-        [&mut q, &mut v, &mut a, &mut w].into_iter().for_each(|value| *value /= size);
-        fallen -= if count >= DECAY_STEPS { size.ln() } else { 0.0 };
-    }
-    (fallen / f64::from(DECAY_STEPS)).max(0.0)
+        let new = -q_known / (1.0 + gain);
+        Vector3::new(-new, v_known + gamma * step * of_new * new, of_new * new + known)
+    };
+    let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(advance);
+    let radius =
+        Matrix3::from_columns(&columns).complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max);
+    (-radius.ln()).max(0.0)
 }
 
 #[cfg(test)]
@@ -221,7 +218,7 @@ mod tests {
         for alpha in [-0.05, -0.1, -0.3] {
             let scheme = Scheme::Hht { alpha };
             let radius = (-decay_by_scheme(scheme.coefficients(), 1e4)).exp();
-            assert!((radius - scheme.spectral_radius()).abs() < 0.03, "{alpha}: {radius}");
+            assert!((radius - scheme.spectral_radius()).abs() < 1e-3, "{alpha}: {radius}");
         }
     }
 
@@ -229,7 +226,8 @@ mod tests {
     fn slow_waves_are_hardly_damped() {
         // The damping ratio is of third order.
         let decay = |step: f64| decay_by_scheme(Scheme::Hht { alpha: -0.1 }.coefficients(), step);
-        assert!(decay(0.1) < 1e-4 && decay(0.05) < 1e-5, "{} {}", decay(0.1), decay(0.05));
+        assert!((decay(0.1) / decay(0.05) - 16.0).abs() < 1.0, "{} {}", decay(0.1), decay(0.05));
+        assert!(decay(0.1) < 1e-5);
         assert_eq!(decay_by_scheme(Scheme::TrapezoidalIndex2.coefficients(), 3.0).max(1e-9), 1e-9);
     }
 }
