@@ -24,11 +24,11 @@ pub fn envelope(estimates: &[f64]) -> Vec<f64> {
     for pair in peaks.windows(2) {
         let (first, last) = (pair[0], pair[1]);
         let (from, to) = (at(first).ln(), at(last).ln());
-        for row in first + 1..last {
+        for (row, value) in held.iter_mut().enumerate().take(last).skip(first + 1) {
             let share = (row - first) as f64 / (last - first) as f64;
             let line = (from + share * (to - from)).exp();
             // `max` would pass over NaN.
-            held[row] = if held[row] < line { line } else { held[row] };
+            *value = if *value < line { line } else { *value };
         }
     }
     if let [.., before, last] = peaks[..] {
