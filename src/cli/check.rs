@@ -1,6 +1,6 @@
 //! `mbint check`: errors of models, and their coordinates, constraints and degrees of freedom.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -32,6 +32,26 @@ struct Checked {
     /// The tree of a robot's links, for people.
     #[serde(skip)]
     tree: String,
+    /// Whether `error` is one of this program.
+    #[serde(skip)]
+    is_internal: bool,
+}
+
+impl Checked {
+    /// Of a file of which nothing is known.
+    fn nothing(path: &Path) -> Self {
+        Self {
+            file: model::shown(path),
+            ok: false,
+            counts: None,
+            diagnostics: Vec::new(),
+            error: None,
+            scenes: Vec::new(),
+            rendered: String::new(),
+            tree: String::new(),
+            is_internal: false,
+        }
+    }
 }
 
 /// Result for a scene.
@@ -62,7 +82,11 @@ struct Counts {
 }
 
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
-    let checked: Vec<Checked> = args.models.iter().map(|path| check_one(path, console.color())).collect();
+    let check = |path: &PathBuf| match study::caught("check", || check_one(path, console.color())) {
+        Ok(checked) => checked,
+        Err(error) => Checked { error: Some(error.to_string()), is_internal: true, ..Checked::nothing(path) },
+    };
+    let checked: Vec<Checked> = args.models.iter().map(check).collect();
     match args.format {
         Format::Text => {
             for model in &checked {
@@ -87,26 +111,19 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
         }
         Format::Json => console.print(&to_json(&checked)?)?,
     }
-    let all = checked.iter().all(|model| model.ok);
-    Ok(if all { Status::Done } else { Status::Wrong })
+    let status = |model: &Checked| match model.ok {
+        true => Status::Done,
+        false if model.is_internal => Status::Failed,
+        false => Status::Wrong,
+    };
+    Ok(checked.iter().map(status).max().unwrap_or(Status::Done))
 }
 
 fn check_one(path: &Path, color: bool) -> Checked {
-    let file = model::shown(path);
-    let nothing = Checked {
-        file,
-        ok: false,
-        counts: None,
-        diagnostics: Vec::new(),
-        error: None,
-        scenes: Vec::new(),
-        rendered: String::new(),
-        tree: String::new(),
-    };
     let reading = model::read(path, &[]);
     let diagnostics = &reading.diagnostics;
     let rendered = if diagnostics.is_empty() { String::new() } else { diagnostics.render(color) };
-    let read = Checked { diagnostics: diagnostics.records(), rendered, ..nothing };
+    let read = Checked { diagnostics: diagnostics.records(), rendered, ..Checked::nothing(path) };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
     if !reading.scenes.is_empty() {
         // Only the scenes are run.

@@ -83,6 +83,12 @@ pub(super) fn set_once(overrides: &[Override]) -> Result<(), Failure> {
 /// Runs a model and writes its results. The status says whether they are reliable; [`report`] prints why not.
 pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     let name = &job.model.name;
+    let done = study::caught("the model's run", || run_and_write(job, request));
+    done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))))
+}
+
+fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
+    let name = &job.model.name;
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
     let progress = Progress::new(name, !request.quiet);
     let set_progress = |fraction| progress.set(fraction);

@@ -19,9 +19,10 @@ mod start;
 mod step;
 
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
+pub use equations::{ClosureRow, Equation};
 pub use layout::Layout;
 pub use program::{Mode, PivotSample, Program, Watched, WatchedPivot};
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
-pub use start::{StartProgram, compile_start};
+pub use start::{Residual, StartProgram, compile_start};
 pub use step::compile;

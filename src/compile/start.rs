@@ -22,7 +22,7 @@
 
 use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
-use super::equations::{equations_of_motion, time_derivative};
+use super::equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 use super::layout::Layout;
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use crate::assemble::{StartCondition, System};
@@ -38,15 +38,24 @@ const RELAXATION: f64 = 1e6;
 pub struct StartProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Registers of Φ, m and those of conditions on positions, after [`StartProgram::position`].
-    pub constraint: Vec<usize>,
-    /// Registers of Φ̇, m and those of conditions on velocities, after [`StartProgram::velocity`].
-    pub constraint_rate: Vec<usize>,
+    /// Φ, m, and the conditions on positions, after [`StartProgram::position`].
+    pub constraint: Vec<Residual>,
+    /// Φ̇, m, and the conditions on velocities, after [`StartProgram::velocity`].
+    pub constraint_rate: Vec<Residual>,
     /// Registers of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
     lowered: Lowered,
+}
+
+/// What remains of a row of the closure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Residual {
+    /// Of which row.
+    pub row: ClosureRow,
+    /// Where it is.
+    pub register: usize,
 }
 
 const GIVEN: usize = 0;
@@ -116,9 +125,12 @@ type Target = (Expr, Option<u32>);
 /// the start (values of the layout's registers).
 ///
 /// # Errors
-/// Where the equations have no finite values at the sample (rows: motion, constraints, then start conditions), and where
-/// the graph is full.
-pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Result<StartProgram, NoFactors> {
+/// Where the equations have no finite values at the sample, and where the graph is full.
+pub fn compile_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+) -> Result<StartProgram, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
     let mut graph = system.graph.clone();
@@ -153,8 +165,8 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
     let jacobian_entries =
         jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), register)| (row, column, register)).collect();
     Ok(StartProgram {
-        constraint: tail(POSITION, n),
-        constraint_rate: tail(VELOCITY, n),
+        constraint: residuals(system, OF_POSITION, tail(POSITION, n)),
+        constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
         jacobian_entries,
         layout,
@@ -210,14 +222,23 @@ impl Equations {
 /// Conditions on positions, or those on velocities.
 type Kind = fn(&StartCondition) -> bool;
 
-/// Renumbers the rows of conditions of a kind, which follow the constraints, by their numbers among all conditions.
-fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
-    let NoFactors::Singular { rows } = none else { return none };
-    let first = system.q.len() + system.constraint.len();
-    let conditions: Vec<usize> =
-        (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
-    let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
-    NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
+/// The constraints, then the conditions of a kind.
+fn closure_rows(system: &System, kind: Kind) -> impl Iterator<Item = ClosureRow> {
+    let conditions = system.start.conditions.iter().enumerate().filter(move |(_, condition)| kind(condition));
+    let constraints = (0..system.constraint.len()).map(ClosureRow::Constraint);
+    constraints.chain(conditions.map(|(place, _)| ClosureRow::Condition(place)))
+}
+
+/// Their residuals, in these registers.
+fn residuals(system: &System, kind: Kind, registers: Vec<usize>) -> Vec<Residual> {
+    closure_rows(system, kind).zip(registers).map(|(row, register)| Residual { row, register }).collect()
+}
+
+/// A correction's matrix without factors: its rows are those of the coordinates, then those of the closure.
+fn named(system: &System, none: NoFactors, kind: Kind) -> NoFactors<Equation> {
+    let closure = closure_rows(system, kind).map(Equation::Closure);
+    let equations: Vec<Equation> = (0..system.q.len()).map(Equation::Motion).chain(closure).collect();
+    none.named(|row| equations[row])
 }
 
 /// The conditions of a kind, and Φ_q with their derivatives below it.
@@ -244,7 +265,7 @@ struct Builder<'s> {
 
 impl Builder<'_> {
     /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors> {
+    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
         let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
@@ -256,15 +277,17 @@ impl Builder<'_> {
         let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
             .correction(&diagonal, &none, closure_jacobian, &given(&system.start.position), &zero, closure)
-            .map_err(|none| numbered(system, none, OF_POSITION))?;
+            .map_err(|none| named(system, none, OF_POSITION))?;
         let velocity = self
             .correction(&diagonal, &none, closure_rate_jacobian, &given(&system.start.velocity), &zero, closure_rate)
-            .map_err(|none| numbered(system, none, OF_VELOCITY))?;
+            .map_err(|none| named(system, none, OF_VELOCITY))?;
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
         let Equations { jacobian, rate_of_rate, .. } = equations;
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate);
         let free = vec![false; n];
-        let acceleration = self.correction(&mass, &by_multiplier, jacobian, &free, &motion, rate_of_rate)?;
+        let acceleration = self
+            .correction(&mass, &by_multiplier, jacobian, &free, &motion, rate_of_rate)
+            .map_err(|none| none.named(|row| Equation::of_row(row, n)))?;
         Ok([position, velocity, acceleration])
     }
 

@@ -3,10 +3,10 @@
 use symdiff::{Tile, WIDTHS};
 
 use super::diagnostics::undetermined_outputs;
-use super::error::{SimulationError, assembly_error, equation_names, no_factors};
+use super::error::{SimulationError, assembly_error, equation_name, no_factors};
 use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
 use crate::assemble::System;
-use crate::compile::{Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
+use crate::compile::{Equation, Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
@@ -53,7 +53,7 @@ impl Simulator {
         system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
-        let singular = |none: NoFactors| no_factors(&system, &none);
+        let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
         let guess = guess_state(&system, &layout, &parameters);
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
@@ -144,6 +144,6 @@ impl Simulator {
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
     pub fn equation_name(&self, equation: usize) -> String {
-        equation_names(&self.system, &[equation]).remove(0)
+        equation_name(&self.system, Equation::of_row(equation, self.system.q.len()))
     }
 }

@@ -1,5 +1,6 @@
 //! From what methods found under one schedule to bounds and a summary.
 
+use super::internal::{InternalError, caught};
 use super::single::{Outcome, Ran, Results, Study};
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::{BandError, time_error, time_error_certified};
@@ -35,8 +36,12 @@ impl Study<'_> {
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
         let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
-        let stopped = stop.map(|(stop, sample)| failure(study, &stop, &sample));
-        let failure = stopped.or(note).or_else(interrupted).or_else(notes);
+        let stopped = stop.map(|(stop, sample)| {
+            caught("a message", || failure(study, &stop, &sample)).unwrap_or_else(|error| error.to_string())
+        });
+        let internal = results.internal.iter().map(InternalError::to_string);
+        let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
+        let failure = (!failures.is_empty()).then(|| failures.join("; "));
         let whole = results.whole().min(rows);
         let summary = summary(study, results, &bounds, failure);
         Ran { bounds, summary, whole }

@@ -31,6 +31,7 @@ impl Study<'_> {
                 validation: None,
                 methods: Vec::new(),
                 halved: Vec::new(),
+                internal: Vec::new(),
             };
             if self.request.is_empty() {
                 return Ok(results);
@@ -51,7 +52,9 @@ impl Study<'_> {
                 if method.about().is_sampled {
                     results.methods.push((method, same(&schedule, &results.nominal.result, method)?));
                 } else {
-                    results.methods.extend(self.bound(&motions, &schedule, &validation, |wanted| wanted == method)?);
+                    let of_method = |wanted| wanted == method;
+                    let found = self.bound(&motions, &schedule, &validation, &mut results.internal, of_method)?;
+                    results.methods.extend(found);
                 }
             }
             results.validation = Some((validation, summary));

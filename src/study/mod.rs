@@ -4,7 +4,8 @@
 //! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to.
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `internal` keeps a
+//! panic to what panicked.
 
 mod conclude;
 mod cost;
@@ -15,6 +16,7 @@ mod ensemble;
 mod explain;
 mod feasible;
 mod formulation;
+mod internal;
 mod single;
 mod step_search;
 mod subsystems;
@@ -33,6 +35,7 @@ pub use cost::{CostError, CostOptions, cost};
 pub use effect_costs::language_costs;
 pub use explain::{explain, explain_whole};
 pub use feasible::{Place, Survey};
+pub use internal::{InternalError, caught, record_panics};
 
 /// How to run.
 pub struct Options<'a> {
@@ -76,12 +79,14 @@ pub enum RunError {
     Refused(#[from] Refusal),
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
+    #[error(transparent)]
+    Internal(#[from] InternalError),
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
 /// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
-/// the summary's `failure` says what happened.
+/// the summary's `failure` says what happened. So it does where a method panics: the other methods' bounds are kept.
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.

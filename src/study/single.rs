@@ -1,11 +1,12 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
 use super::ensemble::{Motions, Progress};
+use super::internal::{InternalError, caught};
 use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::methods::{
-    BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Stop, Validation,
-    can_compose,
+    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
+    Stop, Validation, can_compose,
 };
 use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, corners, probes, validation};
@@ -48,6 +49,8 @@ pub(super) struct Results {
     pub methods: Vec<(Method, Outcome)>,
     /// The same with halved steps, where asked for.
     pub halved: Vec<(Method, Outcome)>,
+    /// What this program did wrong; of what failed nothing is known.
+    pub internal: Vec<InternalError>,
 }
 
 impl Results {
@@ -238,25 +241,32 @@ impl<'a> Study<'a> {
             return self.deterministic(schedule, tolerance);
         }
         let progress = Progress::new(self.total_work(schedule), self.progress);
+        let mut internal = Vec::new();
         let (schedule, validation) = if self.request.is_empty() {
             (schedule.clone(), None)
         } else {
-            let (schedule, validation) = self.balance(schedule, tolerance, &progress)?;
-            (schedule, Some(validation))
+            match caught("the validation samples", || self.balance(schedule, tolerance, &progress)) {
+                Ok(balanced) => balanced.map(|(schedule, validation)| (schedule, Some(validation)))?,
+                Err(error) => {
+                    internal.push(error);
+                    (schedule.clone(), None)
+                }
+            }
         };
         let motions = self.motions(&schedule, tolerance, &progress);
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some((validation, _)) = &validation {
-            methods = self.bound(&motions, &schedule, validation, |_| true)?;
+            methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
             if self.certify_time && !(self.interrupted)() {
                 let schedule = schedule.refined(2);
                 let motions = self.motions(&schedule, None, &progress);
-                halved = self.bound(&motions, &schedule, validation, |method| method.about().is_sampled)?;
+                let sampled = |method: Method| method.about().is_sampled;
+                halved = self.bound(&motions, &schedule, validation, &mut internal, sampled)?;
             }
         }
         drop(motions);
-        Ok(Results { schedule, nominal, singular, validation, methods, halved })
+        Ok(Results { schedule, nominal, singular, validation, methods, halved, internal })
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
@@ -291,12 +301,14 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out.
+    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that
+    /// panic nothing is known.
     pub(super) fn bound(
         &self,
         motions: &Motions,
         schedule: &Schedule,
         validation: &Validation,
+        internal: &mut Vec<InternalError>,
         wanted: impl Fn(Method) -> bool,
     ) -> Result<Vec<(Method, Outcome)>, SimulationError> {
         let mut outcomes = Vec::new();
@@ -305,10 +317,41 @@ impl<'a> Study<'a> {
                 break;
             }
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
-            let (outcome, ()) = timed(schedule, method.name(), || Ok((bound()?, ())))?;
+            let outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
+                Ok(timed) => timed?.0,
+                Err(error) => {
+                    internal.push(error);
+                    self.unknown(schedule, method.name())?
+                }
+            };
             outcomes.push((method, outcome));
         }
         Ok(outcomes)
+    }
+
+    /// Bounds of which nothing is known.
+    fn unknown(&self, schedule: &Schedule, method: &str) -> Result<Outcome, SimulationError> {
+        let bands = BandBuilder::new(self.simulator.program.outputs.len(), schedule.rows);
+        let missing = Simulated { missing: schedule.rows, ..Simulated::default() };
+        let (outcome, ()) = timed(schedule, method, || Ok((bands.finish(0, missing), ())))?;
+        Ok(outcome)
+    }
+
+    /// What is left of a subsystem whose study panicked.
+    pub(super) fn lost(&self, error: InternalError) -> Result<Ran, SimulationError> {
+        let simulation = &self.description.simulation;
+        let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
+        let nominal = self.unknown(&schedule, "nominal")?;
+        let results = Results {
+            schedule,
+            nominal,
+            singular: Vec::new(),
+            validation: None,
+            methods: Vec::new(),
+            halved: Vec::new(),
+            internal: vec![error],
+        };
+        Ok(self.conclude(results, None))
     }
 
     /// Samples × rows of all methods.

@@ -4,7 +4,7 @@ use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
 use super::krawczyk::{self, Image};
-use super::matrix::{Models, apply_bounds, larger};
+use super::matrix::{Bounds, Models, larger};
 use super::{Enclosure, EnclosureError};
 
 /// Most corrections of X; the residual that is left is bounded in any case.
@@ -111,8 +111,8 @@ impl<'s> Enclosure<'s> {
         let mut memory = self.take_memory();
         let spread_of = |y: &[f64]| -> Vec<f64> {
             // Of q₊, v₊, w₊, λ₊.
-            let mut spread = apply_bounds(&moved_sizes, &self.radii);
-            let of_unknowns = apply_bounds(&follow_sizes, &self.radii);
+            let mut spread = moved_sizes.times(&self.radii);
+            let of_unknowns = follow_sizes.times(&self.radii);
             for i in 0..n {
                 spread[i] = up(spread[i] + self.gains.b.magnitude() * y[i]);
                 spread[n + i] = up(spread[n + i] + self.gains.c.magnitude() * y[i]);
@@ -122,20 +122,20 @@ impl<'s> Enclosure<'s> {
         };
 
         let first: Vec<f64> = if self.spread.is_empty() {
-            apply_bounds(&sizes, &missed).iter().map(|missed| 2.0 * missed).collect()
+            sizes.times(missed.entries()).iter().map(|missed| 2.0 * missed).collect()
         } else {
             self.spread.iter().map(|spread| 1.5 * spread).collect()
         };
-        let (mut forcing, mut rest) = (Vec::new(), Vec::new());
+        let (mut forcing, mut rest) = (Vec::new(), Bounds::default());
         let found = krawczyk::enclose(first, |y| {
             self.place_in(&mut memory, &solution, Some(&spread_of(y)));
             let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
             let contraction = inverse.times(space, &by_unknown).off_identity(space).bounds(space);
             let mut left = by_unknown.times(space, &follows);
             left.add(space, &by_state.times(space, &of_state));
-            let of_remainder = apply_bounds(&left.bounds(space), &self.radii);
-            let total: Vec<f64> = missed.iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
-            let missed = apply_bounds(&sizes, &total);
+            let of_remainder = left.bounds(space).times(&self.radii);
+            let total: Vec<f64> = missed.entries().iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
+            let missed = sizes.times(&total);
             (forcing, rest) = (total, contraction.clone());
             Image { missed, contraction }
         })?;
@@ -145,7 +145,7 @@ impl<'s> Enclosure<'s> {
         // y = −C η + (I − C J) y, |η| ≤ `forcing`: the first part is a known map, of the second only a bound is known.
         let forced = self.force(&inverse);
         let push = inverse.part(space, 0..n, n..count);
-        let rest = apply_bounds(&rest, &found);
+        let rest = rest.times(&found);
         let radii = [&self.radii[..], &forcing].concat();
         self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &push)?;
         (self.inverse, self.spread) = (Some(inverse), found);
@@ -177,7 +177,7 @@ impl<'s> Enclosure<'s> {
             solution.add_approximately(&correction);
             self.place(&solution, None);
             let sizes = correction.bounds(space);
-            let scaled = sizes[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
+            let scaled = sizes.entries()[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
             if scaled.fold(0.0, larger) < SETTLED {
                 break;
             }

@@ -5,5 +5,6 @@ mod disk;
 mod infeasible;
 mod interrupts;
 mod names;
+mod panics;
 mod sizes;
 mod uncertainty;
