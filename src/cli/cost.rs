@@ -257,7 +257,7 @@ mod tests {
     }
 
     fn plain(text: &str) -> String {
-        anstream::adapter::strip_str(text).to_string()
+        crate::cli::console::plain(text)
     }
 
     #[test]

@@ -78,8 +78,6 @@ pub(super) fn load(
 /// Reads a file and reports its errors and warnings; `None` if it has errors.
 fn read(path: &Path, overrides: &[Override], console: &Console) -> Option<Reading> {
     let reading = model::read(path, overrides);
-    if !reading.diagnostics.is_empty() {
-        console.report(&reading.diagnostics.render(console.color()));
-    }
+    console.diagnostics(&reading.diagnostics);
     reading.description.is_some().then_some(reading)
 }

@@ -4,7 +4,7 @@
 //! - `scheme`: the integration schemes' coefficients;
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start; `equation_tapes`: the equations alone;
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`); `equation_tapes`: the equations alone;
 //! - `layout`: the memory that all of them share.
 
 mod elimination;
@@ -16,6 +16,7 @@ mod program;
 mod scheme;
 mod sparse_lu;
 mod start;
+mod start_equations;
 mod step;
 
 pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
@@ -24,5 +25,6 @@ pub use layout::Layout;
 pub use program::{Mode, PivotSample, Program, Watched, WatchedPivot};
 pub use scheme::{Coefficients, ConstraintLevel, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
-pub use start::{Residual, StartProgram, compile_start};
+pub use start::{StartProgram, compile_start};
+pub use start_equations::Residual;
 pub use step::compile;

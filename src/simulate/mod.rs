@@ -25,6 +25,6 @@ pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
 pub use error::{NamedValues, SimulationError};
-pub use simulator::Simulator;
+pub use simulator::{Assembled, Simulator};
 pub use start::Mobility;
 pub use step::{Counters, LocalError, StepFailure, Stepper};

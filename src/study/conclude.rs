@@ -1,7 +1,8 @@
 //! From what methods found under one schedule to bounds and a summary.
 
 use super::internal::{InternalError, caught};
-use super::single::{Outcome, Ran, Results, Study};
+use super::outcome::{Outcome, Ran, Results};
+use super::single::Study;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::{BandError, time_error, time_error_certified};
 use crate::results::{

@@ -4,7 +4,8 @@
 use std::time::Instant;
 
 use super::ensemble::Progress;
-use super::single::{Outcome, Results, Study, simulation_error, timed, validation_summary};
+use super::outcome::{Outcome, Results};
+use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;

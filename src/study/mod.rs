@@ -17,6 +17,7 @@ mod explain;
 mod feasible;
 mod formulation;
 mod internal;
+mod outcome;
 mod single;
 mod step_search;
 mod subsystems;
@@ -27,13 +28,13 @@ use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
-use crate::simulate::{SimulationError, Simulator};
+use crate::simulate::{Assembled, SimulationError, Simulator};
 
 use subsystems::Prepared;
 
 pub use cost::{CostError, CostOptions, cost};
 pub use effect_costs::language_costs;
-pub use explain::{explain, explain_whole};
+pub use explain::explain;
 pub use feasible::{Place, Survey};
 pub use internal::{InternalError, caught, record_panics};
 
@@ -103,12 +104,20 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
     Ok(Prepared::new(Reduction::joined(description))?.simulator)
 }
 
-/// A whole model compiled, with the parts that no output depends on, and nothing merged: for checking it.
+/// A whole model compiled, with the parts that no output depends on, and nothing merged.
 ///
 /// # Errors
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
+}
+
+/// A whole model assembled, with the parts that no output depends on, and nothing merged: for checking it.
+///
+/// # Errors
+/// As for [`run`].
+pub fn assemble_whole(description: &Description) -> Result<Assembled, RunError> {
+    formulation::assembled(description)
 }
 
 /// The model's scheme.

@@ -7,7 +7,8 @@
 use symdiff::Formula;
 
 use super::internal::caught;
-use super::single::{Ran, Study};
+use super::outcome::Ran;
+use super::single::Study;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Description, Formulation, ParameterValue};

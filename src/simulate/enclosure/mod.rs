@@ -103,13 +103,30 @@ impl Gains {
     }
 }
 
+/// What the next step's length does: its own coefficients, and a becomes w + ratio (a − w) where the length changes.
+#[derive(Clone, Copy, Debug)]
+struct NextGains {
+    gains: Gains,
+    /// The next length over this one, where they differ.
+    ratio: Option<f64>,
+}
+
+impl NextGains {
+    fn same(gains: Gains) -> Self {
+        Self { gains, ratio: None }
+    }
+}
+
 /// A motion enclosed over a box of parameters, step by step.
 #[derive(Debug)]
 pub struct Enclosure<'s> {
     space: &'s ModelSpace,
+    certifier: &'s Certifier<'s>,
     program: &'s EquationsProgram,
     memory: ModelMemory<'s>,
     gains: Gains,
+    /// Those with which the next q̂ and v̂ are made.
+    next: NextGains,
     /// q̂, v̂, w in that order, 3n: polynomials only.
     state: Models,
     /// A, in units of `scale`.
@@ -157,9 +174,11 @@ impl<'s> Enclosure<'s> {
         let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);
         let mut enclosure = Self {
             space,
+            certifier,
             program,
             memory,
             gains,
+            next: NextGains::same(gains),
             state: Models::zero(space, 3 * n, 1),
             frame,
             radii: vec![0.0; 3 * n],
@@ -184,6 +203,12 @@ impl<'s> Enclosure<'s> {
     /// # Errors
     /// Where a step's solution cannot be proven, with the time of its end.
     pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, EnclosureError)> {
-        schedule.steps_to(row).try_for_each(|(_, end)| self.step(end).map_err(|lost| (end, lost)))
+        let lengths = schedule.steps_to(row).chain(schedule.steps_to((row + 1).min(schedule.rows - 1))).skip(1);
+        let next: Vec<f64> = lengths.map(|(length, _)| length).collect();
+        for (place, (length, end)) in schedule.steps_to(row).enumerate() {
+            let next = next.get(place).copied().unwrap_or(length);
+            self.step(end, (length, next)).map_err(|lost| (end, lost))?;
+        }
+        Ok(())
     }
 }
