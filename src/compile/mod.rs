@@ -19,11 +19,11 @@ mod start;
 mod start_equations;
 mod step;
 
-pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
+pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation};
 pub use layout::Layout;
-pub use program::{Mode, PivotSample, Program, Watched, WatchedPivot};
-pub use scheme::{Coefficients, ConstraintLevel, Scheme};
+pub use program::{PivotSample, Program, Watched};
+pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
 pub use start_equations::Residual;

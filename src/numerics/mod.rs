@@ -13,6 +13,8 @@ mod bernstein;
 mod chebyshev;
 mod domain;
 mod error;
+#[cfg(test)]
+mod evaluation;
 mod extremes;
 mod leja;
 mod peak;
@@ -29,21 +31,18 @@ mod surrogate;
 mod taylor;
 mod tensor;
 
-pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use domain::ParameterBox;
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extremes::{Extent, extremes, extremes_near};
 pub use polynomial_range::{PolynomialRange, RangeKind};
-pub use range::{EMPTY, Enclosed, Range, union};
+pub use range::{EMPTY, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
-pub use sobol::{SobolDecomposition, SobolIndices};
-pub use sparse_basis::{SparseBasis, SparseWork};
+pub use sobol::SobolDecomposition;
+pub use sparse_basis::SparseWork;
 pub use sparse_grid::SparseGrid;
-pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
-pub use tensor::Work;

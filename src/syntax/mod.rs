@@ -7,6 +7,5 @@ pub(crate) mod source;
 pub(crate) mod suggest;
 pub(crate) mod yaml;
 
-pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
+pub use diagnostic::{Diagnostics, Record};
 pub use harmless::{harmless, is_harmful};
-pub use source::{Place, Source, Sources, Span};
