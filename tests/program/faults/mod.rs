@@ -7,4 +7,5 @@ mod interrupts;
 mod names;
 mod panics;
 mod sizes;
+mod terminal;
 mod uncertainty;

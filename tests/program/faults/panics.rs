@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use mbint::model;
-use mbint::results::Method;
-use mbint::study::{self, Options};
+use mbint::inner::model;
+use mbint::inner::results::Method;
+use mbint::inner::study::{self, Options};
 
 use crate::place::Place;
 
@@ -21,7 +21,7 @@ bounds: { chebyshev: { order: 2 }, taylor: { order: 2 }, scan: { points: 4 } }
 ";
 
 /// A run in which what is called for progress panics once, at the first report beyond a fraction.
-fn with_one_panic(text: &str, beyond: f64) -> (mbint::results::Bounds, mbint::results::Summary) {
+fn with_one_panic(text: &str, beyond: f64) -> (mbint::inner::results::Bounds, mbint::inner::results::Summary) {
     let description = model::load_str("test", text, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let panicked = AtomicBool::new(false);
     let progress = |fraction: f64| {
