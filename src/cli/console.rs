@@ -61,6 +61,8 @@ pub(super) fn plain(text: &str) -> String {
 pub(super) struct Console {
     /// Whether the reader of standard output has closed the pipe (`mbint … | head -1`).
     closed: bool,
+    /// Whether something could not be written.
+    failed: bool,
 }
 
 impl Console {
@@ -75,8 +77,20 @@ impl Console {
                 self.closed = true;
                 Ok(())
             }
-            result => result.map_err(|error| Failure::Failed(format!("cannot write to standard output: {error}"))),
+            Err(error) => {
+                // The models that follow run nevertheless.
+                self.closed = true;
+                self.failed = true;
+                self.error(&format!("cannot write to standard output: {error}"));
+                Ok(())
+            }
+            Ok(()) => Ok(()),
         }
+    }
+
+    /// Whether standard output could not take what was to be written.
+    pub fn has_failed(&self) -> bool {
+        self.failed
     }
 
     /// Writes an error in one line to standard error.

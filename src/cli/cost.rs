@@ -33,6 +33,8 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         interrupted: &interrupt::asked,
     };
     interrupt::listen();
+    // A study says itself what there is to keep.
+    interrupt::keep_results(true);
     let study = match study::cost(&model, &options) {
         Ok(study) => study,
         Err(_) if interrupt::asked() => {

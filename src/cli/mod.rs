@@ -70,6 +70,7 @@ pub fn main() -> ExitCode {
         console.error(&message);
         status
     });
+    let status = if console.has_failed() { status.max(Status::Failed) } else { status };
     ExitCode::from(status)
 }
 

@@ -88,7 +88,7 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
 fn run_and_report(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
     let done = run_one(job, request)?;
     if !request.quiet {
-        console.print(&overview(&done.summary, &job.folder, &done.files))?;
+        console.print(&overview(&done.summary, &done.folder, &done.files))?;
     }
     report(&done, console);
     Ok(done.status)

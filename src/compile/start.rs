@@ -10,8 +10,8 @@
 //!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
-//! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it is a number (the
-//! angle of a joint), the two are eliminated as a pair, without ε. Where it is no number, both sides are augmented: μ Φ_kᵀ Φ_k is added
+//! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it cannot vanish (the
+//! angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides are augmented: μ Φ_kᵀ Φ_k is added
 //! to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0, but couples what k couples.
 //!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
@@ -288,7 +288,7 @@ impl Builder<'_> {
         diagonal
     }
 
-    /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them is a number.
+    /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them cannot vanish.
     fn pairs(&self, jacobian: &SparseMatrix) -> Vec<(usize, usize)> {
         let diagonal = self.masses();
         let mut taken = vec![false; diagonal.len()];
@@ -296,8 +296,12 @@ impl Builder<'_> {
         for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
             let mut massless = derivatives.iter().filter(|&&(column, _)| diagonal[column] == 0.0);
             let (Some(&(column, derivative)), None) = (massless.next(), massless.next()) else { continue };
+            // A joint's coordinate and the constraint that measures it have one name; the derivative is −1 wherever that is closed.
+            let names = (&self.system.constraints[constraint].name, &self.system.coordinates[column].name);
+            let is_measured = names.0 == names.1;
             let is_number = self.graph.as_constant(derivative).is_some_and(|number| number != 0.0);
-            let is_defined = derivatives.len() > 1 && is_number && !self.redundant.contains(&constraint);
+            let may_be_pivot = is_number || is_measured;
+            let is_defined = derivatives.len() > 1 && may_be_pivot && !self.redundant.contains(&constraint);
             if is_defined && !std::mem::replace(&mut taken[column], true) {
                 pairs.push((column, constraint));
             }

@@ -52,15 +52,15 @@ pub struct Description {
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
     /// Where parameters, bodies and joints are by name.
-    pub(crate) places: Places,
+    pub places: Places,
 }
 
 /// Where what has a name is.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Places {
-    pub parameters: NameIndex,
-    pub bodies: NameIndex,
-    pub joints: NameIndex,
+pub struct Places {
+    pub(crate) parameters: NameIndex,
+    pub(crate) bodies: NameIndex,
+    pub(crate) joints: NameIndex,
 }
 
 /// In how many dimensions a mechanism moves.

@@ -30,6 +30,16 @@ pub enum SimulationError {
         /// Names of the equations without a pivot.
         equations: Vec<String>,
     },
+    /// A term of the equations has no finite value.
+    #[error("{term} is not a finite number at t = {time} s ({})", parameter_list(parameters))]
+    NotFinite {
+        /// The term, and where it stands.
+        term: String,
+        /// s
+        time: f64,
+        /// The sample.
+        parameters: NamedValues,
+    },
     /// The program would have more operations than allowed.
     #[error("the equations take too many operations")]
     TooLong,
@@ -186,7 +196,7 @@ pub(super) fn residual_text(residual: f64, constraint: &ConstraintInfo, of_veloc
 
 /// A positive number in so many significant digits, without trailing zeros.
 fn significant(value: f64, digits: i32) -> String {
-    let before_point = value.log10().floor() as i32 + 1;
+    let before_point = symdiff::math::log10(value).floor() as i32 + 1;
     let decimals = (digits - before_point).max(0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

@@ -2,7 +2,7 @@
 
 use symdiff::{Tile, WIDTHS};
 
-use super::diagnostics::undetermined_outputs;
+use super::diagnostics::{not_finite, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_factors};
 use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
 use crate::assemble::System;
@@ -43,8 +43,14 @@ impl Assembled {
         system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
-        let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
         let guess = guess_state(&system, &layout, &parameters);
+        let no_number = |state: &[f64]| {
+            let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+            let named = || names.zip(parameters.iter().copied()).collect();
+            let term = not_finite(&system, &layout, state, 0.0)?;
+            Some(SimulationError::NotFinite { term, time: 0.0, parameters: named() })
+        };
+        let singular = |none: NoFactors<Equation>| no_number(&guess).unwrap_or_else(|| no_factors(&system, &none));
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;
@@ -57,6 +63,9 @@ impl Assembled {
         if !mobility.redundant.is_empty() {
             start = compile_start(&system, &mobility.redundant, &guess).map_err(singular)?;
             nominal = assembled(&start)?;
+        }
+        if let Some(error) = no_number(&nominal) {
+            return Err(error);
         }
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
         Ok(Self { system, start, nominal, mobility, undetermined })

@@ -4,7 +4,7 @@
 //! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `internal` keeps a
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
 //! panic to what panicked.
 
 mod conclude;
@@ -18,6 +18,7 @@ mod feasible;
 mod formulation;
 mod internal;
 mod outcome;
+mod price;
 mod single;
 mod step_search;
 mod subsystems;
@@ -37,6 +38,7 @@ pub use effect_costs::language_costs;
 pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
+pub use price::Price;
 
 /// How to run.
 pub struct Options<'a> {
@@ -48,6 +50,8 @@ pub struct Options<'a> {
     pub certify_time: bool,
     /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
+    /// Whether to run what takes long without being allowed by the model.
+    pub dear: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
@@ -62,6 +66,7 @@ impl Default for Options<'_> {
             threads: None,
             certify_time: false,
             skip_infeasible: false,
+            dear: true,
             progress: &|_| (),
             interrupted: &|| false,
         }
@@ -83,6 +88,9 @@ pub enum RunError {
     /// Some samples cannot be assembled: where these lie.
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
+    /// It would take long, and nobody has allowed it.
+    #[error(transparent)]
+    Dear(Price),
     /// An error of this program.
     #[error(transparent)]
     Internal(#[from] InternalError),

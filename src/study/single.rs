@@ -252,13 +252,18 @@ impl<'a> Study<'a> {
                 break;
             }
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
-            let outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
+            let before = motions.over();
+            let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
                 Ok(timed) => timed?.0,
                 Err(error) => {
                     internal.push(error);
                     self.unknown(schedule, method.name())?
                 }
             };
+            if (self.interrupted)() && method.about().is_sampled {
+                // Not those that were planned.
+                outcome.summary.simulations = motions.over() - before;
+            }
             outcomes.push((method, outcome));
         }
         Ok(outcomes)
@@ -287,6 +292,13 @@ impl<'a> Study<'a> {
             internal: vec![error],
         };
         Ok(self.conclude(results, None))
+    }
+
+    /// Simulations of the methods whose samples are given; those that a tolerance decides are within the budget.
+    pub(super) fn planned_simulations(&self) -> f64 {
+        let parts = if self.certify_time { 3.0 } else { 1.0 };
+        let methods = self.request.methods();
+        parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
     }
 
     /// Samples × rows of all methods.

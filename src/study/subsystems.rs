@@ -8,6 +8,7 @@ use symdiff::Formula;
 
 use super::internal::caught;
 use super::outcome::Ran;
+use super::price::Price;
 use super::single::Study;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
@@ -101,6 +102,10 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
+    let price = Price::of(&studies);
+    if !options.dear && price.is_dear(description.bounds.budget.solves) {
+        return Err(RunError::Dear(price));
+    }
     let mut ran = Vec::with_capacity(count);
     let mut lost = 0;
     for (subsystem, study) in subsystems.iter().zip(&studies) {

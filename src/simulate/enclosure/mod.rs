@@ -164,7 +164,7 @@ impl<'s> Enclosure<'s> {
         start::assemble(simulator, program, space, &mut memory, coefficients.shift() * h)?;
 
         let n = program.layout.q.len();
-        let unit = |size: f64| 2.0_f64.powi(size.log2().round() as i32);
+        let unit = |size: f64| 2.0_f64.powi(symdiff::math::log2(size).round() as i32);
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
         let scale: Vec<f64> =
             [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();

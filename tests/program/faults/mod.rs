@@ -2,10 +2,12 @@
 //! kept, and what is reported is true.
 
 mod disk;
+mod folder;
 mod infeasible;
 mod interrupts;
 mod names;
 mod panics;
+mod processors;
 mod sizes;
 mod terminal;
 mod uncertainty;
