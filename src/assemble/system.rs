@@ -33,10 +33,10 @@ pub struct System {
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
-    /// Where it is not positive, no effect acts that acts only sometimes (a contact, a stop).
-    pub touching: Option<Expr>,
-    /// What these add to Q where it is positive, n; it is in `force`, under that condition.
-    pub sometimes: Vec<Expr>,
+    /// Where it is not positive, no conditional effect (a contact, a stop) acts.
+    pub active_condition: Option<Expr>,
+    /// What conditional effects add to Q where it is positive, n; it is in `force`, under that condition.
+    pub conditional: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
     /// What is observed, over t, q, v, w, λ and the parameters.
@@ -58,7 +58,7 @@ pub struct System {
 /// By which coordinates a motion is described.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulationInfo {
-    /// Whether joints carry bodies.
+    /// Whether by those of joints, as far as that goes.
     pub joint: bool,
     /// For people.
     pub why: String,
@@ -185,6 +185,13 @@ impl System {
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// Whether an output depends on accelerations or multipliers.
+    pub fn observes_accelerations(&self) -> bool {
+        let outputs: Vec<Expr> = self.outputs.iter().map(|output| output.expr).collect();
+        let used = self.graph.symbols_of(&outputs);
+        self.w.iter().chain(&self.lambda).any(|symbol| used.binary_search(symbol).is_ok())
     }
 
     /// They are noted as left out.
