@@ -14,11 +14,7 @@
 
 use std::collections::VecDeque;
 
-<<<<<<< HEAD
-use symdiff::{Builder, Expr, math};
-=======
-use symdiff::Scalar;
->>>>>>> main
+use symdiff::{Scalar, math};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Orientation, Separation};
@@ -108,17 +104,10 @@ impl PlanarPoses {
         match coordinate {
             JointCoordinate::Angle => second[ANGLE] - first[ANGLE],
             JointCoordinate::Displacement => {
-<<<<<<< HEAD
-                let [a, b] = between.map(|point| at(self.pose(point.body), local(g, m, point)));
-                let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(g, axis, Context::Time).ok());
-                let axis = axis.map_or(vec![1.0, 0.0], |axis| m.nominal(g, &axis));
-                let along = at([0.0, 0.0, first[ANGLE] + math::atan2(axis[1], axis[0])], [1.0, 0.0]);
-=======
                 let [a, b] = between.map(|point| at(self.pose(point.body), local(m, point)));
                 let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(axis, Context::Time).ok());
                 let [x, y, _] = axis.map_or([1.0, 0.0, 0.0], |axis| m.nominal(axis.components()));
-                let along = at([0.0, 0.0, first[ANGLE] + y.atan2(x)], [1.0, 0.0]);
->>>>>>> main
+                let along = at([0.0, 0.0, first[ANGLE] + math::atan2(y, x)], [1.0, 0.0]);
                 along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1])
             }
         }
