@@ -125,7 +125,7 @@ fn other_way<T>(
     let mut description = description.clone();
     description.simulation.formulation = formulation;
     let system = match assemble::build(&description) {
-        Err(BuildError::NotCarried { .. }) => return Err(SimulationError::TooLong.into()),
+        Err(BuildError::NoJointCoordinates { .. }) => return Err(SimulationError::TooLong.into()),
         built => built?,
     };
     let other = if formulation == Formulation::Joint { "absolute" } else { "joint" };

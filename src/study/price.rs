@@ -31,7 +31,7 @@ pub struct Price {
 
 impl Price {
     /// What the methods' own numbers of samples come to; where a tolerance decides, the budget does.
-    pub fn of(studies: &[Study]) -> Self {
+    pub(super) fn of(studies: &[Study]) -> Self {
         let threads = rayon::current_num_threads();
         let (mut simulations, mut seconds) = (0.0, 0.0);
         for study in studies {

@@ -18,7 +18,7 @@ const MANY: i32 = 8;
 impl LogAxis {
     /// The axis for `values`; whatever is not positive and finite is passed over.
     pub fn fit(values: impl Iterator<Item = f64>) -> Self {
-        let exponents = values.filter(|x| x.is_normal() && *x > 0.0).map(f64::log10);
+        let exponents = values.filter(|x| x.is_normal() && *x > 0.0).map(symdiff::math::log10);
         let (low, high) =
             exponents.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         if low > high {
