@@ -6,6 +6,7 @@ mod folder;
 mod infeasible;
 mod interrupts;
 mod names;
+mod numbers;
 mod panics;
 mod processors;
 mod sizes;
