@@ -1,5 +1,7 @@
 //! The equations of motion of a description.
 
+use std::sync::Arc;
+
 use symdiff::taylor_model::encloses;
 use symdiff::{Binary, Builder, Expr};
 
@@ -12,7 +14,7 @@ use super::error::BuildError;
 use super::joints;
 use super::mechanism::Mechanism;
 use super::recursion;
-use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, ResidualUnit, System};
+use super::system::{ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, ResidualUnit, System};
 use crate::elements::joints::Row;
 
 /// How far from zero, in rad or relative to the model's size, a constraint that nothing can change may be: rounding
@@ -165,12 +167,16 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
     mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
 
     let outputs = mechanism.outputs(g)?;
-    let start = mechanism.start(g)?;
+    let mut start = mechanism.start(g)?;
+    // The equations' graph stays what it is without them.
+    let graph = g.graph().clone();
+    let distances = mechanism.distances(g, length, &start)?;
     let coordinates = mechanism.coordinates.iter().map(|&owner| CoordinateInfo {
         name: mechanism.coordinate_name(owner),
         scale: if owner.is_length() { length } else { 1.0 },
         is_angle: !owner.is_length(),
     });
+    start.nearest = (!distances.is_empty()).then(|| Arc::new(Nearest { graph: builder.finish(), distances }));
     let mut system = System {
         coordinates: coordinates.collect(),
         parameters: mechanism.uncertain,
@@ -196,7 +202,7 @@ fn equations(builder: Builder, mut mechanism: Mechanism) -> Result<System, Build
             joint: !mechanism.tree.is_absolute(),
             why: "the model asks for them".to_owned(),
         },
-        graph: builder.finish(),
+        graph,
     };
     system.note_unused_parameters();
     Ok(system)

@@ -20,6 +20,8 @@ pub struct Reaction {
     pub magnitude: Expr,
     /// About the second point, N m.
     pub torque: Vector,
+    /// About the joint's axis, N m, where the torque cannot be about another and there is no force: of motors and gears.
+    pub about_axis: Option<Expr>,
 }
 
 /// A joint's constraints.
@@ -140,5 +142,40 @@ pub fn reaction(g: &Builder, joint: &dyn Joint, kept: &[(Row, Expr)]) -> Reactio
         (_, _, [lambda]) => g.unary(Unary::Abs, *lambda),
         _ => space::norm(g, force),
     };
-    Reaction { force, magnitude, torque }
+    // A coupling's row pushes against its coordinate: its vector is the opposite of the axis.
+    let about_axis = match kept {
+        [(row, lambda)] if row.force.is_zero() && !row.torque.is_zero() && joint.between().is_none() => Some(g.neg(*lambda)),
+        _ => None,
+    };
+    Reaction { force, magnitude, torque, about_axis }
+}
+
+/// The part of a vector along a unit vector.
+pub fn along(g: &Builder, vector: Vector, axis: Vector) -> Expr {
+    space::dot(g, vector, axis)
+}
+
+/// The part of a vector across a unit vector: its magnitude or, in the plane across an axis of the plane, its component
+/// along the axis turned by a right angle, counter-clockwise.
+pub fn across(g: &Builder, vector: Vector, axis: Vector, is_spatial: bool) -> Expr {
+    if !is_spatial && g.is_zero(axis[2]) {
+        let normal = space::perpendicular(g, axis);
+        return space::dot(g, vector, normal);
+    }
+    let part = space::scale(g, space::dot(g, vector, axis), axis);
+    space::norm(g, space::sub(g, vector, part))
+}
+
+impl Mechanism<'_> {
+    /// The unit vector of a joint's own axis in the ground's axes; for a coupling that of what it drives. Zero where the
+    /// joint has none.
+    pub fn axis_of_joint(&self, g: &Builder, joint: usize) -> Vector {
+        let kind = &self.description.joints[joint].kind;
+        let own = [JointCoordinate::Angle, JointCoordinate::Displacement].map(|coordinate| OnJoint { joint, coordinate });
+        let driven = kind.coordinates(joint);
+        let has_axis = |on: &&OnJoint| self.description.joints[on.joint].kind.axis_of(on.coordinate).is_some();
+        let on = if kind.between().is_some() { own.iter().find(has_axis) } else { driven.iter().rfind(has_axis) };
+        // The axis has been read as a formula of parameters and t: nothing else is in it.
+        on.and_then(|on| axis_in_ground(g, self, on.joint, on.coordinate).ok()).unwrap_or_else(|| space::zero(g))
+    }
 }

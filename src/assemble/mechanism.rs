@@ -154,7 +154,7 @@ impl<'d> Mechanism<'d> {
     }
 
     /// Whether a mobilizer does not depend on t.
-    fn is_time_independent(&self, g: &Builder, mobilizer: &Mobilizer) -> bool {
+    pub fn is_time_independent(&self, g: &Builder, mobilizer: &Mobilizer) -> bool {
         mobilizer.formulas().all(|formula| self.formula(g, formula, Context::Parameters).is_ok())
     }
 

@@ -2,7 +2,7 @@
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `body`), constraints
 //! (`joints`), applied forces (`applied_forces`), inertia, outputs, and where the motion starts (`start`, `placement` in the plane,
-//! `pose` in space).
+//! `pose` in space), and what is open of it (`nearest`); how large the model is (`extent`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|
@@ -19,12 +19,14 @@ mod body;
 mod build;
 mod carried;
 mod coordinates;
+mod extent;
 mod flexible;
 mod formulation;
 mod inertia;
 mod joints;
 mod mechanism;
 mod merging;
+mod nearest;
 mod outputs;
 mod placement;
 mod pose;
@@ -39,4 +41,4 @@ use crate::multibody::{error, rotation, space};
 
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
 pub use error::BuildError;
-pub use system::{ConstraintInfo, FormulationInfo, ResidualUnit, StartCondition, System};
+pub use system::{ConstraintInfo, Distance, FormulationInfo, Nearest, ResidualUnit, StartCondition, System};

@@ -5,6 +5,7 @@ use symdiff::{Builder, Expr};
 use crate::model::{EnergyKind, ReactionComponent, Symbol, TimeOrder};
 
 use super::error::BuildError;
+use super::joints::{across, along};
 use super::mechanism::{Context, Mechanism, dof};
 use super::rotation;
 use super::space;
@@ -56,9 +57,16 @@ impl Mechanism<'_> {
                 match component {
                     ReactionComponent::Force => reaction.magnitude,
                     ReactionComponent::ForceAlong(axis) => reaction.force[axis],
-                    ReactionComponent::Torque if self.is_spatial() => space::norm(g, reaction.torque),
+                    ReactionComponent::Torque if self.is_spatial() => {
+                        reaction.about_axis.unwrap_or_else(|| space::norm(g, reaction.torque))
+                    }
                     ReactionComponent::Torque => reaction.torque[2],
                     ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
+                    ReactionComponent::Axial => along(g, reaction.force, self.axis_of_joint(g, joint)),
+                    ReactionComponent::Radial => {
+                        across(g, reaction.force, self.axis_of_joint(g, joint), self.is_spatial())
+                    }
+                    ReactionComponent::AxialTorque => along(g, reaction.torque, self.axis_of_joint(g, joint)),
                 }
             }
             Symbol::Sensor { effect, measure } => match self.measures.get(&(effect, measure)) {

@@ -260,7 +260,7 @@ impl Mechanism<'_> {
                 torque = space::add(g, torque, moment);
             }
             let magnitude = space::norm(g, force);
-            self.reactions[carried.joint] = Reaction { force, magnitude, torque };
+            self.reactions[carried.joint] = Reaction { force, magnitude, torque, about_axis: None };
         }
     }
 }

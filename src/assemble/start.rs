@@ -1,8 +1,7 @@
-//! What is known at the start, and the model's size.
+//! What is known at the start.
 
 use symdiff::{Builder, Expr, Formula};
 
-use crate::elements::joints::{Placement, Separation};
 use crate::grammar::JointCoordinate;
 use crate::model::{Coordinate, StartValue, TimeOrder};
 
@@ -32,13 +31,18 @@ impl Mechanism<'_> {
         let description = self.description;
         let position = self.values_at_start(g, &description.initial, TimeOrder::Position)?;
         let velocity = self.values_at_start(g, &description.initial, TimeOrder::Velocity)?;
-        let guessed = self.values_at_start(g, &description.guess, TimeOrder::Position)?;
+        let guessed = self.guessed(g)?;
         let known: Vec<Option<Expr>> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
         let placed = self.placed(g, &known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| g.constant(placed)));
         let guess = guess.collect();
         let conditions = self.start_of_beams(g)?;
-        Ok(Start { position, velocity, guess, conditions })
+        Ok(Start { position, velocity, guess, conditions, nearest: None })
+    }
+
+    /// Positions that `guess` names.
+    pub fn guessed(&self, g: &Builder) -> Result<Vec<Option<Expr>>, BuildError> {
+        self.values_at_start(g, &self.description.guess, TimeOrder::Position)
     }
 
     /// Where the joints put the coordinates.
@@ -126,46 +130,5 @@ impl Mechanism<'_> {
                 found[index] = Some(value);
             }
         }
-    }
-
-    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
-    /// and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, g: &Builder) -> Result<f64, BuildError> {
-        let mut lengths: Vec<Expr> = Vec::new();
-        for body in &self.bodies {
-            lengths.extend(body.points.iter().flatten());
-            lengths.extend(body.center);
-            // A coordinate's symbol counts as zero here.
-            lengths.extend(&body.position[..3]);
-        }
-        for joint in &self.description.joints {
-            if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
-                lengths.push(self.formula(g, length, Context::Time)?);
-            }
-        }
-        lengths.push(self.length_of_beams(g)?);
-        let starts = self.description.initial.iter().chain(&self.description.guess);
-        let formulas: Vec<&Formula> = starts
-            .filter_map(|value| match value {
-                StartValue::Coordinate { coordinate, order: TimeOrder::Position, value, .. }
-                    if coordinate.is_length() =>
-                {
-                    Some(value)
-                }
-                StartValue::Joint {
-                    coordinate: JointCoordinate::Displacement,
-                    order: TimeOrder::Position,
-                    value,
-                    ..
-                } => Some(value),
-                _ => None,
-            })
-            .collect();
-        for formula in formulas {
-            lengths.push(self.formula(g, formula, Context::Parameters)?);
-        }
-        let largest = self.nominal(g, &lengths).into_iter().map(f64::abs).filter(|length| length.is_finite());
-        let largest = largest.fold(0.0, f64::max);
-        Ok(if largest > 0.0 { largest } else { 1.0 })
     }
 }

@@ -54,6 +54,8 @@ struct Counts {
     uncertain_parameters: Vec<String>,
     redundant_constraints: Vec<String>,
     singular_at_start: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
     /// Parts that no output depends on.
@@ -140,6 +142,7 @@ impl Counts {
             uncertain_parameters: explanation.parameters,
             redundant_constraints: explanation.redundant_constraints,
             singular_at_start: explanation.singular_at_start,
+            shared_start: explanation.shared_start,
             undetermined_outputs: explanation.undetermined_outputs,
             outputs: explanation.outputs,
             not_simulated: Reduction::of(model, Choices::default()).left_out,
@@ -164,10 +167,11 @@ impl Counts {
             names => format!(", {what} {}", names.join(", ")),
         };
         let singular = others(&self.singular_at_start, "a singular start, at which other constraints imply");
+        let shared = others(&self.shared_start, "a start that the model leaves open, nearest to rest in");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
         let left_out = others(&self.not_simulated, "not simulated because no output depends on it:");
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}{left_out}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}\n",
             self.model,
             count(self.coordinates, "coordinate", "coordinates"),
             count(self.constraints, "constraint", "constraints"),
@@ -191,6 +195,7 @@ mod tests {
             uncertain_parameters: vec!["l1".into(), "tau".into()],
             redundant_constraints: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
             not_simulated: vec![],

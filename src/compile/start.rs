@@ -13,6 +13,8 @@
 //! A massless coordinate has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
 //! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
 //!
+//! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
+//!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
 //! D = diag(1/scale²) minimises the change of the coordinates that are not given; given ones have no column. ε > 0 makes
@@ -24,6 +26,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
+use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use crate::assemble::{StartCondition, System};
 
@@ -46,6 +49,8 @@ pub struct StartProgram {
     pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
+    /// What is nearest to rest.
+    pub open: OpenStart,
     lowered: Lowered,
 }
 
@@ -119,12 +124,28 @@ type Target = (Expr, Option<u32>);
 /// Where the equations have no finite values at the sample (rows: motion, constraints, then start conditions), and where
 /// the graph is full.
 pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Result<StartProgram, NoFactors> {
+    compile_nearest_start(system, redundant, sample, OpenStart::default())
+}
+
+/// The same where the start is left open: it is then the one nearest to rest.
+///
+/// # Errors
+/// As for [`compile_start`].
+pub fn compile_nearest_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+    open: OpenStart,
+) -> Result<StartProgram, NoFactors> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
-    let mut graph = system.graph.clone();
+    let mut graph = match &system.start.nearest {
+        Some(nearest) if open.is_any() => nearest.graph.clone(),
+        _ => system.graph.clone(),
+    };
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations)?;
+    let [position, velocity, acceleration] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -157,6 +178,7 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
         constraint_rate: tail(VELOCITY, n),
         outputs: tail(OBSERVE, 0),
         jacobian_entries,
+        open,
         layout,
         lowered,
     })
@@ -244,21 +266,35 @@ struct Builder<'s> {
 
 impl Builder<'_> {
     /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors> {
+    fn corrections(&mut self, equations: &Equations, open: OpenStart) -> Result<[Vec<Expr>; 3], NoFactors> {
         let system = self.system;
         let n = system.q.len();
-        let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
-        let diagonal: Vec<(usize, usize, Expr)> =
-            metric.iter().enumerate().map(|(i, &weight)| (i, i, self.graph.constant(weight))).collect();
+        let smallest = LeastSquares::smallest_change(system, &mut self.graph);
+        let positions = open.positions.then(|| LeastSquares::of_positions(system, &mut self.graph));
+        let velocities = open.velocities.then(|| LeastSquares::of_velocities(system, &mut self.graph));
+        let [positions, velocities] = [&positions, &velocities].map(|open| open.as_ref().unwrap_or(&smallest));
         let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
-        let zero = vec![self.graph.constant(0.0); n];
         let none = SparseMatrix::zero(n, system.lambda.len());
         let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
-            .correction(&diagonal, &none, closure_jacobian, &given(&system.start.position), &zero, closure)
+            .correction(
+                &positions.metric,
+                &none,
+                closure_jacobian,
+                &given(&system.start.position),
+                &positions.gradient,
+                closure,
+            )
             .map_err(|none| numbered(system, none, OF_POSITION))?;
         let velocity = self
-            .correction(&diagonal, &none, closure_rate_jacobian, &given(&system.start.velocity), &zero, closure_rate)
+            .correction(
+                &velocities.metric,
+                &none,
+                closure_rate_jacobian,
+                &given(&system.start.velocity),
+                &velocities.gradient,
+                closure_rate,
+            )
             .map_err(|none| numbered(system, none, OF_VELOCITY))?;
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
         let Equations { jacobian, rate_of_rate, .. } = equations;

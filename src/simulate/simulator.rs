@@ -4,9 +4,11 @@ use symdiff::{Tile, WIDTHS};
 
 use super::diagnostics::undetermined_outputs;
 use super::error::{SimulationError, assembly_error, equation_names, no_factors};
-use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
+use super::start::{
+    Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
+};
 use crate::assemble::System;
-use crate::compile::{Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
+use crate::compile::{Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_nearest_start, compile_start};
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
@@ -29,6 +31,8 @@ pub struct Simulator {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<usize>,
+    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    pub shared: Vec<String>,
 }
 
 impl Simulator {
@@ -68,11 +72,22 @@ impl Simulator {
             start = compile_start(&system, &mobility.redundant, &guess).map_err(singular)?;
             nominal = assembled(&start)?;
         }
+        let open = open_start(&system, &start, &nominal);
+        if open.is_any() {
+            let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open).map_err(singular)?;
+            let mut assembly = Assembly::new(&nearest, &system, 1, |parameter, _| parameters[parameter]);
+            if assembly.assemble_nearest(&nominal).is_ok() {
+                assembly.shift_accelerations(scheme.coefficients().shift() * h);
+                nominal = assembly.tile().values()[..layout.registers()].to_vec();
+                start = nearest;
+            }
+        }
+        let shared = shared_coordinates(&system, &start, &nominal);
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
         let samples = pivot_samples(&system, &layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples).map_err(singular)?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined })
+        Ok(Self { system, start, program, nominal, mobility, undetermined, shared })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
