@@ -2,39 +2,38 @@
 
 use std::collections::BTreeSet;
 
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Formula, Scalar};
 
+use super::mechanism::Mechanism;
 use crate::elements::joints::{Placement, Separation};
-use crate::grammar::JointCoordinate;
-use crate::model::{Description, Reference, StartValue, Symbol, TimeOrder};
+use crate::grammar::{JointCoordinate, Reference, Symbol, TimeOrder};
+use crate::model::{Description, StartValue};
+use crate::multibody::{BuildError, Context};
 
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism};
-
-impl Mechanism<'_> {
+impl Mechanism<'_, '_> {
     /// The largest length that the model names and uses, m, at its nominal parameters: coordinates of points, distances,
-    /// held and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, g: &Builder) -> Result<f64, BuildError> {
-        let mut lengths: Vec<Expr> = Vec::new();
+    /// prescribed and initial positions; 1 where it names none.
+    pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
+        let mut lengths: Vec<Scalar> = Vec::new();
         for body in &self.bodies {
-            lengths.extend(body.center);
+            lengths.extend(body.center.components());
             // A coordinate's symbol counts as zero here.
             lengths.extend(&body.position[..3]);
         }
-        for (body, point) in used_points(self.description) {
-            lengths.extend(self.bodies[body].points[point]);
+        for (body, point) in used_points(description) {
+            lengths.extend(self.bodies[body].points[point].components());
         }
-        for joint in &self.description.joints {
+        for joint in self.joints {
             if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
-                lengths.push(self.formula(g, length, Context::Time)?);
+                lengths.push(self.formula(length, Context::Time)?);
             }
         }
-        lengths.push(self.length_of_beams(g)?);
-        let starts = self.description.initial.iter().chain(&self.description.guess);
-        for formula in starts.filter_map(length_at_start) {
-            lengths.push(self.formula(g, formula, Context::Parameters)?);
+        lengths.push(self.length_of_beams()?);
+        for formula in description.initial.iter().chain(&description.guess).filter_map(length_at_start) {
+            lengths.push(self.formula(formula, Context::Parameters)?);
         }
-        let largest = self.nominal(g, &lengths).into_iter().map(f64::abs).filter(|length| length.is_finite());
+        let values = self.sample(&lengths, 0.0, |parameter| parameter.nominal);
+        let largest = values.into_iter().map(f64::abs).filter(|length| length.is_finite());
         let largest = largest.fold(0.0, f64::max);
         Ok(if largest > 0.0 { largest } else { 1.0 })
     }

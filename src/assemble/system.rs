@@ -83,21 +83,27 @@ pub struct EffectInfo {
 
 /// Something that the model says and no equation holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct LeftOut {
+    /// The part of the model, as it is called in messages.
     pub what: String,
+    /// The reason.
     pub why: String,
 }
 
 /// A parameter that is an interval.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct UncertainParameter {
+    /// Its name.
     pub name: String,
+    /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// Its symbol in the expressions.
     pub symbol: Expr,
+    /// Nominal value.
     pub nominal: f64,
+    /// Lower end of the interval.
     pub lower: f64,
+    /// Upper end of the interval.
     pub upper: f64,
 }
 
@@ -136,10 +142,12 @@ pub enum ResidualUnit {
 
 /// Something observed.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct OutputInfo {
+    /// Its name.
     pub name: String,
+    /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// Its value.
     pub expr: Expr,
 }
 
@@ -205,6 +213,13 @@ impl System {
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// Whether an output depends on accelerations or multipliers.
+    pub fn observes_accelerations(&self) -> bool {
+        let outputs: Vec<Expr> = self.outputs.iter().map(|output| output.expr).collect();
+        let used = self.graph.symbols_of(&outputs);
+        self.w.iter().chain(&self.lambda).any(|symbol| used.binary_search(symbol).is_ok())
     }
 
     /// They are noted as left out.

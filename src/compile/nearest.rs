@@ -5,7 +5,7 @@
 //!                                    [ Φ_q                       −ε   ] [μ ] = − [ Φ                ]
 //! ```
 //!
-//! Ψ are the distances of [`crate::assemble::Nearest`], for velocities Ψ̇. η D only keeps each correction small in what no
+//! Ψ are the distances ([`crate::assemble::Distance`]), for velocities Ψ̇. η D only keeps each correction small in what no
 //! distance depends on: it is no part of the right side, so the solution does not depend on it.
 
 use symdiff::{Expr, Graph};

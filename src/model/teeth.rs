@@ -58,7 +58,8 @@ fn bearings(reader: &Reader, joints: &[Entry]) -> BTreeMap<usize, usize> {
             bearings.entry(bearing).or_insert(index);
         }
         for (bearing, other) in reader.model.joints.iter().enumerate() {
-            let holds = other.kind.between().is_some_and(|between| between.iter().any(|at| toothed.bodies.contains(&at.body)));
+            let holds =
+                other.kind.between().is_some_and(|between| between.iter().any(|at| toothed.bodies.contains(&at.body)));
             if holds {
                 bearings.entry(bearing).or_insert(index);
             }

@@ -18,8 +18,8 @@ const ROUNDS: usize = 10;
 
 /// A function's range.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Extent {
+    /// The least and the largest value found.
     pub range: Range,
     /// How far the search may have missed its ends.
     pub gap: f64,

@@ -87,7 +87,8 @@ simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.02, formulation: {formu
             ["x", "y", "z", "s"].map(|name| curve(&bounds, name).to_vec())
         });
         for (found, expected) in absolute.iter().flatten().zip(joint.iter().flatten()) {
-            assert!((found - expected).abs() < 1e-9, "{kind} {place}: {found}, not {expected}");
+            // The steps' errors, (ωh)², differ with the coordinates where the body turns.
+            assert!((found - expected).abs() < 1e-6, "{kind} {place}: {found}, not {expected}");
         }
     }
 }

@@ -259,7 +259,8 @@ effects: { g: { gravity: { acceleration: [1, 0, -9.81] } } }
         "S.angular_velocity: -0.7",
         "R.angle: -0.4, S.angular_velocity: 2",
     ];
-    for (mechanism, start) in [planar, spatial].into_iter().flat_map(|mechanism| starts.map(|start| (mechanism, start))) {
+    for (mechanism, start) in [planar, spatial].into_iter().flat_map(|mechanism| starts.map(|start| (mechanism, start)))
+    {
         let run_as = |formulation: &str, outputs: &str| {
             nominal(&read(&format!(
                 "{mechanism}initial: {{ {start} }}\noutputs: {{ x: bob.x, y: bob.y, vx: bob.vx, vy: bob.vy{outputs} }}\n\

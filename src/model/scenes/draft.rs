@@ -153,7 +153,8 @@ impl Draft {
     /// Sections that have an entry of this name; that of outputs only where no effect and no joint has it.
     fn sections_with(&self, name: &str) -> Vec<&'static str> {
         let has = |section: &&str| self.entries_of(section).iter().any(|entry| entry.key == name);
-        let [parts, outputs] = [PARTS, OUTPUTS].map(|sections| sections.iter().copied().filter(has).collect::<Vec<_>>());
+        let [parts, outputs] =
+            [PARTS, OUTPUTS].map(|sections| sections.iter().copied().filter(has).collect::<Vec<_>>());
         if parts.is_empty() { outputs } else { parts }
     }
 

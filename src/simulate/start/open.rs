@@ -22,13 +22,15 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64]) -> Ope
     // Constraints and parameters move what is at rest in the nominal start alone.
     let follows = !system.parameters.is_empty() && !system.lambda.is_empty();
     let [apart, moving] = rates_and_positions(system, &start.layout, nominal).map(|(distances, is_open)| {
-        let far = |(distance, value): &(&Distance, f64)| !(value / distance.scale).abs().le(&AT_REST) && is_open(distance);
+        let far =
+            |(distance, value): &(&Distance, f64)| !(value / distance.scale).abs().le(&AT_REST) && is_open(distance);
         distances.iter().any(far)
     });
     let mut rows = None;
     let mut is_free = |given: &[Option<Expr>], conditions: usize| {
         let rows = rows.get_or_insert_with(|| jacobian_rows(system, start, nominal));
-        let of_open = |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(place, _)| given[*place].is_none()).collect();
+        let of_open =
+            |row: &Vec<(usize, f64)>| row.iter().copied().filter(|(place, _)| given[*place].is_none()).collect();
         let rows: Vec<Vec<(usize, f64)>> = rows.iter().map(of_open).collect();
         let rank = rows.len() - dependent_rows(&rows, DEPENDENT).len();
         given.iter().filter(|given| given.is_none()).count() > rank + conditions
@@ -47,7 +49,9 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
     let open = [start.open.positions, start.open.velocities];
     let kinds = rates_and_positions(system, &start.layout, nominal).into_iter().zip(open).zip(["", " (its rate)"]);
     let shared = kinds.filter(|((_, open), _)| *open).flat_map(|(((distances, is_open), _), what)| {
-        let far = distances.into_iter().filter(move |(distance, value)| (value / distance.scale).abs() > APART && is_open(distance));
+        let far = distances
+            .into_iter()
+            .filter(move |(distance, value)| (value / distance.scale).abs() > APART && is_open(distance));
         far.map(move |(distance, _)| format!("{}{what}", distance.name))
     });
     shared.collect()
