@@ -68,8 +68,8 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs(description)?;
     let mut start = m.start(description)?;
-    // The equations' graph stays what it is without the distances.
-    let of_equations = m.g.graph().clone();
+    // The equations' graph stays what it is without the distances; coordinates of joints are in it.
+    let of_equations = (!m.has_distances()).then(|| m.g.graph().clone());
     let distances = m.distances(description, length, &start)?;
     let coordinates = m.coordinates.iter().zip(&m.coordinate_names).map(|(owner, name)| CoordinateInfo {
         name: name.clone(),
@@ -86,9 +86,13 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
     let (touching, constraints) = (balance.touching.map(Scalar::expr), constraints.infos);
     Ok(move |graph| {
-        start.nearest = (!distances.is_empty()).then(|| Arc::new(Nearest { graph, distances }));
+        let (graph, with_distances) = match of_equations {
+            Some(of_equations) => (of_equations, Some(graph)),
+            None => (graph, None),
+        };
+        start.nearest = (!distances.is_empty()).then(|| Arc::new(Nearest { graph: with_distances, distances }));
         let mut system = System {
-            graph: of_equations,
+            graph,
             parameters,
             time,
             q,

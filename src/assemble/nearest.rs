@@ -64,6 +64,11 @@ impl<'g> Mechanism<'g, '_> {
         Ok(distances)
     }
 
+    /// Whether all distances are coordinates of the mechanism: those of the inboard joints alone.
+    pub fn has_distances(&self) -> bool {
+        self.coordinates.iter().all(|owner| matches!(owner, Owner::Joint(..)))
+    }
+
     /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.
     fn measured_coordinate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
         let kind = &self.joints[on.joint].kind;

@@ -169,8 +169,8 @@ pub struct Start {
 /// Distances of which the sum of squares is least at the start.
 #[derive(Clone, Debug)]
 pub struct Nearest {
-    /// Holds the system's expressions and those of the distances.
-    pub graph: Graph,
+    /// Holds the system's expressions and those of the distances; `None` where the system's own does.
+    pub graph: Option<Graph>,
     /// Over t, q and the parameters.
     pub distances: Vec<Distance>,
 }

@@ -140,7 +140,7 @@ pub fn compile_nearest_start(
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
     let mut graph = match &system.start.nearest {
-        Some(nearest) if open.is_any() => nearest.graph.clone(),
+        Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),
         _ => system.graph.clone(),
     };
     let equations = Equations::new(system, &mut graph);
