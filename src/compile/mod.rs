@@ -17,6 +17,7 @@ mod program;
 mod scheme;
 mod sparse_lu;
 mod start;
+mod start_equations;
 mod step;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};

@@ -24,11 +24,11 @@
 
 use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
-use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
 use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
-use crate::assemble::{StartCondition, System};
+use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, numbered};
+use crate::assemble::System;
 
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
@@ -193,67 +193,6 @@ fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
         );
     }
     given
-}
-
-/// The equations that hold at the start.
-struct Equations {
-    /// M w + Φ_qᵀ λ − Q.
-    motion: Vec<Expr>,
-    /// Φ_q.
-    jacobian: SparseMatrix,
-    /// Φ, then the conditions on positions; and its derivatives by q.
-    closure: Vec<Expr>,
-    closure_jacobian: SparseMatrix,
-    /// Φ̇, then the rates of the conditions on velocities; and its derivatives by v.
-    closure_rate: Vec<Expr>,
-    closure_rate_jacobian: SparseMatrix,
-    /// Φ̈.
-    rate_of_rate: Vec<Expr>,
-}
-
-/// Conditions on positions.
-const OF_POSITION: Kind = |condition| condition.position;
-/// Conditions on velocities.
-const OF_VELOCITY: Kind = |condition| condition.velocity;
-
-impl Equations {
-    fn new(system: &System, graph: &mut Graph) -> Self {
-        let (motion, jacobian) = equations_of_motion(system, graph);
-        let rate = time_derivative(system, graph, &system.constraint);
-        let rate_of_rate = time_derivative(system, graph, &rate);
-        let (further, closure_jacobian) = with_conditions(system, graph, &jacobian, OF_POSITION);
-        let closure = [&system.constraint[..], &further].concat();
-        let (further, closure_rate_jacobian) = with_conditions(system, graph, &jacobian, OF_VELOCITY);
-        let closure_rate = [rate, time_derivative(system, graph, &further)].concat();
-        Self { motion, jacobian, closure, closure_jacobian, closure_rate, closure_rate_jacobian, rate_of_rate }
-    }
-}
-
-/// Conditions on positions, or those on velocities.
-type Kind = fn(&StartCondition) -> bool;
-
-/// Renumbers the rows of conditions of a kind, which follow the constraints, by their numbers among all conditions.
-fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
-    let NoFactors::Singular { rows } = none else { return none };
-    let first = system.q.len() + system.constraint.len();
-    let conditions: Vec<usize> =
-        (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
-    let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
-    NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
-}
-
-/// The conditions of a kind, and Φ_q with their derivatives below it.
-fn with_conditions(
-    system: &System,
-    graph: &mut Graph,
-    jacobian: &SparseMatrix,
-    kind: Kind,
-) -> (Vec<Expr>, SparseMatrix) {
-    let conditions = system.start.conditions.iter().filter(|condition| kind(condition));
-    let values: Vec<Expr> = conditions.map(|condition| condition.value).collect();
-    let mut all = jacobian.clone();
-    all.rows.extend(graph.jacobian(&values, &system.q).rows);
-    (values, all)
 }
 
 struct Builder<'s> {
