@@ -14,6 +14,8 @@
 //! angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides are augmented: μ Φ_kᵀ Φ_k is added
 //! to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0, but couples what k couples.
 //!
+//! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
+//!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
 //! D = diag(1/scale²) minimises the change of the coordinates that are not given; given ones have no column. ε > 0 makes
@@ -25,6 +27,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::Equation;
 use super::layout::Layout;
+use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, Residual, named, residuals};
 use crate::assemble::System;
@@ -48,6 +51,8 @@ pub struct StartProgram {
     pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
+    /// What is nearest to rest.
+    pub open: OpenStart,
     lowered: Lowered,
 }
 
@@ -124,12 +129,28 @@ pub fn compile_start(
     redundant: &[usize],
     sample: &[f64],
 ) -> Result<StartProgram, NoFactors<Equation>> {
+    compile_nearest_start(system, redundant, sample, OpenStart::default())
+}
+
+/// The same where the start is left open: it is then the one nearest to rest.
+///
+/// # Errors
+/// As for [`compile_start`].
+pub fn compile_nearest_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+    open: OpenStart,
+) -> Result<StartProgram, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
-    let mut graph = system.graph.clone();
+    let mut graph = match &system.start.nearest {
+        Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),
+        _ => system.graph.clone(),
+    };
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations)?;
+    let [position, velocity, acceleration] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -162,6 +183,7 @@ pub fn compile_start(
         constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
         jacobian_entries,
+        open,
         layout,
         lowered,
     })
@@ -188,26 +210,37 @@ struct Builder<'s> {
 
 impl Builder<'_> {
     /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors<Equation>> {
+    fn corrections(
+        &mut self,
+        equations: &Equations,
+        open: OpenStart,
+    ) -> Result<[Vec<Expr>; 3], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
-        let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
-        let diagonal: Vec<(usize, usize, Expr)> =
-            metric.iter().enumerate().map(|(i, &weight)| (i, i, self.graph.constant(weight))).collect();
+        let smallest = LeastSquares::smallest_change(system, &mut self.graph);
+        let positions = open.positions.then(|| LeastSquares::of_positions(system, &mut self.graph));
+        let velocities = open.velocities.then(|| LeastSquares::of_velocities(system, &mut self.graph));
+        let [positions, velocities] = [&positions, &velocities].map(|open| open.as_ref().unwrap_or(&smallest));
         let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
-        let zero = vec![self.graph.constant(0.0); n];
         let none = SparseMatrix::zero(n, system.lambda.len());
         let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
-            .correction(&diagonal, &none, closure_jacobian, (&given(&system.start.position), &[]), &zero, closure)
+            .correction(
+                &positions.metric,
+                &none,
+                closure_jacobian,
+                (&given(&system.start.position), &[]),
+                &positions.gradient,
+                closure,
+            )
             .map_err(|none| named(system, none, OF_POSITION))?;
         let velocity = self
             .correction(
-                &diagonal,
+                &velocities.metric,
                 &none,
                 closure_rate_jacobian,
                 (&given(&system.start.velocity), &[]),
-                &zero,
+                &velocities.gradient,
                 closure_rate,
             )
             .map_err(|none| named(system, none, OF_VELOCITY))?;

@@ -146,6 +146,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         redundant_constraints: names(&mobility.redundant),
         undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         singular_at_start: names(&mobility.singular_at_start),
+        shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,

@@ -187,12 +187,17 @@ fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>,
     }
 }
 
+/// Further corrections of a start that is nearest to rest.
+const LEAST_SQUARES_CORRECTIONS: usize = 10;
+
 /// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in jets
 /// doubles the number of orders that are.
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;
-    let corrections = corrections(order);
+    // Least squares converge linearly, though fast.
+    let open = if start.open.is_any() { LEAST_SQUARES_CORRECTIONS } else { 0 };
+    let corrections = corrections(order) + open;
     memory.run(start.sample());
     memory.run(start.given());
     for _ in 0..corrections {
