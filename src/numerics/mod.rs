@@ -11,9 +11,11 @@
 
 mod bernstein;
 mod chebyshev;
+mod decay;
 mod domain;
 mod error;
 mod extremes;
+mod lattice;
 mod leja;
 mod peak;
 mod polynomial_range;
@@ -21,6 +23,7 @@ mod range;
 mod samples;
 mod scan;
 mod search;
+mod separation;
 mod sobol;
 mod sparse_basis;
 mod sparse_grid;
@@ -30,6 +33,7 @@ mod taylor;
 mod tensor;
 
 pub use chebyshev::{ChebyshevBasis, clenshaw};
+pub use decay::truncation;
 pub use domain::ParameterBox;
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
@@ -40,6 +44,7 @@ pub use range::{EMPTY, Enclosed, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
+pub use separation::{Separated, Separation};
 pub use sobol::{SobolDecomposition, SobolIndices};
 pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::SparseGrid;

@@ -1,8 +1,10 @@
 //! Least and largest values over a grid of samples, as they come.
 //!
-//! Between two samples a smooth response can go beyond both: past an extreme of the grid that is not at the box's edge by at
-//! most an eighth of the second difference along each axis (that of the parabola through it and its neighbours). That is the
-//! error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
+//! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth of the second
+//! difference (that of the parabola through it and its neighbours). Where second differences stand out against those beside them,
+//! it is not smooth there: at a kink between two samples by at most a quarter of what their second differences have too much, and
+//! so by half of a jump. The furthest that any sample leads to in this way is the error stated of a scan. Where a sample is NaN, the
+//! others are bounded, and the error is NaN.
 
 use super::range::Range;
 
@@ -19,24 +21,22 @@ pub struct ScanBounds {
     gaps: Vec<bool>,
 }
 
-/// A value, and how far the response may go beyond it beside its sample.
+/// The least or largest value, and how far the response may go between the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extreme {
     value: f64,
-    beyond: f64,
+    reach: f64,
 }
 
-const EMPTY: [Extreme; 2] =
-    [Extreme { value: f64::INFINITY, beyond: 0.0 }, Extreme { value: f64::NEG_INFINITY, beyond: 0.0 }];
+const EMPTY: [Extreme; 2] = [
+    Extreme { value: f64::INFINITY, reach: f64::INFINITY },
+    Extreme { value: f64::NEG_INFINITY, reach: f64::NEG_INFINITY },
+];
 
-/// Widens `extremes`; of equals the one with the larger error is taken.
+/// Widens `extremes`.
 fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
-    if low.value < least.value || (low.value == least.value && low.beyond > least.beyond) {
-        *least = low;
-    }
-    if high.value > largest.value || (high.value == largest.value && high.beyond > largest.beyond) {
-        *largest = high;
-    }
+    *least = Extreme { value: least.value.min(low.value), reach: least.reach.min(low.reach) };
+    *largest = Extreme { value: largest.value.max(high.value), reach: largest.reach.max(high.reach) };
 }
 
 impl ScanBounds {
@@ -54,13 +54,34 @@ impl ScanBounds {
     pub fn observe(&mut self, time: usize, output: usize, first: usize, values: &[f64]) {
         let line = time * self.outputs + output;
         self.gaps[line] |= values.iter().any(|value| value.is_nan());
-        let known = || (0..values.len()).filter(|&place| !values[place].is_nan());
-        let least = known().reduce(|a, b| if values[b] < values[a] { b } else { a });
-        let largest = known().reduce(|a, b| if values[b] > values[a] { b } else { a });
-        let (Some(least), Some(largest)) = (least, largest) else { return };
-        let extremes = [least, largest]
-            .map(|place| Extreme { value: values[place], beyond: beyond(&self.points, first, values, place) });
-        include(&mut self.extremes[line], extremes);
+        for (place, &value) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+            let [below, above] = self.beyond(first, values, place);
+            let least = Extreme { value, reach: value - below };
+            include(&mut self.extremes[line], [least, Extreme { value, reach: value + above }]);
+        }
+    }
+
+    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each axis. Along an axis
+    /// whose neighbours are in another part of the scan, as far as along the others.
+    fn beyond(&self, first: usize, values: &[f64], place: usize) -> [f64; 2] {
+        let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);
+        let mut stride = 1;
+        for &count in self.points.iter().rev() {
+            if count > 2 {
+                let at = (first + place) / stride % count;
+                let along = Along { values, place, stride, at, count };
+                let smooth = along.smooth();
+                if smooth.is_none() && at > 0 && at + 1 < count {
+                    unknown += 1.0;
+                }
+                let irregular = along.irregular(-1).max(along.irregular(1));
+                let [below, above] = smooth.unwrap_or_default();
+                known = [known[0] + below.max(irregular), known[1] + above.max(irregular)];
+                largest = largest.max(below).max(above).max(irregular);
+            }
+            stride *= count;
+        }
+        known.map(|known| known + unknown * largest)
     }
 
     /// All that another part of the same scan has seen.
@@ -84,35 +105,70 @@ impl ScanBounds {
             return f64::NAN;
         }
         let [least, largest] = self.extremes[time * self.outputs + output];
-        if least.beyond <= largest.beyond { largest.beyond } else { least.beyond }
+        (least.value - least.reach).max(largest.reach - largest.value)
     }
 }
 
-/// What the response may go beyond the sample at `place`: along each axis an eighth of the second difference, unless the
-/// sample is at the axis' end. Along an axis whose neighbours are in another part of the scan, the largest of the others'.
-fn beyond(points: &[usize], first: usize, values: &[f64], place: usize) -> f64 {
-    let (mut known, mut largest, mut unknown) = (0.0, 0.0_f64, 0.0);
-    let mut stride = 1;
-    for &count in points.iter().rev() {
-        if count > 2 {
-            let at = (first + place) / stride % count;
-            // The nearest sample that is not at the end.
-            let middle = (place + stride * at.clamp(1, count - 2)).checked_sub(stride * at);
-            let neighbours = middle.and_then(|middle| Some((middle.checked_sub(stride)?, middle)));
-            let inside = at > 0 && at + 1 < count;
-            match neighbours.filter(|(_, middle)| middle + stride < values.len()) {
-                Some((before, middle)) => {
-                    let bend = (values[before] - 2.0 * values[middle] + values[middle + stride]).abs() / 8.0;
-                    known += if inside { bend } else { 0.0 };
-                    largest = largest.max(bend);
-                }
-                _ if inside => unknown += 1.0,
-                _ => (),
-            }
-        }
-        stride *= count;
+/// A sample among those along one axis.
+struct Along<'a> {
+    values: &'a [f64],
+    place: usize,
+    stride: usize,
+    at: usize,
+    count: usize,
+}
+
+/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where those before
+/// grow, as far as that goes.
+const GROWTH: f64 = 1.5;
+const MOST_GROWTH: f64 = 8.0;
+
+impl Along<'_> {
+    /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
+    fn value(&self, away: isize) -> Option<f64> {
+        let at = self.at.checked_add_signed(away).filter(|&at| at < self.count)?;
+        let place = (self.place + self.stride * at).checked_sub(self.stride * self.at)?;
+        self.values.get(place).copied()
     }
-    known + unknown * largest
+
+    /// The second difference so many samples further.
+    fn bend(&self, away: isize) -> Option<f64> {
+        Some(self.value(away - 1)? - 2.0 * self.value(away)? + self.value(away + 1)?)
+    }
+
+    /// How far a smooth response may go below and above an inner sample; `None` at the ends.
+    fn smooth(&self) -> Option<[f64; 2]> {
+        let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
+        let height = (before - 2.0 * here + after).abs() / 8.0;
+        let lowest = here <= before && here <= after;
+        let highest = here >= before && here >= after;
+        Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])
+    }
+
+    /// How far a response that is not smooth between the sample and its neighbour on one side may go beyond them.
+    fn irregular(&self, side: isize) -> f64 {
+        if self.value(side).is_none() {
+            return 0.0;
+        }
+        let inner = [self.bend(0), self.bend(side)];
+        let expected = [self.expected(-side), self.expected(2 * side)].into_iter().flatten().reduce(f64::max);
+        let Some(expected) = expected else { return 0.0 };
+        let excess = |bend: f64| (bend.abs() - expected).max(0.0);
+        match inner {
+            [Some(a), Some(b)] => 0.25 * (excess(a) + excess(b)),
+            // The pair is the last of the axis.
+            [Some(bend), None] | [None, Some(bend)] => 0.5 * excess(bend),
+            [None, None] => 0.0,
+        }
+    }
+
+    /// The largest second difference that a smooth response has beside one so many samples further, on the way to which lies this one.
+    fn expected(&self, away: isize) -> Option<f64> {
+        let outer = self.bend(away)?.abs();
+        let growth = self.bend(away + away.signum()).map_or(1.0, |further| outer / further.abs());
+        // NaN, which is nothing grown from nothing, is passed over.
+        Some(GROWTH * outer * growth.max(1.0).min(MOST_GROWTH))
+    }
 }
 
 #[cfg(test)]
@@ -151,6 +207,42 @@ mod tests {
             let (missed, error) = (1.0 - scan.range(0, 0).upper, scan.error(0, 0));
             assert!(missed <= error + 1e-12, "{shift}: {missed} of {error}");
             assert!(error < 0.041);
+        }
+    }
+
+    fn of_line(f: impl Fn(f64) -> f64, count: usize) -> (Range, f64) {
+        let values: Vec<f64> = (0..count).map(|i| f(2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect();
+        let mut scan = ScanBounds::new(1, 1, &[count]);
+        scan.observe(0, 0, 0, &values);
+        (scan.range(0, 0), scan.error(0, 0))
+    }
+
+    #[test]
+    fn a_kink_between_samples_is_within_the_error() {
+        for at in [-0.97, -0.61, 0.0, 0.013, 0.05, 0.3] {
+            let (range, error) = of_line(|x| (x - at).abs() + 0.1 * x * x, 20);
+            // On either side it rises.
+            let missed = range.lower - 0.1 * at * at;
+            assert!(missed <= error + 1e-12 && error < 0.06, "{at}: {missed} of {error}");
+        }
+    }
+
+    #[test]
+    fn half_of_a_jump_is_an_error() {
+        for at in [-0.95, 0.02, 0.5] {
+            let (_, error) = of_line(|x| 0.1 * x + if x > at { 3.0 } else { 0.0 }, 15);
+            assert!((1.4..=1.7).contains(&error), "{at}: {error}");
+        }
+        // What is steep, but smooth, has none.
+        let (_, error) = of_line(|x| (3.0 * x).exp(), 15);
+        assert!(error < 1e-12, "{error}");
+    }
+
+    #[test]
+    fn a_narrow_peak_is_an_error_where_a_sample_stands_out() {
+        for shift in [0.0, 0.02, 0.05] {
+            let (range, error) = of_line(|x| 1.0 / (1.0 + ((x - shift) / 0.03).powi(2)), 20);
+            assert!(1.0 - range.upper <= 2.0 * error || range.upper < 0.2, "{shift}: {range:?}, {error}");
         }
     }
 
