@@ -5,7 +5,7 @@ mod models;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, bench};
-use mbint::simulate::Simulator;
+use mbint::inner::simulate::Simulator;
 use symdiff::{Tape, WIDTHS};
 
 fn main() {

@@ -4,9 +4,9 @@
 
 mod paired;
 
-use mbint::model::{Description, load_str};
-use mbint::results::Method;
-use mbint::study::{Options, prepare, run};
+use mbint::inner::model::{Description, load_str};
+use mbint::inner::results::Method;
+use mbint::inner::study::{Options, prepare, run};
 use paired::{Paired, paired};
 
 /// Pairs of runs of each.

@@ -7,8 +7,8 @@ mod paired;
 
 use std::fmt::Write as _;
 
-use mbint::model::{Description, load_str, read_str};
-use mbint::study::{Options, run};
+use mbint::inner::model::{Description, load_str, read_str};
+use mbint::inner::study::{Options, run};
 use paired::{Paired, paired};
 
 /// Pairs of runs where the times should be equal, and where they should not.

@@ -3,8 +3,8 @@
 mod models;
 
 use divan::{Bencher, bench};
-use mbint::results::Method;
-use mbint::study::{Options, run};
+use mbint::inner::results::Method;
+use mbint::inner::study::{Options, run};
 
 fn main() {
     divan::main();

@@ -4,7 +4,7 @@ mod models;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, bench};
-use mbint::model::Description;
+use mbint::inner::model::Description;
 use models::STEP;
 use symdiff::WIDTHS;
 

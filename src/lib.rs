@@ -7,34 +7,22 @@ pub use methods::Method;
 pub use results::Summary;
 pub use syntax::Diagnostics;
 
-// The rooms of the house, in the order of the data flow. They are public for this package's own binary, tests and benches;
-// what is in them may change with any version.
+// The rooms of the house, in the order of the data flow.
+mod assemble;
+mod cli;
+mod compile;
+mod elements;
+mod export;
+mod grammar;
+mod methods;
+mod model;
+mod multibody;
+mod numerics;
+mod reduce;
+mod results;
+mod simulate;
+mod study;
+mod syntax;
+
 #[doc(hidden)]
-pub mod assemble;
-#[doc(hidden)]
-pub mod cli;
-#[doc(hidden)]
-pub mod compile;
-#[doc(hidden)]
-pub mod elements;
-#[doc(hidden)]
-pub mod export;
-pub(crate) mod grammar;
-#[doc(hidden)]
-pub mod methods;
-#[doc(hidden)]
-pub mod model;
-#[doc(hidden)]
-pub mod multibody;
-#[doc(hidden)]
-pub mod numerics;
-#[doc(hidden)]
-pub mod reduce;
-#[doc(hidden)]
-pub mod results;
-#[doc(hidden)]
-pub mod simulate;
-#[doc(hidden)]
-pub mod study;
-#[doc(hidden)]
-pub mod syntax;
+pub mod inner;

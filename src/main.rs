@@ -1,7 +1,7 @@
-//! The `mbint` command; everything is in [`mbint::cli`].
+//! The `mbint` command; everything is in the library's room `cli`.
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    mbint::cli::main()
+    mbint::inner::cli::main()
 }

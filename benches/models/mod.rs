@@ -4,9 +4,9 @@
 
 use std::fmt::Write;
 
-use mbint::model::{Description, load_str};
-use mbint::simulate::{Simulator, Stepper};
-use mbint::study;
+use mbint::inner::model::{Description, load_str};
+use mbint::inner::simulate::{Simulator, Stepper};
+use mbint::inner::study;
 
 /// Step size of all runs, s.
 pub const STEP: f64 = 1e-3;

@@ -7,9 +7,9 @@ mod scalar;
 
 use std::time::Instant;
 
-use mbint::results::Method;
-use mbint::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator};
-use mbint::study;
+use mbint::inner::results::Method;
+use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator};
+use mbint::inner::study;
 use models::STEP;
 use serde_json::{Value, json};
 use symdiff::jet::JetSpace;
@@ -163,7 +163,7 @@ fn scan() -> Value {
             };
             study::run(&description, options).expect("the model runs").0
         });
-        let ends = |bounds: &mbint::results::Bounds| {
+        let ends = |bounds: &mbint::inner::results::Bounds| {
             let bands = bounds.outputs.iter().flat_map(|output| &output.bands);
             bands.flat_map(|band| band.lower.iter().chain(&band.upper)).map(|end| end.to_bits()).collect::<Vec<_>>()
         };

@@ -39,8 +39,4 @@ use crate::multibody::{error, rotation, space};
 
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
 pub use error::BuildError;
-pub use mechanism::Context;
-pub use system::{
-    ConstraintInfo, CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, OutputInfo, ResidualUnit, Start,
-    StartCondition, System, UncertainParameter,
-};
+pub use system::{ConstraintInfo, FormulationInfo, ResidualUnit, StartCondition, System};

@@ -81,21 +81,27 @@ pub struct EffectInfo {
 
 /// Something that the model says and no equation holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct LeftOut {
+    /// The part of the model, as it is called in messages.
     pub what: String,
+    /// The reason.
     pub why: String,
 }
 
 /// A parameter that is an interval.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct UncertainParameter {
+    /// Its name.
     pub name: String,
+    /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// Its symbol in the expressions.
     pub symbol: Expr,
+    /// Nominal value.
     pub nominal: f64,
+    /// Lower end of the interval.
     pub lower: f64,
+    /// Upper end of the interval.
     pub upper: f64,
 }
 
@@ -134,10 +140,12 @@ pub enum ResidualUnit {
 
 /// Something observed.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct OutputInfo {
+    /// Its name.
     pub name: String,
+    /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// Its value.
     pub expr: Expr,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Cli {
 
     /// When to use colours.
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = Color::Auto)]
-    pub color: Color,
+    color: Color,
 }
 
 #[derive(Debug, Subcommand)]
@@ -180,7 +180,7 @@ pub(super) struct ExplainArgs {
 pub(super) struct ListArgs {
     /// List every effect with its keys, units, equation and source.
     #[arg(long)]
-    pub effects: bool,
+    effects: bool,
 
     /// List every joint with its keys, units, equations and the signs of its reaction.
     #[arg(long)]
@@ -192,19 +192,19 @@ pub(super) struct ListArgs {
 
     /// List every unit with its value in SI units.
     #[arg(long)]
-    pub units: bool,
+    units: bool,
 
     /// List every function of formulas with its domain.
     #[arg(long)]
-    pub functions: bool,
+    functions: bool,
 
     /// List every output of bodies, joints and effects with unit, sign and frame.
     #[arg(long)]
-    pub outputs: bool,
+    outputs: bool,
 
     /// List the exit codes.
     #[arg(long)]
-    pub exit_codes: bool,
+    exit_codes: bool,
 }
 
 impl ListArgs {

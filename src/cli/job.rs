@@ -19,14 +19,14 @@ pub(super) struct Request {
     /// Empty for all scenes.
     pub scenes: Vec<String>,
     /// `None` for the model's own methods.
-    pub methods: Option<Vec<Method>>,
+    methods: Option<Vec<Method>>,
     pub certify: bool,
     pub output: Option<PathBuf>,
-    pub threads: Option<usize>,
+    threads: Option<usize>,
     pub quiet: bool,
-    pub timings: bool,
-    pub certify_time: bool,
-    pub skip_infeasible: bool,
+    timings: bool,
+    certify_time: bool,
+    skip_infeasible: bool,
 }
 
 /// A model, or a scene of it, with the folder for its results.

@@ -18,10 +18,10 @@ mod sparse_lu;
 mod start;
 mod step;
 
-pub use equation_tapes::{Entries, EquationsProgram, compile_equations};
+pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use layout::Layout;
-pub use program::{Mode, PivotSample, Program, Watched, WatchedPivot};
-pub use scheme::{Coefficients, ConstraintLevel, Scheme};
+pub use program::{PivotSample, Program, Watched};
+pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
 pub use step::compile;

@@ -262,8 +262,9 @@ mod tests {
     use super::*;
     use crate::assemble::tests::model::{Model, formula};
     use crate::compile::scheme::Scheme;
+    use crate::grammar::FrictionMode;
     use crate::model::joint_friction::FrictionJoint;
-    use crate::model::{DryFriction, FrictionMode, JointFriction};
+    use crate::model::{DryFriction, JointFriction};
 
     /// The whole matrix, −∂Q/∂λ of friction included, against differences of the residual.
     #[test]

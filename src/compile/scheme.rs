@@ -50,9 +50,9 @@ pub enum ConstraintLevel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// Share of a in the balance of accelerations.
-    pub alpha_m: f64,
+    alpha_m: f64,
     /// Share of w in the balance of accelerations.
-    pub alpha_f: f64,
+    alpha_f: f64,
     /// Newmark's β.
     pub beta: f64,
     /// Newmark's γ.

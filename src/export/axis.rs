@@ -7,7 +7,7 @@ const EXPONENTS: std::ops::RangeInclusive<i32> = -306..=306;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
     /// A multiple of three.
-    pub exponent: i32,
+    exponent: i32,
     /// Lower end, in units of `10^exponent`.
     min: f64,
     /// Upper end, in units of `10^exponent`, above `min`.

@@ -5,16 +5,20 @@ use std::path::PathBuf;
 
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum ExportError {
+    /// The folder cannot be made or locked.
     #[error("cannot write into the folder {}: {source}", path.display())]
     Folder { path: PathBuf, source: io::Error },
+    /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    /// The table cannot be written as CSV.
     #[error("cannot write the table of bounds: {0}")]
     Csv(#[from] csv::Error),
+    /// The summary cannot be written as JSON.
     #[error("cannot write the summary: {0}")]
     Json(#[from] serde_json::Error),
+    /// An output cannot be plotted.
     #[error("cannot plot `{output}`: {message}")]
     Plot { output: String, message: String },
 }

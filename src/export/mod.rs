@@ -19,11 +19,11 @@ mod view;
 
 pub use self::csv::bounds_csv;
 pub use contributions::{contributions_csv, contributions_svg};
-pub use cost::{cost_csv, cost_svg, write_cost};
+pub use cost::write_cost;
 pub use error::ExportError;
 pub use files::{file_stem, write_results};
 pub use folder::prepare_folder;
-pub use overlay::{SceneBounds, overlay_svg};
+pub use overlay::SceneBounds;
 pub use plot::plot_svg;
 pub use reference::effects as effects_page;
-pub use scenes::{scenes_csv, write_scenes};
+pub use scenes::write_scenes;

@@ -19,7 +19,7 @@ pub enum Kind {
     Any,
     /// This dimension.
     Known {
-        #[allow(missing_docs)]
+        /// The dimension.
         dimension: Dimension,
         /// Made without parameters, of `t` and motions only.
         motion: bool,

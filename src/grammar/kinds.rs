@@ -5,10 +5,11 @@ use std::ops::Deref;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use symdiff::Formula;
 
-use super::element::{FromNumber, Group, Key, Quantity, Value, number_as_json};
+use super::element::{FromNumber, Group, Key, Value, number_as_json};
 use super::plane;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
+use super::requirement::Quantity;
 use super::symbols::{JointCoordinate, OnJoint, PointRef, Reference, Rotating, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;

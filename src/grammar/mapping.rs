@@ -17,6 +17,7 @@ macro_rules! grammar {
     )*) => {$(
         $(#[doc = $doc])*
         #[derive(JsonSchema)]
+        #[allow(dead_code)] // the schema is derived from the fields, which the reader does not fill
         #[schemars(deny_unknown_fields $(, extend($extension = $value))*)]
         pub struct $name {
             $($(#[doc = $field_doc])* $field: $type,)*
@@ -29,4 +30,13 @@ macro_rules! grammar {
     )*};
 }
 
-pub(crate) use grammar;
+/// Types of which only the schema is used: what may stand behind a key.
+macro_rules! schema_only {
+    ($($item:item)*) => {$(
+        #[derive(JsonSchema)]
+        #[allow(dead_code)] // the schema is derived from the variants, which the reader does not make
+        $item
+    )*};
+}
+
+pub(crate) use {grammar, schema_only};

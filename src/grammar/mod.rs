@@ -4,6 +4,7 @@
 
 pub(crate) mod dimension;
 mod element;
+pub(crate) mod formulas;
 mod kinds;
 pub(crate) mod mapping;
 pub(crate) mod motions;
@@ -13,17 +14,21 @@ pub(crate) mod plane;
 pub(crate) mod quantity;
 pub(crate) mod reader;
 pub mod reference;
+mod requirement;
 mod symbols;
+pub(crate) mod unit;
+pub(crate) mod unknown;
 pub(crate) mod values;
 mod vectors;
 
 pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
-    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Quantity, Requirement, Value, kinds_schema,
-    object_schema, ordered, short_or_full,
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, object_schema, ordered,
+    short_or_full,
 };
 pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
 pub use reader::{Fields, Reader};
+pub use requirement::{Quantity, Requirement};
 pub use symbols::*;

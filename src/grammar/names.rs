@@ -3,12 +3,9 @@
 use std::ops::Range;
 
 use super::dimension::Kind;
-use super::motions::{
-    ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, is_motion, joint_dimension, motion_dimension,
-};
+use super::motions::{ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, joint_dimension, motion_dimension};
 use super::quantity::Dimension;
-use super::symbols::{Coordinate, EnergyKind, ReactionComponent, Sensor, Symbol, SymbolTable, TimeOrder};
-use crate::syntax::suggest;
+use super::symbols::{Coordinate, EnergyKind, ReactionComponent, Symbol, SymbolTable, TimeOrder};
 
 /// The ground's name.
 pub const GROUND: &str = "ground";
@@ -107,7 +104,7 @@ fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
 }
 
 /// The parts of a body's motion.
-fn motions(table: &impl SymbolTable, body: usize) -> impl Iterator<Item = &'static Motion<Coordinate>> {
+pub(super) fn motions(table: &impl SymbolTable, body: usize) -> impl Iterator<Item = &'static Motion<Coordinate>> {
     let spatial = table.is_spatial();
     let turns_any_way = table.has_orientation(body);
     MOTIONS.iter().filter(move |(_, coordinate, _)| match coordinate {
@@ -222,173 +219,6 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
             help: Some(reason.to_owned()),
         }),
     }
-}
-
-/// What to say of a part that an effect does not have.
-pub fn no_measure(effect: &str, rest: &str, measures: &[(Sensor, Dimension)]) -> NameError {
-    let names: Vec<&str> = measures.iter().map(|(measure, _)| measure.name()).collect();
-    let after = effect.len() + 1;
-    NameError {
-        message: format!("effect `{}` has no `{}`", suggest::clip(effect), suggest::clip(rest)),
-        part: after..after + rest.len(),
-        help: (!names.is_empty()).then(|| format!("it has {}", suggest::list(&names))),
-    }
-}
-
-/// Why a name stands for nothing.
-pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameError {
-    let shown = suggest::clip(name);
-    for (prefix, what) in [("link.", "link"), ("joint.", "joint")].into_iter().filter(|_| table.is_robot()) {
-        if name.starts_with(prefix) {
-            let message = format!("the URDF has nothing called `{shown}`");
-            let help = format!("a {what} has numbers and a motion: `mbint check` shows the tree");
-            return NameError { message, part: 0..name.len(), help: Some(help) };
-        }
-    }
-    match name.split_once('.') {
-        None => unknown_word(table, name, &shown, context),
-        Some((owner, rest)) => unknown_member(table, name, owner, rest, context),
-    }
-}
-
-fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Context) -> NameError {
-    let part = 0..name.len();
-    if table.body(name).is_some() {
-        let help = match context {
-            Context::Constant => "only parameters can stand here".to_owned(),
-            _ if table.is_spatial() => format!("say what of it: `{name}.x`, `{name}.omega.x`, …"),
-            _ => format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …"),
-        };
-        return NameError { message: format!("`{shown}` is a body, not a number"), part, help: Some(help) };
-    }
-    if let Some(parts) = table.parts_of_beam(name) {
-        let message = format!("`{shown}` is a beam, not a number");
-        return NameError { message, part, help: Some(parts) };
-    }
-    if table.joint(name).is_some() {
-        let help = (context == Context::Output).then(|| format!("say what of it: `{name}.force` or `{name}.torque`"));
-        return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
-    }
-    let parameters = table.parameters();
-    let energies = ENERGIES.iter().map(|(energy, _)| *energy).filter(|_| context == Context::Output);
-    let help = match suggest::nearest(name, parameters.clone().chain(energies)) {
-        Some(near) => Some(format!("did you mean `{near}`?")),
-        None => suggest::help(name, "parameters", parameters),
-    };
-    let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
-    let message =
-        if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };
-    NameError { message, part, help: if infinite { None } else { help } }
-}
-
-fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str, context: Context) -> NameError {
-    let known = |owner: &str| table.body(owner).is_some();
-    if let Some((node, member)) = name.rsplit_once('.').filter(|(node, _)| *node != owner && known(node)) {
-        return unknown_member(table, name, node, member, context);
-    }
-    let body = table.body(owner);
-    let joint = table.joint(owner).is_some();
-    let after = owner.len() + 1;
-    match (body, joint) {
-        (Some(body), joint) => {
-            let parts = motions(table, body).map(|(motion, ..)| *motion);
-            let points = table.points(body);
-            let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
-            let point = points.clone().any(|point| point == member);
-            if body == 0 && !point && MOTIONS.iter().any(|(motion, ..)| *motion == member) {
-                let message = format!("the ground does not move: `{}` is always 0", suggest::clip(name));
-                return NameError { message, part: 0..name.len(), help: None };
-            }
-            if point && part.is_empty() {
-                let message = format!("`{}` is a point, not a number", suggest::clip(name));
-                let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
-                return NameError { message, part: 0..name.len(), help };
-            }
-            let along_z = matches!(part, "z" | "vz" | "az");
-            if !table.is_spatial() && if point { along_z } else { is_motion(member) } {
-                let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
-                let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
-                return NameError { message, part: 0..name.len(), help: Some(help) };
-            }
-            if point {
-                let start = after + member.len() + 1;
-                let message = format!("a point has no `{}`", suggest::clip(part));
-                let lengths = motions(table, body).filter(|(_, coordinate, _)| coordinate.is_length());
-                let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
-                return NameError { message, part: start..name.len(), help };
-            }
-            if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
-                let message = format!("`{vector}` is a vector: it has the parts x, y and z");
-                let help = Some(format!("e.g. `{owner}.{vector}.z`"));
-                return NameError { message, part: 0..name.len(), help };
-            }
-            if member == "angle" || member.starts_with("angular_") {
-                let message =
-                    format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
-                let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
-                let part = after..after + member.len();
-                return NameError { message, part, help: Some(help.to_owned()) };
-            }
-            let reactions: &[&str] = if joint { &["force", "torque"] } else { &[] };
-            let known: Vec<&str> = if part.is_empty() {
-                points.chain(reactions.iter().copied()).chain(parts).collect()
-            } else {
-                points.collect()
-            };
-            let what = if part.is_empty() { "has no" } else { "has no point" };
-            NameError {
-                message: format!("body `{}` {what} `{}`", suggest::clip(owner), suggest::clip(member)),
-                part: after..after + member.len(),
-                help: suggest::help(member, if part.is_empty() { "names in it" } else { "points of it" }, known),
-            }
-        }
-        (None, true) => NameError {
-            message: format!("joint `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
-            part: after..name.len(),
-            help: Some(parts_of_joint(table, owner)),
-        },
-        (None, false) if table.effect(owner).is_some() => {
-            let measures = table.effect(owner).map_or(Vec::new(), |effect| table.measures(effect));
-            no_measure(owner, rest, &measures)
-        }
-        (None, false) if known(name) => NameError {
-            message: format!("`{name}` is a node of a beam, not a number"),
-            part: 0..name.len(),
-            help: Some(format!("say what of it: `{name}.x`, `{name}.y`, `{name}.angle`, …")),
-        },
-        (None, false) if table.parts_of_beam(owner).is_some() => NameError {
-            message: format!("beam `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
-            part: after..name.len(),
-            help: table.parts_of_beam(owner),
-        },
-        (None, false) => {
-            let bodies = table.bodies().skip(1);
-            let joints = table.joints();
-            let (what, kind, joints) = match context {
-                Context::Output => ("body or joint", "bodies and joints", Some(joints)),
-                _ => ("body", "bodies", None),
-            };
-            NameError {
-                message: format!("unknown {what} `{}`", suggest::clip(owner)),
-                part: 0..owner.len(),
-                help: suggest::help(owner, kind, bodies.chain(joints.into_iter().flatten())),
-            }
-        }
-    }
-}
-
-/// What can be said of a joint.
-fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
-    let mut parts = if table.is_spatial() {
-        vec!["force", "force.x", "force.y", "force.z", "torque", "torque.x", "torque.y", "torque.z"]
-    } else {
-        vec!["force", "force.x", "force.y", "torque"]
-    };
-    if let Some(joint) = table.joint(name) {
-        let coordinates = JOINT_MOTIONS.iter().filter(|(_, coordinate, _)| table.has_coordinate(joint, *coordinate));
-        parts.extend(coordinates.map(|(motion, ..)| *motion));
-    }
-    format!("a joint has {}", suggest::list(&parts))
 }
 
 /// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations and of

@@ -6,8 +6,9 @@ use symdiff::formula::FUNCTIONS;
 
 use super::motions::{ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, TURNING, joint_dimension, motion_dimension};
 use super::names::ENERGIES;
-use super::quantity::{Dimension, named_units};
+use super::quantity::Dimension;
 use super::symbols::{Coordinate, EnergyKind, JointCoordinate, TimeOrder};
+use super::unit::named_units;
 
 /// A unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,7 +49,7 @@ pub struct OutputDocs {
 
 /// All units that have a name.
 pub fn units() -> Vec<UnitDocs> {
-    let unit = |(name, unit): (&'static str, super::quantity::Unit)| UnitDocs {
+    let unit = |(name, unit): (&'static str, super::unit::Unit)| UnitDocs {
         unit: name,
         value: unit.to_si(1.0),
         si: unit.dimension.unit(),

@@ -111,10 +111,12 @@ pub struct PointRef {
 
 /// How often a quantity is differentiated by time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
 pub enum TimeOrder {
+    /// The value.
     Position,
+    /// Its first derivative by time.
     Velocity,
+    /// Its second derivative by time.
     Acceleration,
 }
 
@@ -127,63 +129,63 @@ pub enum Symbol {
     Time,
     /// `body.x`, `.y`, `.z`, `.angle`, `.p0` … `.p3`, `.vx`, …, `.angular_velocity`, `.ax`, …, `.angular_acceleration`.
     Coordinate {
-        #[allow(missing_docs)]
+        /// Index of the body.
         body: usize,
-        #[allow(missing_docs)]
+        /// Which of its coordinates.
         coordinate: Coordinate,
-        #[allow(missing_docs)]
+        /// The coordinate itself or a derivative.
         order: TimeOrder,
     },
     /// `body.omega.x`, … and `body.alpha.x`, …, or `omega_body`, `alpha_body` in the body's frame.
     AngularMotion {
-        #[allow(missing_docs)]
+        /// Index of the body.
         body: usize,
         /// 0 to 2: x, y, z.
         axis: usize,
         /// Velocity or acceleration.
         order: TimeOrder,
-        #[allow(missing_docs)]
+        /// Whether the component is along the body's axis, not the ground's.
         in_body: bool,
     },
     /// `body.roll`, `.pitch`, `.yaw`: rotations about the fixed x, then y, then z, rad, between −π and π.
     RollPitchYaw {
-        #[allow(missing_docs)]
+        /// Index of the body.
         body: usize,
         /// 0 to 2: roll, pitch, yaw.
         angle: usize,
     },
     /// `joint.angle`, `.displacement`, `.angular_velocity`, `.velocity`, `.angular_acceleration`, `.acceleration`.
     JointCoordinate {
-        #[allow(missing_docs)]
+        /// Index of the joint.
         joint: usize,
-        #[allow(missing_docs)]
+        /// Which of its coordinates.
         coordinate: JointCoordinate,
-        #[allow(missing_docs)]
+        /// The coordinate itself or a derivative.
         order: TimeOrder,
     },
     /// `body.point.x`, `.y`, `.z`, `.vx`, …, `.ax`, …; `coordinate` is a length.
     Point {
-        #[allow(missing_docs)]
+        /// Index of the body.
         body: usize,
-        #[allow(missing_docs)]
+        /// Index of the point in the body.
         point: usize,
-        #[allow(missing_docs)]
+        /// Along which axis of the ground.
         coordinate: Coordinate,
-        #[allow(missing_docs)]
+        /// The position or a derivative.
         order: TimeOrder,
     },
     /// `joint.force`, `.force.x`, …, `.torque`, `.torque.x`, ….
     Reaction {
-        #[allow(missing_docs)]
+        /// Index of the joint.
         joint: usize,
-        #[allow(missing_docs)]
+        /// Which part of the reaction.
         component: ReactionComponent,
     },
     /// `effect.length`, `effect.force`, …: what an effect measures.
     Sensor {
-        #[allow(missing_docs)]
+        /// Index of the effect.
         effect: usize,
-        #[allow(missing_docs)]
+        /// Which of its sensors.
         measure: Sensor,
     },
     /// `energy`, `kinetic_energy`, `potential_energy`, J.
@@ -205,10 +207,12 @@ pub enum ReactionComponent {
 
 /// Which energy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum EnergyKind {
+    /// The sum of both.
     Total,
+    /// Of the motion.
     Kinetic,
+    /// Of gravity and springs.
     Potential,
 }
 
@@ -232,9 +236,10 @@ pub enum Rotating {
 
 /// A joint's coordinate that an effect acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct OnJoint {
+    /// Index of the joint.
     pub joint: usize,
+    /// Which of its coordinates.
     pub coordinate: JointCoordinate,
 }
 

@@ -1,59 +1,53 @@
 //! What stands behind a key, for the schema: numbers, vectors, directions, rotations.
 
-#![allow(dead_code)] // the fields are there for their names and types
-
 use schemars::JsonSchema;
 
-use super::mapping::grammar;
+use super::mapping::{grammar, schema_only};
 
-/// A number, a formula, or a number with its unit.
-#[derive(JsonSchema)]
-#[schemars(untagged)]
-pub enum Number {
-    /// A number in SI units.
-    Plain(f64),
-    /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
-    Text(String),
-}
+schema_only! {
+    /// A number, a formula, or a number with its unit.
+    #[schemars(untagged)]
+    pub enum Number {
+        /// A number in SI units.
+        Plain(f64),
+        /// A formula (`m1*l1^2/12`) or a number with a unit (`120 mm`).
+        Text(String),
+    }
 
-/// Components along x and y, and in space along z, which is 0 where it is left out.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Components {
-    Planar([Number; 2]),
-    Spatial([Number; 3]),
-}
+    /// Components along x and y, and in space along z, which is 0 where it is left out.
+    #[schemars(untagged, inline)]
+    pub enum Components {
+        Planar([Number; 2]),
+        Spatial([Number; 3]),
+    }
 
-/// Direction: `x`, `y`, `z` or components.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Direction {
-    Named(Axis),
-    Components(Components),
-}
+    /// Direction: `x`, `y`, `z` or components.
+    #[schemars(untagged, inline)]
+    pub enum Direction {
+        Named(Axis),
+        Components(Components),
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Axis {
-    X,
-    Y,
-    Z,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum Axis {
+        X,
+        Y,
+        Z,
+    }
 
-/// A number of the frame's axes each, or one for all.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PerAxis {
-    All(Number),
-    Each([Number; 3]),
-}
+    /// A number of the frame's axes each, or one for all.
+    #[schemars(untagged, inline)]
+    pub enum PerAxis {
+        All(Number),
+        Each([Number; 3]),
+    }
 
-/// A number (in the plane, about z), or components.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum TorqueValue {
-    Scalar(Number),
-    Vector([Number; 3]),
+    /// A number (in the plane, about z), or components.
+    #[schemars(untagged, inline)]
+    pub enum TorqueValue {
+        Scalar(Number),
+        Vector([Number; 3]),
+    }
 }
 
 grammar! {

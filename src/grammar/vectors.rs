@@ -2,10 +2,11 @@
 
 use symdiff::Formula;
 
+use super::formulas::Written;
 use super::names::Context;
 use super::plane;
 use super::quantity::Dimension;
-use super::reader::{Reader, Written};
+use super::reader::Reader;
 use super::symbols::{Rotation, SymbolTable};
 use super::values;
 use crate::syntax::source::Span;

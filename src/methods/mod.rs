@@ -19,14 +19,13 @@ pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose};
 pub use ensemble::{
     Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
-    lines,
 };
-pub use registry::{About, BoundingMethod, CostCurve, Curve, Refusal, Registered, Varied};
+pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
-pub use result::{BandBuilder, Estimate, MethodResult, Sensitivity};
+pub use result::{BandBuilder, MethodResult, Sensitivity};
 pub use scan::Scan;
 pub use taylor::Taylor;
-pub use validation::{Validation, ValidationTable};
+pub use validation::Validation;
 
 registry::methods! {
     /// A Chebyshev polynomial in the parameters.

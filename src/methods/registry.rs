@@ -258,8 +258,6 @@ macro_rules! keys {
     ({ $($done:tt)* }) => {
         /// Keys of the file.
         pub(crate) mod keys {
-            #![allow(dead_code)] // the fields are there for their names and types
-
             use schemars::JsonSchema;
 
             use super::*;

@@ -182,29 +182,27 @@ pub(super) fn check_simulations<S: SymbolTable>(
 
 /// Keys of the file.
 pub(crate) mod keys {
-    #![allow(dead_code)] // the fields are there for their names and types
-
     use indexmap::IndexMap;
     use schemars::JsonSchema;
 
-    use crate::grammar::mapping::grammar;
+    use crate::grammar::mapping::{grammar, schema_only};
     use crate::grammar::values::Number;
 
-    /// A whole number for all parameters, or one for each uncertain parameter.
-    #[derive(JsonSchema)]
-    #[schemars(untagged, inline)]
-    pub enum PerParameter {
-        All(u32),
-        Each(IndexMap<String, u32>),
-    }
+    schema_only! {
+        /// A whole number for all parameters, or one for each uncertain parameter.
+        #[schemars(untagged, inline)]
+        pub enum PerParameter {
+            All(u32),
+            Each(IndexMap<String, u32>),
+        }
 
-    #[derive(JsonSchema)]
-    #[schemars(rename_all = "lowercase", inline)]
-    pub enum Range {
-        /// The polynomial's own range.
-        Tight,
-        /// Interval arithmetic term by term, as in the paper: wider.
-        Interval,
+        #[schemars(rename_all = "lowercase", inline)]
+        pub enum Range {
+            /// The polynomial's own range.
+            Tight,
+            /// Interval arithmetic term by term, as in the paper: wider.
+            Interval,
+        }
     }
 
     grammar! {

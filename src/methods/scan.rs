@@ -19,8 +19,6 @@ const MOST_POINTS: usize = 1_000_000;
 
 /// Keys of the file.
 pub(crate) mod keys {
-    #![allow(dead_code)] // the fields are there for their names and types
-
     use schemars::JsonSchema;
 
     use crate::grammar::mapping::grammar;

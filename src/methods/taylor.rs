@@ -20,8 +20,6 @@ const MOST_ORDER: usize = 50;
 
 /// Keys of the file.
 pub(crate) mod keys {
-    #![allow(dead_code)] // the fields are there for their names and types
-
     use schemars::JsonSchema;
 
     use crate::grammar::mapping::grammar;

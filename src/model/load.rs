@@ -1,14 +1,13 @@
 //! A file → its [`Description`], or everything that is wrong with it.
 
 use std::collections::HashSet;
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 use super::description::{Description, Space};
 use super::file;
 use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
+use super::text_file::{MAX_BYTES, read_text};
 use super::urdf::{self, Urdf};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
 use crate::model::names::Reader;
@@ -16,9 +15,6 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{self, Entry, Node};
-
-/// Largest file that is read.
-pub(super) const MAX_BYTES: u64 = 10_000_000;
 
 /// What reading a model gave: both may be there when there are only warnings.
 #[derive(Clone, Debug)]
@@ -45,9 +41,9 @@ pub struct Scene {
 #[error("there is no scene `{name}`: {help}")]
 pub struct UnknownScene {
     /// As it was asked for.
-    pub name: String,
+    name: String,
     /// What would be right.
-    pub help: String,
+    help: String,
 }
 
 impl Reading {
@@ -111,42 +107,6 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
             Reading { description: None, scenes: Vec::new(), diagnostics }
         }
     }
-}
-
-/// The text of a file of at most so many bytes.
-pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
-    let cannot = |error: std::io::Error| {
-        let reason = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
-            _ => error.to_string(),
-        };
-        Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))
-    };
-    let metadata = fs::metadata(path).map_err(cannot)?;
-    if metadata.is_dir() {
-        return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));
-    }
-    let too_large = |length: u64| {
-        let megabytes = length as f64 / 1e6;
-        let limit = most / 1_000_000;
-        Err(Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB"))))
-    };
-    if metadata.len() > most {
-        return too_large(metadata.len());
-    }
-    // What is not a regular file (a pipe) says no length: never read more than allowed.
-    let mut bytes = Vec::new();
-    fs::File::open(path).map_err(cannot)?.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
-    if bytes.len() as u64 > most {
-        return too_large(bytes.len() as u64);
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let offset = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..offset].iter().filter(|byte| **byte == b'\n').count() + 1;
-        let message = format!("the file is not UTF-8 text: byte {} in line {line}", offset + 1);
-        Box::new(Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned()))
-    })
 }
 
 /// Like [`load_str`], with the warnings of a model that can be used.

@@ -23,13 +23,14 @@ mod space;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod text_file;
 mod urdf;
 
 pub use crate::elements::JointKind;
 pub use crate::elements::effects::*;
 pub use crate::grammar::{
-    Coordinate, EnergyKind, FrictionMode, JointCoordinate, OnJoint, PointRef, ReactionComponent, Reference, Rotating,
-    Rotation, Sensor, Symbol, TimeOrder,
+    Coordinate, EnergyKind, JointCoordinate, PointRef, ReactionComponent, Reference, Rotation, Sensor, Symbol,
+    TimeOrder,
 };
 pub use description::*;
 pub use file::schema;

@@ -3,10 +3,11 @@
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::file;
 use crate::grammar::dimension::Kind;
+use crate::grammar::formulas::Written;
 use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::{Fields, Written};
+use crate::grammar::reader::Fields;
 use crate::grammar::{Coordinate, ReactionComponent, Symbol, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -32,7 +33,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     let symbol = match reader
         .model
         .symbol(name)
-        .ok_or_else(|| crate::grammar::names::unknown(&reader.model, name, Context::Equation))
+        .ok_or_else(|| crate::grammar::unknown::unknown(&reader.model, name, Context::Equation))
     {
         Ok(symbol) => symbol,
         Err(error) => {

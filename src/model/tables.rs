@@ -3,10 +3,10 @@
 use symdiff::{Spline, SplineError};
 
 use super::file;
-use super::load::{MAX_BYTES, read_text};
 use super::parameters::unit;
-use crate::grammar::quantity::Unit;
+use super::text_file::{MAX_BYTES, read_text};
 use crate::grammar::reader::{Fields, Table};
+use crate::grammar::unit::Unit;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;

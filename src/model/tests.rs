@@ -4,6 +4,7 @@ use super::*;
 use crate::elements::joints::*;
 use crate::grammar::Direction;
 use crate::methods::Degree;
+use crate::syntax::diagnostic::Severity;
 use symdiff::Formula;
 
 const SLIDER_CRANK: &str = include_str!("../../models/slider_crank.yaml");
@@ -213,7 +214,7 @@ fn warnings_do_not_stop_a_model() {
     assert!(reading.description.is_some());
     let record = reading.diagnostics.records().remove(0);
     assert_eq!((record.message.as_str(), record.line), ("parameter `l` is used nowhere", Some(2)));
-    assert_eq!(record.severity, crate::syntax::Severity::Warning);
+    assert_eq!(record.severity, Severity::Warning);
 }
 
 #[test]
@@ -282,11 +283,7 @@ fn more_parameters_than_anyone_has_are_refused() {
         read_str("x.yaml", &text, &[]).diagnostics.records()
     };
     let errors = |records: Vec<crate::syntax::Record>| -> Vec<String> {
-        records
-            .into_iter()
-            .filter(|record| record.severity == crate::syntax::Severity::Error)
-            .map(|record| record.message)
-            .collect()
+        records.into_iter().filter(|record| record.severity == Severity::Error).map(|record| record.message).collect()
     };
     // `l`, which the bar needs, comes last.
     let found = errors(with(20_000, "1"));

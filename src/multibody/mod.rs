@@ -2,6 +2,7 @@
 
 mod context;
 pub(crate) mod error;
+#[allow(dead_code)] // for the assembly of equations, which does not use it yet
 mod matrix;
 mod pair;
 mod point;
@@ -11,6 +12,7 @@ mod vector;
 
 pub use context::Context;
 pub use error::BuildError;
+#[allow(unused_imports)] // as above
 pub use matrix::Matrix;
 pub use pair::Pair;
 pub use point::{Frame, MaterialPoint};

@@ -9,9 +9,8 @@ use super::tensor::{Matrix, Separable, Work, cos_pi};
 /// fastest; the factors (1/2)^p of the paper's (14) are in the coefficients.
 #[derive(Clone, Debug)]
 pub struct ChebyshevBasis {
-    orders: Vec<usize>,
     nodes: Vec<usize>,
-    quadrature: Separable,
+    pub(super) quadrature: Separable,
 }
 
 impl ChebyshevBasis {
@@ -30,12 +29,7 @@ impl ChebyshevBasis {
             })
         };
         let quadrature = Separable::new(orders.iter().zip(nodes).map(axis).collect());
-        Self { orders: orders.to_vec(), nodes: nodes.to_vec(), quadrature }
-    }
-
-    /// Degree in each parameter.
-    pub fn orders(&self) -> &[usize] {
-        &self.orders
+        Self { nodes: nodes.to_vec(), quadrature }
     }
 
     /// Where the response is needed, in the order in which [`coefficients`](Self::coefficients) takes it.
@@ -43,67 +37,16 @@ impl ChebyshevBasis {
         TensorGrid::chebyshev_zeros(&self.nodes)
     }
 
-    /// Number of coefficients, Π (nᵢ + 1).
-    #[allow(clippy::len_without_is_empty)] // the constant is always there
-    pub fn len(&self) -> usize {
-        self.orders.iter().map(|n| n + 1).product()
-    }
-
     /// Coefficients of the polynomial for the response `values` at all samples of [`grid`](Self::grid). The result lies
     /// in `work`, which allocates only when first used.
     pub fn coefficients<'a>(&self, values: &[f64], work: &'a mut Work) -> &'a [f64] {
         self.quadrature.apply(values, work)
     }
-
-    /// Value of the polynomial at ξ ∈ [−1, 1]^k, by Clenshaw's recurrence along each axis, the last first.
-    pub fn evaluate(&self, coefficients: &[f64], xi: &[f64]) -> f64 {
-        let mut values = coefficients.to_vec();
-        for (n, &x) in self.orders.iter().zip(xi).rev() {
-            values = values.chunks_exact(n + 1).map(|row| clenshaw(row, x)).collect();
-        }
-        values[0]
-    }
-
-    /// What evaluates polynomials of this basis at all samples of a grid.
-    pub fn on(&self, grid: &TensorGrid) -> OnGrid {
-        let axis = |(axis, n): (usize, &usize)| {
-            let points = grid.axis(axis);
-            let mut entries = Vec::with_capacity(points.len() * (n + 1));
-            for &x in points {
-                let (mut last, mut this) = (x, 1.0);
-                for _ in 0..=*n {
-                    entries.push(this);
-                    (last, this) = (this, 2.0 * x * this - last);
-                }
-            }
-            Matrix { rows: points.len(), columns: n + 1, entries }
-        };
-        OnGrid(Separable::new(self.orders.iter().enumerate().map(axis).collect()))
-    }
-}
-
-/// Evaluation of polynomials of one basis at all samples of one grid; made once for any number of them.
-#[derive(Clone, Debug)]
-pub struct OnGrid(Separable);
-
-impl OnGrid {
-    /// Values of the polynomial, in the grid's order.
-    pub fn values(&self, coefficients: &[f64]) -> Vec<f64> {
-        std::mem::take(self.0.apply(coefficients, &mut Work::default()))
-    }
-}
-
-/// Σ cᵢ Cᵢ(x).
-pub fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
-    let (mut b1, mut b2) = (0.0, 0.0);
-    for &c in coefficients[1..].iter().rev() {
-        (b1, b2) = (c + 2.0 * x * b1 - b2, b1);
-    }
-    coefficients[0] + x * b1 - b2
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::evaluation::clenshaw;
     use super::*;
     use proptest::prelude::*;
 

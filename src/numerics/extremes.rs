@@ -34,7 +34,7 @@ const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 /// A function's range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
-    /// From the least to the largest value.
+    /// The least and the largest value found.
     pub range: Range,
     /// How far the search may have missed its ends.
     pub gap: f64,

@@ -69,7 +69,7 @@ impl Level {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chebyshev::clenshaw;
+    use super::super::evaluation::clenshaw;
     use super::*;
 
     #[test]

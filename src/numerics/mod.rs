@@ -14,6 +14,8 @@ mod chebyshev;
 mod decay;
 mod domain;
 mod error;
+#[cfg(test)]
+mod evaluation;
 mod extremes;
 mod lattice;
 mod leja;
@@ -32,7 +34,6 @@ mod surrogate;
 mod taylor;
 mod tensor;
 
-pub use chebyshev::{ChebyshevBasis, clenshaw};
 pub use decay::truncation;
 pub use domain::ParameterBox;
 pub use error::{
@@ -40,15 +41,13 @@ pub use error::{
 };
 pub use extremes::{Extent, extremes, extremes_near};
 pub use polynomial_range::{PolynomialRange, RangeKind};
-pub use range::{EMPTY, Enclosed, Range, union};
+pub use range::{EMPTY, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
-pub use separation::{Separated, Separation};
-pub use sobol::{SobolDecomposition, SobolIndices};
-pub use sparse_basis::{SparseBasis, SparseWork};
+pub use separation::Separation;
+pub use sobol::SobolDecomposition;
+pub use sparse_basis::SparseWork;
 pub use sparse_grid::SparseGrid;
-pub use sparse_transform::{SparseTransform, TransformWork};
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
-pub use tensor::Work;

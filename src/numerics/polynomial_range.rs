@@ -78,18 +78,9 @@ impl PolynomialRange {
         Self { kind, count: orders.iter().map(|n| n + 1).product(), enclosure, varying: Vec::new() }
     }
 
-    /// Number of coefficients, Π (nᵢ + 1).
-    pub fn coefficient_count(&self) -> usize {
-        self.count
-    }
-
     /// Range of the polynomial with these Chebyshev coefficients (last index fastest). Exact for a constant; unknown
     /// if any coefficient is infinite or NaN. Never wider than c₀ ± Σ|c|.
-    pub fn range(&mut self, coefficients: &[f64]) -> Range {
-        self.enclose(coefficients).outer
-    }
-
-    /// The same, with what the polynomial is seen to attain.
+    /// With what the polynomial is seen to attain.
     pub fn enclose(&mut self, coefficients: &[f64]) -> Enclosed {
         assert_eq!(coefficients.len(), self.count, "coefficients of another shape");
         let radius: f64 = coefficients[1..].iter().map(|c| c.abs()).sum();
@@ -209,7 +200,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn range(orders: &[usize], kind: RangeKind, coefficients: &[f64]) -> Range {
-        PolynomialRange::new(orders, kind).range(coefficients)
+        PolynomialRange::new(orders, kind).enclose(coefficients).outer
     }
 
     /// Least and largest value on a dense grid.

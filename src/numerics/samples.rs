@@ -37,6 +37,7 @@ impl TensorGrid {
     }
 
     /// Coordinates along one axis.
+    #[cfg(test)]
     pub fn axis(&self, axis: usize) -> &[f64] {
         &self.axes[axis]
     }

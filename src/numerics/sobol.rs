@@ -15,7 +15,7 @@ pub struct SobolIndices {
     /// Of each parameter, alone and together with others.
     pub total: Vec<f64>,
     /// Of parameters together: 1 − Σ main.
-    pub interactions: f64,
+    interactions: f64,
 }
 
 /// Computes shares for polynomials of one basis.

@@ -142,6 +142,7 @@ impl SparseBasis {
     }
 
     /// Value at ξ ∈ [−1, 1]^k of the polynomial with these coefficients.
+    #[cfg(test)]
     pub fn evaluate(&self, coefficients: &[f64], xi: &[f64]) -> f64 {
         let mut value = [0.0];
         self.values(&[xi], coefficients, &mut value, &mut SparseWork::default());

@@ -30,6 +30,7 @@ impl SparseGrid {
     }
 
     /// The full tensor grid of the given levels, which are its caps too.
+    #[cfg(test)]
     pub fn tensor(levels: &[u8]) -> Self {
         let mut grid = Self::new(levels);
         let mut next = vec![0; levels.len()];

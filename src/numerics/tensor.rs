@@ -36,7 +36,7 @@ impl Matrix {
 /// One matrix for each axis: out[i₁…i_k] = Σ A¹[i₁,j₁] … A^k[i_k,j_k] in[j₁…j_k], tensors with the last index fastest.
 #[derive(Clone, Debug)]
 pub(super) struct Separable {
-    axes: Vec<Matrix>,
+    pub axes: Vec<Matrix>,
 }
 
 impl Separable {

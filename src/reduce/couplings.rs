@@ -11,10 +11,12 @@ use crate::model::{Description, Effect, Joint, Reference, Scope, Symbol};
 
 /// A part of a mechanism, by its index in the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)]
 pub enum Part {
+    /// A body, by index.
     Body(usize),
+    /// A joint, by index.
     Joint(usize),
+    /// An effect, by index.
     Effect(usize),
 }
 

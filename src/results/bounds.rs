@@ -49,10 +49,13 @@ pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> 
 
 /// A method's bounds of one output over time, and how far they may be from the truth.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Band {
+    /// The method that bounds.
     pub method: Method,
+    /// Lower bound at each time, in the output's SI unit; NaN where there is none.
     pub lower: Vec<f64>,
+    /// Upper bound at each time, in the output's SI unit; NaN where there is none.
     pub upper: Vec<f64>,
+    /// How far the bounds may be from the truth, at each time.
     pub error: BandError,
 }

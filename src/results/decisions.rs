@@ -17,7 +17,7 @@ pub struct Decision {
 /// Instructions that need not be run, as compiling with and without the decision counts them; negative where it costs some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Saving {
-    #[allow(missing_docs)]
+    /// How many.
     pub instructions: i64,
     /// How often they would be run.
     pub each: Each,

@@ -7,12 +7,16 @@ use super::{Band, Bounds, Contribution, OutputBounds};
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct Summary {
+    /// Name of the model, and of the scene after a slash.
     pub model: String,
+    /// Version of this package.
     pub mbint: String,
+    /// Number of coordinates.
     pub coordinates: usize,
+    /// Number of constraint equations, redundant ones included.
     pub constraints: usize,
+    /// Number of independent coordinates at the start.
     pub degrees_of_freedom: usize,
     /// Names of constraints that others imply.
     pub redundant_constraints: Vec<String>,
@@ -25,9 +29,13 @@ pub struct Summary {
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,
+    /// The parameter α of HHT-I3.
     pub alpha: f64,
+    /// Length of the run, s.
     pub duration: f64,
+    /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
+    /// What each method took.
     pub methods: Vec<MethodSummary>,
     /// Of every band.
     pub errors: Vec<ErrorSummary>,
@@ -61,55 +69,73 @@ impl Summary {
 
 /// A singular configuration: when, s, and which constraints others imply there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct SingularSummary {
+    /// When, s.
     pub time: f64,
+    /// Names of the constraints.
     pub constraints: Vec<String>,
 }
 
 /// An uncertain parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct ParameterSummary {
+    /// Its name.
     pub name: String,
+    /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// Nominal value.
     pub nominal: f64,
+    /// Lower end of the interval.
     pub lower: f64,
+    /// Upper end of the interval.
     pub upper: f64,
 }
 
 /// A piece of the box that is bounded: the least and largest of every parameter, and the last time that it reached, s.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct PieceSummary {
+    /// Least value of each parameter.
     pub lower: Vec<f64>,
+    /// Largest value of each parameter.
     pub upper: Vec<f64>,
+    /// The last time, s.
     pub until: f64,
 }
 
 /// A subsystem, with the names of what is in it and of the uncertain parameters on which it depends.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct SubsystemSummary {
+    /// Names of its bodies.
     pub bodies: Vec<String>,
+    /// Names of its outputs.
     pub outputs: Vec<String>,
+    /// Names of the uncertain parameters.
     pub parameters: Vec<String>,
+    /// Number of coordinates.
     pub coordinates: usize,
+    /// Number of constraint equations.
     pub constraints: usize,
+    /// What each method took.
     pub methods: Vec<MethodSummary>,
 }
 
 /// The largest width and errors of a band over the run, in the output's unit (`null` where unknown), and from which time on it is
 /// not resolved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct ErrorSummary {
+    /// Name of the output.
     pub output: String,
+    /// Name of the method.
     pub method: String,
+    /// Largest width of the band.
     pub width: f64,
+    /// Largest error.
     pub error: f64,
+    /// Largest part of it that is due to the method.
     pub surrogate: f64,
+    /// Largest part of it that is due to time steps.
     pub time: f64,
+    /// The first time at which the band is not resolved, s; absent where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unresolved_from: Option<f64>,
 }
@@ -117,22 +143,27 @@ pub struct ErrorSummary {
 /// A parameter's Sobol indices of an output, first-order and total: means over the run, weighted by the width of the output's
 /// range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct ContributionSummary {
+    /// Name of the output.
     pub output: String,
+    /// Name of the parameter.
     pub parameter: String,
-    pub main: f64,
+    /// First-order index: what varies with this parameter alone.
+    main: f64,
+    /// Total index: what varies with this parameter and its interactions.
     pub total: f64,
 }
 
 /// What a method took. `method` is `nominal`, `validation` or a bounding method's name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[allow(missing_docs)]
 pub struct MethodSummary {
+    /// Its name.
     pub method: String,
     /// Number of simulations.
     pub simulations: usize,
+    /// Number of time steps of one simulation.
     pub steps: usize,
+    /// Newton's iterations of all steps of all simulations.
     pub newton_iterations: u64,
     /// Steps that fell back to the dense rank-revealing solve.
     pub rank_revealing_solves: u64,
@@ -145,6 +176,7 @@ pub struct MethodSummary {
     /// Outputs that at some time do not follow from the coordinates, and were expanded themselves there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub expanded_outputs: Vec<String>,
+    /// Computing time, s, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
 }

@@ -29,25 +29,25 @@ const LEANS: f64 = 0.2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     /// The first sample that was met.
-    pub first: SimulationError,
+    first: SimulationError,
     /// All that were tried, and those that cannot be.
-    pub samples: usize,
-    #[allow(missing_docs)]
-    pub failing: usize,
+    samples: usize,
+    /// How many of them fail.
+    failing: usize,
     /// Where these lie, parameter by parameter, where that says something.
-    pub places: Vec<Place>,
+    places: Vec<Place>,
 }
 
 /// Where samples fail along one parameter.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Place {
-    pub parameter: String,
+    /// Name of the parameter.
+    parameter: String,
     /// Least and largest value of samples that fail.
-    pub lower: f64,
-    pub upper: f64,
+    lower: f64,
+    upper: f64,
     /// The end of the interval that most of them are near to, where they are from all of it.
-    pub towards: Option<f64>,
+    towards: Option<f64>,
 }
 
 impl fmt::Display for Survey {

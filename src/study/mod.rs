@@ -29,10 +29,10 @@ use crate::simulate::{SimulationError, Simulator};
 
 use subsystems::Prepared;
 
-pub use cost::{CostError, CostOptions, cost};
+pub use cost::{CostOptions, cost};
 pub use effect_costs::language_costs;
 pub use explain::{explain, explain_whole};
-pub use feasible::{Place, Survey};
+pub use feasible::Survey;
 
 /// How to run.
 pub struct Options<'a> {
@@ -66,16 +66,20 @@ impl Default for Options<'_> {
 
 /// Why nothing could be run at all.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum RunError {
+    /// The equations cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// A simulation cannot start.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A method cannot bound this problem.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// Some samples cannot be assembled: where these lie.
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
+    /// The threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }

@@ -89,15 +89,18 @@ pub struct Diagnostics {
 
 /// A diagnostic for machines (`--format json`).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[allow(missing_docs)]
 pub struct Record {
+    /// An error or a warning.
     pub severity: Severity,
+    /// What is wrong.
     pub message: String,
+    /// Name of the text.
     pub file: String,
     /// From 1; absent where the file as a whole is meant.
     pub line: Option<usize>,
     /// Characters, from 1.
     pub column: Option<usize>,
+    /// What would be right.
     pub help: Option<String>,
 }
 

@@ -6,5 +6,4 @@ pub(crate) mod source;
 pub(crate) mod suggest;
 pub(crate) mod yaml;
 
-pub use diagnostic::{Diagnostic, Diagnostics, Record, Severity};
-pub use source::{Place, Source, Sources, Span};
+pub use diagnostic::{Diagnostics, Record};

@@ -16,16 +16,17 @@ pub struct Source {
     /// The text; empty where it could not be read.
     pub text: String,
     /// Offset of its first byte.
-    pub start: usize,
+    start: usize,
     /// Where its lines begin, counted from its own start.
     lines: Vec<usize>,
 }
 
 /// A place as people count it, both from 1; columns are characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Place {
+    /// From 1.
     pub line: usize,
+    /// In characters, from 1.
     pub column: usize,
 }
 

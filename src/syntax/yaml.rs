@@ -28,10 +28,12 @@ pub struct Node {
 
 /// What a node is.
 #[derive(Clone, Debug)]
-#[allow(missing_docs)]
 pub enum Value {
+    /// A piece of text.
     Scalar(Scalar),
+    /// A list.
     Sequence(Vec<Node>),
+    /// Keys with values, in the order of the file.
     Mapping(Vec<Entry>),
 }
 
@@ -42,7 +44,7 @@ pub struct Entry {
     pub key: String,
     /// The key's place.
     pub key_span: Span,
-    #[allow(missing_docs)]
+    /// What stands behind the key.
     pub value: Node,
 }
 

@@ -10,12 +10,12 @@ pub mod runge_kutta;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use mbint::methods::{Chebyshev, Expand, Scan};
-use mbint::model::{self, Description, Output, ParameterValue, Stepping};
-use mbint::numerics::RangeKind;
-use mbint::results::Summary;
-use mbint::results::{Band, Bounds, Method, OutputBounds};
-use mbint::study::{self, Options};
+use mbint::inner::methods::{Chebyshev, Expand, Scan};
+use mbint::inner::model::{self, Description, Output, ParameterValue, Stepping};
+use mbint::inner::numerics::RangeKind;
+use mbint::inner::results::Summary;
+use mbint::inner::results::{Band, Bounds, Method, OutputBounds};
+use mbint::inner::study::{self, Options};
 
 /// The files of `models/`, in alphabetical order.
 pub fn model_files() -> Vec<PathBuf> {
@@ -145,13 +145,13 @@ impl Vary for Description {
     fn chebyshev(mut self, order: usize, range: RangeKind) -> Self {
         let order = Chebyshev::of_order(order, uncertain_count(&self));
         let request = Chebyshev { expand: Expand::Output, range, ..order };
-        self.bounds = mbint::methods::BoundsRequest { chebyshev: Some(request), ..Default::default() };
+        self.bounds = mbint::inner::methods::BoundsRequest { chebyshev: Some(request), ..Default::default() };
         self
     }
 
     fn scan(mut self, points: usize) -> Self {
         let request = Scan::of_points(points, uncertain_count(&self));
-        self.bounds = mbint::methods::BoundsRequest { scan: Some(request), ..Default::default() };
+        self.bounds = mbint::inner::methods::BoundsRequest { scan: Some(request), ..Default::default() };
         self
     }
 }

@@ -1,7 +1,7 @@
 //! A slider crank whose wrist pin is loose by 0.1 mm: stable, convergent, and within its clearance of the ideal one.
 
-use mbint::model::Description;
-use mbint::results::Method;
+use mbint::inner::model::Description;
+use mbint::inner::results::Method;
 
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{Vary, band, curve, distance, largest, nominal, output, read, row, run};

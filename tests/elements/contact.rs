@@ -3,8 +3,8 @@
 use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{Vary, curve, distance_from, largest, nominal, order, read, row};
 use crate::common::restitution::restitution;
-use mbint::model::Description;
-use mbint::results::Bounds;
+use mbint::inner::model::Description;
+use mbint::inner::results::Bounds;
 
 fn ball(impact: &str) -> Description {
     read(&format!(

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use mbint::assemble;
-use mbint::model::Description;
-use mbint::results::{Bounds, Method};
+use mbint::inner::assemble;
+use mbint::inner::model::Description;
+use mbint::inner::results::{Bounds, Method};
 use nalgebra::DMatrix;
 
 use crate::common::{Vary, band, curve, distance_from, largest, nominal, order, output, read, richardson, run};
@@ -347,7 +347,7 @@ fn instructions_grow_with_the_elements() {
     let weight = "{ gravity: { acceleration: [0, -9.81] } }";
     let instructions = [8, 16, 32].map(|elements| {
         let description = cantilever(elements, 1.0, 1e4, 0.0, weight, "duration: 1");
-        let simulator = mbint::study::prepare(&description).unwrap();
+        let simulator = mbint::inner::study::prepare(&description).unwrap();
         simulator.program.factor().len() + simulator.program.correct().len()
     });
     println!("{instructions:?}");
@@ -384,7 +384,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     let around = (750.0 * period) as usize..(1250.0 * period) as usize;
     let back = around.max_by(|&a, &b| y[a].total_cmp(&y[b])).unwrap();
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
-    let failure = mbint::study::run(&clamped(0.99), mbint::study::Options::default()).unwrap_err().to_string();
+    let failure = mbint::inner::study::run(&clamped(0.99), mbint::inner::study::Options::default()).unwrap_err().to_string();
     println!("{failure}");
     assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives x, y and angle of all its nodes)"));
 }

@@ -1,6 +1,6 @@
 //! Motors: prescribed motions against their formulas, and the torques that they take.
 
-use mbint::results::Bounds;
+use mbint::inner::results::Bounds;
 
 use crate::common::power::{assert_balance, pair};
 use crate::common::{Findings, curve, distance, distance_from, nominal, read, row};

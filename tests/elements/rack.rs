@@ -1,6 +1,6 @@
 //! Racks, with a gear before them.
 
-use mbint::model::Formulation;
+use mbint::inner::model::Formulation;
 
 use crate::common::power::assert_balance;
 use crate::common::{Vary, curve, distance_from, largest, nominal, order, read};

@@ -1,7 +1,7 @@
 //! Models and formulas as no one would write them: whatever stands in a file, the answer is a result or an error.
 //!
 //! `cargo test --test fuzz` changes the models of `models/` and `tests/bad_models/` at random;
-//! `MBINT_FUZZ_INPUTS=1000000` tries so many inputs. Guided by coverage, and with limits of time and memory, the same targets
+//! `MBINT_FUZZ_INPUTS=1000000` tries so many inputs, and `cargo test --test fuzz -- --ignored` as many as the gate does. Guided by coverage, and with limits of time and memory, the same targets
 //! run with cargo-fuzz:
 //!
 //! ```sh
@@ -23,7 +23,7 @@ static MEMORY: PeakAlloc = PeakAlloc;
 /// More than any input may take.
 const MOST_MEGABYTES: f32 = 1024.0;
 
-/// Tries many inputs; `share` of the number that was asked for, or `few`.
+/// Tries as many inputs as were asked for, or `few`.
 fn fuzz(few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
     let asked = std::env::var("MBINT_FUZZ_INPUTS").ok().map(|number| number.parse().unwrap());
     let config = Config { cases: asked.unwrap_or(few), failure_persistence: None, ..Config::default() };
@@ -37,25 +37,69 @@ fn fuzz(few: u32, inputs: impl Strategy<Value = String>, target: fn(&str)) {
     assert!(MEMORY.peak_usage_as_mb() < MOST_MEGABYTES, "{} MB", MEMORY.peak_usage_as_mb());
 }
 
-#[test]
-fn models() {
+fn models(few: u32) {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "yaml");
-    fuzz(20_000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
+    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::model);
 }
 
-#[test]
-fn robots() {
+fn robots(few: u32) {
     let corpus = Corpus::of(&["models", "tests/bad_models"], "urdf");
-    fuzz(5000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
+    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
 }
 
-#[test]
-fn formulas() {
-    fuzz(100_000, formula(), targets::formula);
+fn formulas(few: u32) {
+    fuzz(few, formula(), targets::formula);
 }
 
-#[test]
-fn short_runs() {
+fn short_runs(few: u32) {
     let corpus = Corpus::of(&["models"], "yaml");
-    fuzz(1000, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
+    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::short_run);
+}
+
+mod few {
+    #[test]
+    fn models() {
+        super::models(4000);
+    }
+
+    #[test]
+    fn robots() {
+        super::robots(1000);
+    }
+
+    #[test]
+    fn formulas() {
+        super::formulas(20_000);
+    }
+
+    #[test]
+    fn short_runs() {
+        super::short_runs(200);
+    }
+}
+
+mod many {
+    #[test]
+    #[ignore = "10 s: as many inputs as the gate tries"]
+    fn models() {
+        super::models(20_000);
+    }
+
+    #[test]
+    #[ignore = "10 s: as many inputs as the gate tries"]
+    fn robots() {
+        super::robots(5000);
+    }
+
+    #[test]
+    #[ignore = "10 s: as many inputs as the gate tries"]
+    fn formulas() {
+        super::formulas(100_000);
+    }
+
+    #[test]
+    #[ignore = "10 s: as many inputs as the gate tries"]
+    fn short_runs() {
+        super::short_runs(1000);
+    }
 }

@@ -1,8 +1,8 @@
 //! What is fuzzed. Each takes any text and may say of it what it likes, but not panic, hang or take much memory.
 
-use mbint::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
-use mbint::model::{self, Description, Override, Stepping};
-use mbint::study::{self, Options};
+use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
+use mbint::inner::model::{self, Description, Override, Stepping};
+use mbint::inner::study::{self, Options};
 
 /// Reads a model, and renders what is wrong with it.
 pub fn model(text: &str) {

@@ -1,6 +1,6 @@
 //! Inconsistent initial velocities name the joint they are inconsistent with. (Positions that do not: `tests/program/faults/infeasible.rs`.)
 
-use mbint::study::{self, Options};
+use mbint::inner::study::{self, Options};
 
 use crate::common::read;
 

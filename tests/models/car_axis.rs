@@ -2,7 +2,7 @@
 //!
 //! Its springs oscillate with 1/s-frequencies of √(k/m) = 45 rad/s, so steps of 1e-3 s resolve a period with 140 steps.
 
-use mbint::model::Description;
+use mbint::inner::model::Description;
 
 use crate::common::{Vary, curve, largest, model, nominal, order, reference, richardson, row};
 

@@ -3,7 +3,7 @@
 //!
 //! With e(h) = C h² + O(h³), the differences of runs at h, h/2 and h/4 are in the ratio 4 whatever the exact solution.
 
-use mbint::model::Description;
+use mbint::inner::model::Description;
 
 use crate::common::{Findings, Vary, curve, distance, distance_from, model, nominal, order, read, row};
 

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use mbint::export::bounds_csv;
-use mbint::model::Description;
-use mbint::simulate::{Simulator, Stepper};
-use mbint::study::{self, Options, prepare};
+use mbint::inner::export::bounds_csv;
+use mbint::inner::model::Description;
+use mbint::inner::simulate::{Simulator, Stepper};
+use mbint::inner::study::{self, Options, prepare};
 use symdiff::Tape;
 
 use crate::common::{Vary, read, run};

@@ -2,10 +2,10 @@
 //! more than ten times as large. The truths are closed forms, references, and other equations (minimal coordinates) solved by
 //! another method (Runge and Kutta's), over dense grids of the parameters.
 
-use mbint::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
-use mbint::model::Description;
-use mbint::numerics::RangeKind;
-use mbint::results::{Method, OutputBounds};
+use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan, Taylor};
+use mbint::inner::model::Description;
+use mbint::inner::numerics::RangeKind;
+use mbint::inner::results::{Method, OutputBounds};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Findings, Vary, band, model, output, read, reference, run, uncertain_count};

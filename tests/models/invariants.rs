@@ -1,6 +1,6 @@
 //! What no step may lose: the loops stay closed, and energy stays where nothing takes it.
 
-use mbint::model::{Description, Formulation};
+use mbint::inner::model::{Description, Formulation};
 
 use crate::common::{Findings, Vary, largest, model, nominal, order};
 

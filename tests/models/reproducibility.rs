@@ -1,8 +1,8 @@
 //! A run is a function of its model: the same bytes whatever the number of threads, and each time.
 
-use mbint::export::bounds_csv;
-use mbint::model::Description;
-use mbint::study::{self, Options};
+use mbint::inner::export::bounds_csv;
+use mbint::inner::model::Description;
+use mbint::inner::study::{self, Options};
 
 use crate::common::{Vary, load, model, model_files};
 

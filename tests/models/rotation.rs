@@ -1,7 +1,7 @@
 //! Rotations in space: what a scheme of the wrong order, or a body that is not rigid, would lose.
 
 use crate::common::{Vary, curve, largest, model, nominal, order, read, reference, richardson, row};
-use mbint::model::Description;
+use mbint::inner::model::Description;
 
 /// |pᵀp − 1| / 2 is a constraint like any other: Newton ends at 1e-11.
 const NORM: &str = "(a.p0^2 + a.p1^2 + a.p2^2 + a.p3^2 - 1)/2";
@@ -29,7 +29,7 @@ simulation: {{ duration: {duration}, step: 1e-2, output_step: 0.1 }}
 /// Largest departure of an output from its first value, at h and h/2.
 fn drifts(description: &Description, formulas: &[&str], h: f64) -> Vec<[f64; 2]> {
     let runs = [h, 0.5 * h].map(|h| nominal(&description.clone().observing(formulas).step(h)));
-    let drift = |run: &mbint::results::Bounds, name: &str| {
+    let drift = |run: &mbint::inner::results::Bounds, name: &str| {
         let values = curve(run, name);
         largest(values.iter().map(|value| value - values[0]))
     };

@@ -1,9 +1,9 @@
 //! The schemes beside HHT: their order, what they leave of high frequencies, and what index 2 does to the constraints.
 
-use mbint::assemble;
-use mbint::compile::Scheme;
-use mbint::model::Description;
-use mbint::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
+use mbint::inner::assemble;
+use mbint::inner::compile::Scheme;
+use mbint::inner::model::Description;
+use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
 

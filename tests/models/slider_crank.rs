@@ -2,10 +2,10 @@
 //!
 //! The scheme's error is C h² with C = 1.8e3 m/s² over 2 s (largest, in x3), which is what the tolerances below are made of.
 
-use mbint::methods::Taylor;
-use mbint::model::Description;
-use mbint::numerics::RangeKind;
-use mbint::results::Method;
+use mbint::inner::methods::Taylor;
+use mbint::inner::model::Description;
+use mbint::inner::numerics::RangeKind;
+use mbint::inner::results::Method;
 
 use crate::common::{
     Vary, band, curve, distance, largest, model, nominal, order, output, reference, richardson, row, run,

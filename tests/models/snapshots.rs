@@ -5,9 +5,10 @@
 
 use std::fmt::Write as _;
 
-use mbint::results::{Bounds, OutputBounds};
+use mbint::inner::results::{Bounds, OutputBounds};
 
-use crate::common::{load_all, model_files, run};
+use crate::common::{load_all, model_files, run_methods};
+use crate::run_all::assert_complete;
 
 /// Times that are shown of a run.
 const TIMES: usize = 10;
@@ -80,7 +81,9 @@ fn bounds_are_those_of_the_snapshots() {
                 "models/{file}.yaml{}",
                 description.name.replacen(&file, "", 1).replace('/', ", scene ")
             ));
-            settings.bind(|| insta::assert_snapshot!(name, table(&run(&description))));
+            let (bounds, summary) = run_methods(&description, None);
+            assert_complete(&description, &bounds, &summary);
+            settings.bind(|| insta::assert_snapshot!(name, table(&bounds)));
         }
     }
 }

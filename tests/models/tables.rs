@@ -1,8 +1,8 @@
 //! Tables in formulas: recorded excitations and measured characteristics.
 
 use crate::common::{band, curve, distance, nominal, output, read, run};
-use mbint::model;
-use mbint::results::Method;
+use mbint::inner::model;
+use mbint::inner::results::Method;
 use std::fmt::Write as _;
 
 /// A recording of a sine drives a mass as the sine itself does, but for what a spline of its samples leaves.

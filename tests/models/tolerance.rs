@@ -1,8 +1,8 @@
 //! Bounds to a tolerance, of few and of many parameters, against truths of other methods.
 
-use mbint::methods::{BoundsRequest, Budget, Chebyshev};
-use mbint::model::{Description, ParameterValue};
-use mbint::results::{Bounds, Method};
+use mbint::inner::methods::{BoundsRequest, Budget, Chebyshev};
+use mbint::inner::model::{Description, ParameterValue};
+use mbint::inner::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use mbint::model::{self, Description, EffectKind, Reading};
-use mbint::study::{self, Options};
+use mbint::inner::model::{self, Description, EffectKind, Reading};
+use mbint::inner::study::{self, Options};
 use symdiff::{Builder, Formula};
 
 use crate::common::{

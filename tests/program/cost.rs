@@ -5,10 +5,10 @@ use std::fs;
 use std::process::Command;
 use std::sync::Mutex;
 
-use mbint::export::write_cost;
-use mbint::model::load_str;
-use mbint::results::CostStudy;
-use mbint::study::{CostOptions, cost};
+use mbint::inner::export::write_cost;
+use mbint::inner::model::load_str;
+use mbint::inner::results::CostStudy;
+use mbint::inner::study::{CostOptions, cost};
 
 /// A mass on a spring that is known to 40 %: after a second the phases of its oscillations differ by four radians, so that
 /// bounds are reached at inner points of the interval.

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use mbint::{model, study};
+use mbint::inner::{model, study};
 
 const PAGE: &str = include_str!("../../docs/guides/effects.md");
 
@@ -56,7 +56,7 @@ fn every_effect_has_an_example_and_a_picture() {
 #[test]
 fn the_reference_of_effects_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/effects.md");
-    let current = mbint::export::effects_page(&study::language_costs().unwrap());
+    let current = mbint::inner::export::effects_page(&study::language_costs().unwrap());
     if std::env::var_os("MBINT_UPDATE_REFERENCE").is_some() {
         std::fs::write(&path, &current).unwrap();
     }

@@ -1,6 +1,6 @@
 //! What the README shows is so.
 
-use mbint::{model, study};
+use mbint::inner::{model, study};
 
 const README: &str = include_str!("../../README.md");
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Each room stands on those before it, and knows none after it.
-const ROOMS: [&str; 16] = [
+const ROOMS: [&str; 17] = [
     "syntax",
     "grammar",
     "multibody",
@@ -22,29 +22,18 @@ const ROOMS: [&str; 16] = [
     "export",
     "api",
     "cli",
+    "inner",
 ];
 
 /// Lines that a file may have.
 const LONGEST: usize = 400;
 
 /// Files that are longer still; the list only ever gets shorter.
-const LONG: &[&str] =
-    &["src/assemble/tests/effects.rs", "src/grammar/names.rs", "src/grammar/quantity.rs", "src/grammar/reader.rs"];
+const LONG: &[&str] = &["src/assemble/tests/effects.rs"];
 
 /// Modules that are in circles still; the list only ever gets shorter.
-const CIRCLING: &[&str] = &[
-    "assemble::body",
-    "assemble::carried",
-    "assemble::coordinates",
-    "assemble::joints",
-    "assemble::mechanism",
-    "grammar::element",
-    "grammar::reader",
-    "model::load",
-    "model::parameters",
-    "model::tables",
-    "model::urdf",
-];
+const CIRCLING: &[&str] =
+    &["assemble::body", "assemble::carried", "assemble::coordinates", "assemble::joints", "assemble::mechanism"];
 
 /// A module's place: `["model", "urdf", "read"]`. Its file is `model/urdf/read.rs` or `model/urdf/read/mod.rs`.
 type Module = Vec<String>;

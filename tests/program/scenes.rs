@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use mbint::model::{self, Description, EffectKind, Override, ParameterValue, Stepping};
+use mbint::inner::model::{self, Description, Override, ParameterValue, Stepping};
 
 use super::place::Place;
 
@@ -153,11 +153,8 @@ scenes:
     assert_eq!(names(&changed).last().unwrap(), "wind", "what is new comes behind");
     assert_eq!(names(&changed).len(), 15);
     let drive = changed.effects.iter().find(|effect| effect.name == "drive").unwrap();
-    assert!(
-        matches!(drive.kind, EffectKind::Torque(model::Torque { on: model::torque::TorqueOn::Body(2), .. })),
-        "{:?}",
-        drive.kind
-    );
+    let kind = format!("{:?}", drive.kind);
+    assert!(kind.starts_with("Torque(Torque { on: Body(2)"), "{kind}");
     assert_eq!(changed.joints.len(), model.joints.len() + 1);
     assert_eq!(changed.outputs.iter().map(|output| output.name.as_str()).collect::<Vec<_>>(), ["load", "y"]);
     assert_eq!((changed.initial.len(), changed.guess.len()), (2, 1));

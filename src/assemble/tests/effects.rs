@@ -1,12 +1,13 @@
 use crate::assemble::System;
-use crate::grammar::{BodyRef, Components, Direction, PerAxis};
+use crate::elements::effects::{Exponent, RestitutionLaw};
+use crate::grammar::{BodyRef, Components, Direction, PerAxis, Rotating};
 use crate::model::beam::Flexible;
 use crate::model::bushing::SixBySix;
 use crate::model::force::Frame;
 use crate::model::torque::{AboutAxes, TorqueOn};
 use crate::model::{
-    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Exponent, Force, Friction, Impact, Preload,
-    RestitutionLaw, Rotating, SpringDamper, Torque, TorsionalSpringDamper,
+    Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Force, Friction, Impact, Preload, SpringDamper,
+    Torque, TorsionalSpringDamper,
 };
 
 use super::model::{Model, formula, pair, vector};

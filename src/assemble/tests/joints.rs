@@ -1,7 +1,7 @@
 use crate::assemble::{self, System};
 use crate::elements::joints::*;
-use crate::grammar::{Axis, Direction};
-use crate::model::{JointKind, Rotating};
+use crate::grammar::{Axis, Direction, Rotating};
+use crate::model::JointKind;
 
 use super::model::{Model, formula, pair, vector};
 use super::numbers::{State, assert_all_close, assert_close, constraint_forces, output};

@@ -42,34 +42,34 @@ const TAUT: f64 = 1e-4;
 )]
 pub struct Belt {
     /// Two bodies (their angles about z) or two joints.
-    pub between: [Rotating; 2],
+    between: [Rotating; 2],
     /// Of the first pulley.
     #[quantity(unit = "m", constant, positive)]
-    pub first_radius: Formula,
+    first_radius: Formula,
     /// Of the second pulley.
     #[quantity(unit = "m", constant, positive)]
-    pub second_radius: Formula,
+    second_radius: Formula,
     /// How the strands run.
     #[key(default = Run::Open)]
-    pub run: Run,
+    run: Run,
     /// Angle of the second where that of the first is zero.
     #[quantity(unit = "rad", constant, default = 0)]
-    pub offset: Formula,
+    offset: Formula,
     /// Of each strand: tension by stretch.
     #[quantity(unit = "N/m", constant, positive)]
-    pub stiffness: Formula,
+    stiffness: Formula,
     /// Of each strand while taut: tension by rate of stretch.
     #[quantity(unit = "N*s/m", default = 0)]
-    pub damping: Formula,
+    damping: Formula,
     /// Tension of both strands where no torque is carried.
     #[quantity(unit = "N", constant, nonnegative, default = 0)]
-    pub preload: Formula,
+    preload: Formula,
     /// Centres of the pulleys, which the strands pull together; each `body.point` or `body`.
     #[key(otherwise = "the shafts do not feel the belt, and their distance does not change it")]
-    pub centers: Option<[PointRef; 2]>,
+    centers: Option<[PointRef; 2]>,
     /// Of the centres, where the preload holds; goes with `centers`.
     #[quantity(unit = "m", constant, positive)]
-    pub distance: Option<Formula>,
+    distance: Option<Formula>,
     /// Stretch over which a strand becomes taut, either way.
     #[quantity(
         unit = "m",
@@ -77,7 +77,7 @@ pub struct Belt {
         positive,
         default_with("a ten-thousandth of `first_radius`", Formula::number(TAUT).combined(Binary::Mul, &first_radius))
     )]
-    pub transition: Formula,
+    transition: Formula,
 }
 
 /// How the strands of a belt run.

@@ -28,21 +28,21 @@ use crate::multibody::BuildError;
 )]
 pub struct ClearanceJoint {
     /// The bearing's centre, then the journal's; each `body.point` or `body`.
-    pub between: [PointRef; 2],
+    between: [PointRef; 2],
     /// Radius of the bearing less that of the journal.
     #[quantity(unit = "m", constant, positive)]
-    pub clearance: Formula,
+    clearance: Formula,
     /// Of the journal.
     #[quantity(unit = "m", constant, positive, default = 0)]
-    pub radius: Formula,
+    radius: Formula,
     /// Direction in the bearing's frame.
     #[key(default = Axis::z())]
-    pub axis: Axis,
+    axis: Axis,
     /// How the surfaces push each other apart.
-    pub impact: Impact,
+    impact: Impact,
     /// How they resist sliding.
     #[key(otherwise = "not at all")]
-    pub friction: Option<Friction>,
+    friction: Option<Friction>,
 }
 
 impl ForceElement for ClearanceJoint {

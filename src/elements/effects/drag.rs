@@ -29,25 +29,25 @@ const AT_REST: f64 = 1e-6;
 )]
 pub struct Drag {
     /// Where it acts: `body.point` or `body`.
-    pub on: PointRef,
+    on: PointRef,
     /// Force by the square of the speed; or `density`, `drag_coefficient` and `area`.
     #[quantity(unit = "N*s^2/m^2")]
-    pub quadratic: Option<Formula>,
+    quadratic: Option<Formula>,
     /// Of the fluid.
     #[quantity(unit = "kg/m^3")]
-    pub density: Option<Formula>,
+    density: Option<Formula>,
     /// c_d, a pure number.
     #[quantity(unit = "1")]
-    pub drag_coefficient: Option<Formula>,
+    drag_coefficient: Option<Formula>,
     /// That c_d refers to.
     #[quantity(unit = "m^2")]
-    pub area: Option<Formula>,
+    area: Option<Formula>,
     /// Force by the speed.
     #[quantity(unit = "N*s/m", default = 0)]
-    pub linear: Formula,
+    linear: Formula,
     /// Velocity of the fluid in the ground's frame.
     #[quantity(unit = "m/s", default = 0)]
-    pub wind: Components,
+    wind: Components,
 }
 
 /// Keys that together give the force by the square of the speed.

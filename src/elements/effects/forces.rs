@@ -9,9 +9,9 @@ use crate::multibody::{BuildError, MaterialPoint, Pair, Vector};
 #[derive(Clone, Copy, Debug)]
 pub struct MovingPoint<'g> {
     /// Index of the body.
-    pub body: usize,
+    body: usize,
     /// From the origin of the body's frame to the point, m.
-    pub arm: Vector<'g>,
+    arm: Vector<'g>,
     /// r, m
     pub position: Vector<'g>,
     /// ṙ, m/s

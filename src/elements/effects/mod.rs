@@ -14,7 +14,9 @@ use symdiff::Formula;
 
 pub use self::dry_friction::{DryFriction, Friction};
 pub use self::forces::{Forces, MovingPoint};
-pub use self::impact::{Exponent, Impact, RestitutionLaw};
+pub use self::impact::Impact;
+#[cfg(test)]
+pub use self::impact::{Exponent, RestitutionLaw};
 use self::registry::effects;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, ElementDocs, OnJoint, PointRef, Sensor};

@@ -8,9 +8,8 @@ macro_rules! effects {
 
         /// An effect of any kind.
         #[derive(Clone, Debug)]
-        #[allow(missing_docs)] // each is documented in its file
         pub enum EffectKind {
-            $($name($name),)*
+            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name),)*
         }
 
         $(impl From<$name> for EffectKind {

@@ -30,19 +30,19 @@ const CORNER: f64 = 0.01;
 pub struct Servo {
     /// The joint's coordinate.
     #[group]
-    pub on: OnJoint,
+    on: OnJoint,
     /// What the coordinate should be; may depend on t.
     #[quantity(unit = "m or rad", time)]
-    pub target: Formula,
+    target: Formula,
     /// Force by error.
     #[quantity(unit = "N/m or N*m/rad")]
-    pub proportional: Formula,
+    proportional: Formula,
     /// Force by rate of error.
     #[quantity(unit = "N*s/m or N*m*s/rad", default = 0)]
-    pub derivative: Formula,
+    derivative: Formula,
     /// Largest force or torque.
     #[quantity(unit = "N or N*m", constant, positive, otherwise = "none")]
-    pub limit: Option<Formula>,
+    limit: Option<Formula>,
 }
 
 impl ForceElement for Servo {

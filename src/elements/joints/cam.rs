@@ -40,22 +40,22 @@ use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDoc
 )]
 pub struct Cam {
     /// The cam's centre, then the roller's centre or a point of the flat face; each `body.point` or `body`.
-    pub between: [PointRef; 2],
+    between: [PointRef; 2],
     /// Which follower.
     #[key(default = Follower::Roller)]
-    pub follower: Follower,
+    follower: Follower,
     /// Distance of the follower from the centre where the lift is zero; of a roller's centre: with its radius.
     #[quantity(unit = "m", positive, constant)]
-    pub base: Formula,
+    base: Formula,
     /// Rise of the follower over `base`: a formula of `angle`, from 0 to 2π in a turn of the cam.
     #[quantity(unit = "m")]
-    pub lift: OfAngle,
+    lift: OfAngle,
     /// Angle from the first frame's x to the follower where the lift's `angle` is zero.
     #[quantity(unit = "rad", default = 0, constant)]
-    pub phase: Formula,
+    phase: Formula,
     /// Normal of the flat face in the second frame, away from the cam.
     #[key(default = Direction::along(1))]
-    pub normal: Direction,
+    normal: Direction,
 }
 
 /// What touches a cam.

@@ -84,7 +84,6 @@ pub trait Joint: Debug {
 ///
 /// `twist` is the angle by which the second frame is turned about the first's z where the coordinates are zero, rad.
 #[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)]
 pub enum Mobilizer<'a> {
     /// None.
     Weld { twist: &'a Formula },

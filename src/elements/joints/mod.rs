@@ -11,7 +11,6 @@ mod registry;
 mod rows;
 
 pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, RowDocs, Separation};
-pub use motor::Profile;
 pub use rows::{Kinematics, Row, Rows};
 
 pub use registry::JointDocs;

@@ -43,30 +43,30 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 pub struct Motor {
     /// The joint, and which of its coordinates.
     #[group]
-    pub on: OnJoint,
+    on: OnJoint,
     /// The coordinate over time: a formula of t, twice differentiable.
     #[quantity(unit = "m or rad", time)]
-    pub position: Option<Formula>,
+    position: Option<Formula>,
     /// From the beginning, also as a formula of t, or, with a `profile`, from rest within the `duration`.
     #[quantity(unit = "m/s or rad/s", time)]
-    pub speed: Option<Formula>,
+    speed: Option<Formula>,
     /// Where a move from rest to rest ends.
     #[quantity(unit = "m or rad", constant)]
-    pub to: Option<Formula>,
+    to: Option<Formula>,
     /// Where the motion begins.
     #[quantity(unit = "m or rad", default = 0, constant)]
-    pub from: Formula,
+    from: Formula,
     /// How the coordinate (of a move) or the speed (of a run-up) gets from the one to the other.
-    pub profile: Option<Profile>,
+    profile: Option<Profile>,
     /// When a move or a run-up begins.
     #[quantity(unit = "s", default = 0, constant)]
-    pub start: Formula,
+    start: Formula,
     /// How long a move or a run-up takes.
     #[quantity(unit = "s", positive, constant)]
-    pub duration: Option<Formula>,
+    duration: Option<Formula>,
     /// Part of the duration that a trapezoidal profile takes to its full rate, and again to rest.
     #[quantity(unit = "1", default = 0.25, requires = RAMP, constant)]
-    pub ramp: Formula,
+    ramp: Formula,
 }
 
 /// Of `ramp`.

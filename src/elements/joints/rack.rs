@@ -27,15 +27,15 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
 )]
 pub struct Rack {
     /// The joint about which the pinion turns.
-    pub pinion: RotatingJoint,
+    pinion: RotatingJoint,
     /// The joint along which the rack slides.
-    pub rack: SlidingJoint,
+    rack: SlidingJoint,
     /// Displacement a radian; negative where the rack goes against the angle.
     #[quantity(unit = "m", nonzero, constant)]
-    pub radius: Formula,
+    radius: Formula,
     /// Displacement where the angle is zero.
     #[quantity(unit = "m", default = 0, constant)]
-    pub offset: Formula,
+    offset: Formula,
 }
 
 impl JointElement for Rack {

@@ -23,9 +23,8 @@ macro_rules! joints {
 
         /// A joint of any kind.
         #[derive(Clone, Debug)]
-        #[allow(missing_docs)] // each is documented in its file
         pub enum JointKind {
-            $($name($name),)*
+            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name),)*
         }
 
         $(impl From<$name> for JointKind {

@@ -13,7 +13,7 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use crate::grammar::quantity::Dimension;
-use crate::grammar::reader::Written;
+use crate::grammar::formulas::Written;
 use crate::grammar::{Axis, Checked, Fields, JointCoordinate, OnJoint, PointRef, Reader, SymbolTable};
 
 use super::cylindrical::cylindrical;

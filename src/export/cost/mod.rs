@@ -4,5 +4,4 @@ mod csv;
 mod log_axis;
 mod plot;
 
-pub use self::csv::{cost_csv, write_cost};
-pub use plot::cost_svg;
+pub use self::csv::write_cost;

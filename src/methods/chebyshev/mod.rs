@@ -40,20 +40,19 @@ const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("out
 
 /// Keys of the file.
 pub(crate) mod keys {
-    #![allow(dead_code)] // the fields are there for their names and types
-
     use schemars::JsonSchema;
 
-    use crate::grammar::mapping::grammar;
+    use crate::grammar::mapping::{grammar, schema_only};
     use crate::methods::request::keys::{PerParameter, Range};
 
-    #[derive(JsonSchema)]
-    #[schemars(rename_all = "lowercase", inline)]
-    pub enum Expand {
-        /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
-        Coordinates,
-        /// Each output, as in the paper.
-        Output,
+    schema_only! {
+        #[schemars(rename_all = "lowercase", inline)]
+        pub enum Expand {
+            /// The independent coordinates and their velocities; outputs follow from them through the loop closure.
+            Coordinates,
+            /// Each output, as in the paper.
+            Output,
+        }
     }
 
     grammar! {

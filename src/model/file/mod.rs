@@ -2,8 +2,6 @@
 //!
 //! One declaration serves the reader, which takes the known keys from it, and the JSON Schema for editors.
 
-#![allow(dead_code)] // the fields are there for their names and types
-
 use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 

@@ -3,122 +3,112 @@
 use schemars::JsonSchema;
 
 use super::*;
+use crate::grammar::mapping::schema_only;
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum CoordinateName {
-    X,
-    Y,
-    Z,
-    /// About z.
-    Angle,
-    /// Euler parameters: any rotation.
-    Orientation,
-}
+schema_only! {
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum CoordinateName {
+        X,
+        Y,
+        Z,
+        /// About z.
+        Angle,
+        /// Euler parameters: any rotation.
+        Orientation,
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum SpaceName {
-    /// z = 0, and rotations about z only.
-    Planar,
-    /// Bodies have six degrees of freedom unless they declare their coordinates.
-    Spatial,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum SpaceName {
+        /// z = 0, and rotations about z only.
+        Planar,
+        /// Bodies have six degrees of freedom unless they declare their coordinates.
+        Spatial,
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum FormulationName {
-    /// Whichever takes fewer instructions.
-    Auto,
-    /// Each body has coordinates of its own, and joints constrain them.
-    Absolute,
-    /// The joints' angles and displacements, of which each carries a body; joints that close loops constrain them.
-    Joint,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum FormulationName {
+        /// Whichever takes fewer instructions.
+        Auto,
+        /// Each body has coordinates of its own, and joints constrain them.
+        Absolute,
+        /// The joints' angles and displacements, of which each carries a body; joints that close loops constrain them.
+        Joint,
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum BaseName {
-    /// The root link is part of the ground.
-    Fixed,
-    /// The root link is a body like any other.
-    Floating,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum BaseName {
+        /// The root link is part of the ground.
+        Fixed,
+        /// The root link is a body like any other.
+        Floating,
+    }
 
-/// A place in a body's frame, or a frame there.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum PointFile {
-    At(Components),
-    Frame(Box<PointFrame>),
-}
+    /// A place in a body's frame, or a frame there.
+    #[schemars(untagged, inline)]
+    pub enum PointFile {
+        At(Components),
+        Frame(Box<PointFrame>),
+    }
 
-/// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum InertiaFile {
-    /// About z; in space the same about every axis.
-    Scalar(Number),
-    /// xx, yy and zz.
-    Principal([Number; 3]),
-    Full(Tensor),
-}
+    /// A moment of inertia, the three principal ones along the frame's axes, or a tensor.
+    #[schemars(untagged, inline)]
+    pub enum InertiaFile {
+        /// About z; in space the same about every axis.
+        Scalar(Number),
+        /// xx, yy and zz.
+        Principal([Number; 3]),
+        Full(Tensor),
+    }
 
-/// A number; three of a vector; or a rotation.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum StartFile {
-    Number(Number),
-    Vector([Number; 3]),
-    Rotation(Rotation),
-}
+    /// A number; three of a vector; or a rotation.
+    #[schemars(untagged, inline)]
+    pub enum StartFile {
+        Number(Number),
+        Vector([Number; 3]),
+        Rotation(Rotation),
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum Frame {
-    /// Components along the ground's axes.
-    Ground,
-    /// Components along the body's axes.
-    Body,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum Frame {
+        /// Components along the ground's axes.
+        Ground,
+        /// Components along the body's axes.
+        Body,
+    }
 
-/// A column by its name, or by its number.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Column {
-    Number(u32),
-    Name(String),
-}
+    /// A column by its name, or by its number.
+    #[schemars(untagged, inline)]
+    pub enum Column {
+        Number(u32),
+        Name(String),
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "snake_case", inline)]
-pub enum RestitutionLawName {
-    /// 3 (1 - e)/(2 v)
-    HuntCrossley,
-    /// 3 (1 - e^2)/(4 v)
-    LankaraniNikravesh,
-}
+    #[schemars(rename_all = "snake_case", inline)]
+    pub enum RestitutionLawName {
+        /// 3 (1 - e)/(2 v)
+        HuntCrossley,
+        /// 3 (1 - e^2)/(4 v)
+        LankaraniNikravesh,
+    }
 
-#[derive(JsonSchema)]
-#[schemars(rename_all = "lowercase", inline)]
-pub enum AllEffects {
-    All,
-}
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum AllEffects {
+        All,
+    }
 
-/// Names of effects, joints and outputs, or `all` effects.
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum Without {
-    All(AllEffects),
-    Names(Vec<String>),
-}
+    /// Names of effects, joints and outputs, or `all` effects.
+    #[schemars(untagged, inline)]
+    pub enum Without {
+        All(AllEffects),
+        Names(Vec<String>),
+    }
 
-#[derive(JsonSchema)]
-#[schemars(untagged, inline)]
-pub enum ParameterFile {
-    /// A number, a formula, or a number with its unit.
-    Number(Number),
-    /// Of a number of the URDF: its smallest and largest value.
-    Interval([Number; 2]),
-    Full(Parameter),
+    #[schemars(untagged, inline)]
+    pub enum ParameterFile {
+        /// A number, a formula, or a number with its unit.
+        Number(Number),
+        /// Of a number of the URDF: its smallest and largest value.
+        Interval([Number; 2]),
+        Full(Parameter),
+    }
 }

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::grammar::reader::{Corner, evaluate};
+use crate::grammar::formulas::evaluate;
+use crate::grammar::reader::Corner;
 use crate::model::description::{Parameter, ParameterValue};
 use crate::model::names::Reader;
 use crate::syntax::source::Span;

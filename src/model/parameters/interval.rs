@@ -3,9 +3,9 @@
 use super::{Draft, Spec};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
+use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
-use crate::grammar::quantity::number_and_unit;
-use crate::grammar::reader::{Written, evaluate};
+use crate::grammar::unit::number_and_unit;
 use crate::model::description::ParameterValue;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;

@@ -28,9 +28,9 @@ use std::path::Path;
 use self::robot::Robot;
 use self::source::{Built, Source};
 pub use self::uncertain::is_number;
-use super::load;
 use super::overrides::Override;
 use super::scenes::LeftOut;
+use super::text_file;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -86,7 +86,7 @@ impl Urdf {
         };
         let file = reader.scalar(node, "the path of a URDF")?.text.clone();
         let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
-        let text = match load::read_text(&path, MAX_BYTES) {
+        let text = match text_file::read_text(&path, MAX_BYTES) {
             Ok(text) => text,
             Err(error) => {
                 let alone = is_urdf(model);

@@ -4,6 +4,5 @@ mod controller;
 mod samples;
 mod schedule;
 
-pub use controller::Controller;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};
 pub use schedule::Schedule;

@@ -39,12 +39,14 @@ pub struct CostOptions<'a> {
 
 /// Why there is no study.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum CostError {
+    /// The model cannot be run.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// The reference was not computed to the end.
     #[error("the reference did not come to its end: {0}")]
     Reference(String),
+    /// A reference would take too many simulations.
     #[error("{parameters} uncertain parameters: even a coarse reference takes {simulations:.1e} simulations")]
     TooMany { parameters: usize, simulations: f64 },
 }

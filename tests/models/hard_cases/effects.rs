@@ -1,9 +1,9 @@
 //! Stiff and non-smooth effects: impacts, sticking, a loose pin, a brake. The references are closed forms, and the same laws
 //! in minimal coordinates solved by another method whose steps fall at events.
 
-use mbint::methods::{BoundsRequest, Chebyshev, Scan};
-use mbint::model::Description;
-use mbint::results::Method;
+use mbint::inner::methods::{BoundsRequest, Chebyshev, Scan};
+use mbint::inner::model::Description;
+use mbint::inner::results::Method;
 
 use crate::common::dormand_prince::dormand_prince;
 use crate::common::restitution::restitution;

@@ -1,7 +1,7 @@
 //! Positions that are hard: dead centres, change points, toggles, and those where a mechanism locks.
 
-use mbint::results::Method;
-use mbint::study::{self, Options};
+use mbint::inner::results::Method;
+use mbint::inner::study::{self, Options};
 
 use crate::common::{Vary, curve, largest, nominal, order, read, run_methods};
 

@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use mbint::simulate::{Simulator, Stepper};
-use mbint::study;
+use mbint::inner::simulate::{Simulator, Stepper};
+use mbint::inner::study;
 use nalgebra::DMatrix;
 
 use crate::common::runge_kutta::runge_kutta;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use mbint::model;
-use mbint::results::Bounds;
-use mbint::study::{self, Options};
+use mbint::inner::model;
+use mbint::inner::results::Bounds;
+use mbint::inner::study::{self, Options};
 
 use super::mechanism::Mechanism;
 use super::quaternion::{Quaternion, Vector, add};

@@ -11,7 +11,7 @@ pub fn page() -> String {
         Joints that turn have `angle` (rad), `angular_velocity` and `angular_acceleration` about their axis; joints that slide have\n\
         `displacement` (m), `velocity` and `acceleration` along it: of the second frame against the first.\n"
         .to_owned();
-    for joint in mbint::elements::JointKind::docs() {
+    for joint in mbint::inner::elements::JointKind::docs() {
         let docs = joint.element;
         page +=
             &format!("\n## {}\n\n{}\n\n```text\n{}\n```\n\n", docs.keyword, docs.description, docs.formulas.join("\n"));

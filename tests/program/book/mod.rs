@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mbint::{model, study};
+use mbint::inner::{model, study};
 
 mod joints;
 mod keys;

@@ -1,10 +1,10 @@
 //! Boxes in part of which the mechanism cannot be assembled, or locks.
 
-use mbint::export::bounds_csv;
-use mbint::model::{self, Description};
-use mbint::results::Summary;
-use mbint::results::{Band, Bounds, Method};
-use mbint::study::{self, Options};
+use mbint::inner::export::bounds_csv;
+use mbint::inner::model::{self, Description};
+use mbint::inner::results::Summary;
+use mbint::inner::results::{Band, Bounds, Method};
+use mbint::inner::study::{self, Options};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))

@@ -1,7 +1,7 @@
 //! Models of one to many bodies: a chain, swinging from one end.
 
-use mbint::model::{self, Description};
-use mbint::study::{self, Options};
+use mbint::inner::model::{self, Description};
+use mbint::inner::study::{self, Options};
 
 fn chain(bodies: usize, duration: f64) -> Description {
     let each = |line: &dyn Fn(usize) -> String| (0..bodies).map(line).collect::<Vec<_>>().join("\n  ");

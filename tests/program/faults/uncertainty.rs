@@ -1,8 +1,8 @@
 //! Intervals without width, parameters of very different sizes, bifurcations.
 
-use mbint::model::{self, Description};
-use mbint::results::{Bounds, Method};
-use mbint::study::{self, Options};
+use mbint::inner::model::{self, Description};
+use mbint::inner::results::{Bounds, Method};
+use mbint::inner::study::{self, Options};
 
 fn read(text: &str) -> Description {
     model::load_str("test", text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))

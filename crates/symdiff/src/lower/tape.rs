@@ -40,11 +40,14 @@ impl Op {
 
 /// Registers of one instruction; what an operation does not use repeats `a`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub struct Operands {
+    /// Register of the first operand.
     pub a: u32,
+    /// Register of the second operand, or of the first where there is none.
     pub b: u32,
+    /// Register of the third operand, or of the first where there is none.
     pub c: u32,
+    /// Register of the result.
     pub d: u32,
 }
 

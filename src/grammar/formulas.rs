@@ -1,0 +1,307 @@
+//! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
+
+use symdiff::{Builder, Formula, Spline};
+
+use super::dimension::{self, Kind};
+use super::names::{self, Context, NameError};
+use super::quantity::Dimension;
+use super::reader::{Fields, Reader};
+use super::requirement::{Quantity, Requirement};
+use super::symbols::{ReactionComponent, Symbol, SymbolTable};
+use super::unit::{Unit, number_and_unit};
+use super::unknown;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Node, Scalar};
+
+/// Operations in one formula.
+const MAX_TERMS: usize = 10_000;
+
+/// What stands in a field: a number with its unit, or a formula.
+pub enum Written {
+    Quantity { value: f64, unit: Unit },
+    Formula(Formula),
+}
+
+impl<S: SymbolTable> Reader<'_, S> {
+    /// What stands in a field, its names not yet looked at.
+    pub fn written(&mut self, node: &Node) -> Option<Written> {
+        let scalar = self.scalar(node, "a number or a formula")?;
+        if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
+            if unit == "%" {
+                let help = "write the number itself: 1% is 0.01".to_owned();
+                self.error(node.span.clone(), "`%` can stand only in a tolerance", help);
+                return None;
+            }
+            return match Unit::parse(unit) {
+                Ok(unit) => Some(Written::Quantity { value, unit }),
+                Err(error) => {
+                    let part = start + error.span.start..start + error.span.end;
+                    self.error(scalar.place(&node.span, part), error.message, error.help);
+                    None
+                }
+            };
+        }
+        self.parse(node, scalar, 0..scalar.text.len()).map(Written::Formula)
+    }
+
+    /// The formula in a part of a scalar.
+    pub fn parse(&mut self, node: &Node, scalar: &Scalar, part: Span) -> Option<Formula> {
+        let text = &scalar.text[part.clone()];
+        let infinite = text.trim().trim_start_matches(['+', '-']).to_lowercase();
+        if matches!(infinite.as_str(), ".inf" | ".nan") {
+            self.error(node.span.clone(), format!("`{}` is not a finite number", text.trim()), None);
+            return None;
+        }
+        let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
+        match Formula::parse_with(text, &tables) {
+            Ok(formula) if formula.terms().len() > MAX_TERMS => {
+                let message = format!("the formula has more than {MAX_TERMS} operations");
+                self.error(node.span.clone(), message, "split it into parameters".to_owned());
+                None
+            }
+            Ok(formula) => Some(formula),
+            Err(error) => {
+                let span = part.start + error.span.start..part.start + error.span.end;
+                self.error(scalar.place(&node.span, span), error.message, error.help);
+                None
+            }
+        }
+    }
+
+    /// Whether every name of the formula may stand in the context; `offset` is where the formula begins in the scalar.
+    pub fn check_names(&mut self, node: &Node, formula: &Formula, offset: usize, context: Context) -> bool {
+        let mut all_known = true;
+        let own = self.variable.map(|(name, _)| name);
+        for (name, span) in formula.names().filter(|(name, _)| Some(*name) != own) {
+            match self.resolve(name, context) {
+                Ok(Symbol::Parameter(index)) => {
+                    if let Some(used) = self.used.get_mut(index) {
+                        *used = true;
+                    }
+                }
+                Ok(_) => {}
+                Err(error) => {
+                    all_known = false;
+                    let start = offset + span.start;
+                    let part = start + error.part.start..start + error.part.end;
+                    let place =
+                        node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+                    self.diagnostics.push(Diagnostic::error(place, error.message).help(error.help));
+                }
+            }
+        }
+        all_known
+    }
+
+    /// What a name stands for; effects that are not in the model are numbered after those that are.
+    pub fn symbol(&self, name: &str) -> Option<Symbol> {
+        names::symbol(&self.model, name).or_else(|| self.unread_measure(name)?.ok())
+    }
+
+    /// What a name stands for where it may stand for that.
+    fn resolve(&self, name: &str, context: Context) -> Result<Symbol, NameError> {
+        match names::symbol(&self.model, name) {
+            Some(symbol) => names::allowed(name, symbol, context),
+            None => match self.unread_measure(name) {
+                Some(own) => own.and_then(|symbol| names::allowed(name, symbol, context)),
+                None => Err(unknown::unknown(&self.model, name, context)),
+            },
+        }
+    }
+
+    /// What an effect measures that is not in the model; nothing where the name is of something else.
+    fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
+        let (owner, member) = name.split_once('.')?;
+        if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
+            return None;
+        }
+        let unread = self.unread.iter().position(|(known, _)| known == owner)?;
+        let measures = &self.unread[unread].1;
+        let found = measures.iter().find(|(measure, _)| measure.name() == member);
+        Some(match found {
+            Some(&(measure, _)) => Ok(Symbol::Sensor { effect: self.model.effects() + unread, measure }),
+            None => Err(unknown::no_measure(owner, member, measures)),
+        })
+    }
+
+    /// The formula's dimension; what does not go together in it is reported.
+    pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
+        let mut mismatches = Vec::new();
+        let name = |name: &str| match self.variable {
+            Some((own, dimension)) if own == name => Kind::motion(dimension),
+            _ => self.symbol(name).map_or(Kind::Any, |symbol| self.kind_of(symbol)),
+        };
+        let kind = dimension::analyse(formula, name, |spline| self.table(spline), &mut mismatches);
+        for mismatch in mismatches {
+            let part = offset + mismatch.span.start..offset + mismatch.span.end;
+            let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+            self.error(place, mismatch.message, None);
+        }
+        kind
+    }
+
+    /// Dimensions of a table's argument and value.
+    fn table(&self, spline: Spline) -> [Option<Dimension>; 2] {
+        let found = self.tables.iter().find(|table| table.spline == spline);
+        found.map_or([None; 2], |table| table.dimensions)
+    }
+
+    /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
+    fn kind_of(&self, symbol: Symbol) -> Kind {
+        if let Symbol::Reaction { joint, component: ReactionComponent::Force } = symbol
+            && let Some(left) = self.model.equated(joint)
+        {
+            let name = |name: &str| self.symbol(name).map_or(Kind::Any, |symbol| names::kind(symbol, &self.kinds));
+            let equated = dimension::analyse(left, name, |spline| self.table(spline), &mut Vec::new()).dimension();
+            return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
+        }
+        if let Symbol::Sensor { effect, measure } = symbol {
+            let unread = effect.checked_sub(self.model.effects()).and_then(|unread| self.unread.get(unread));
+            let measures = unread.map_or_else(|| self.model.measures(effect), |(_, measures)| measures.clone());
+            let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
+            return dimension.map_or(Kind::Any, Kind::motion);
+        }
+        names::kind(symbol, &self.kinds)
+    }
+
+    /// Reports where something stands that does not belong there.
+    pub fn check_fits(&mut self, span: &Span, found: Dimension, wanted: Dimension) -> bool {
+        let fits = found.fits(wanted);
+        if !fits {
+            self.error(span.clone(), format!("{found} stands where {wanted} belongs"), None);
+        }
+        fits
+    }
+
+    /// A formula or a number with its unit, of a dimension.
+    pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
+        let formula = match self.written(node)? {
+            Written::Quantity { value, unit } => {
+                self.check_fits(&node.span, unit.dimension, wanted).then(|| Formula::number(unit.to_si(value)))?
+            }
+            Written::Formula(formula) => {
+                if !self.check_names(node, &formula, 0, context) {
+                    return None;
+                }
+                if let Some(found) = self.kind(node, &formula, 0).dimension() {
+                    self.check_fits(&node.span, found, wanted);
+                }
+                formula
+            }
+        };
+        self.require(node, &formula, |_| true, "");
+        Some(formula)
+    }
+
+    /// A formula or a number with its unit that is what it must be.
+    pub fn quantity(&mut self, node: &Node, quantity: &Quantity) -> Option<Formula> {
+        let formula = self.formula(node, quantity.context, quantity.dimension())?;
+        if let Some(Requirement { holds, message }) = quantity.requirement {
+            self.require(node, &formula, holds, message);
+        }
+        Some(formula)
+    }
+
+    /// Reports where the second of two keys is not larger than the first.
+    pub fn ordered(&mut self, fields: &Fields, (low, first): (&str, &Formula), (high, second): (&str, &Formula)) {
+        for corner in 0..self.corners.len() {
+            let values = self.evaluate(first, corner).zip(self.evaluate(second, corner));
+            if let Some((first, second)) = values.filter(|(first, second)| first >= second) {
+                let label = &self.corners[corner].label;
+                let message = format!("`{high}` ({second}) must be larger than `{low}` ({first}){label}");
+                self.error(fields.key_span(high), message, None);
+                return;
+            }
+        }
+    }
+
+    /// Reports two keys of which only one may be there, at the first.
+    pub fn exclude(&mut self, fields: &Fields, [first, second]: [&str; 2]) {
+        if fields.get(first).is_some() && fields.get(second).is_some() {
+            self.error(fields.key_span(first), format!("`{first}` and `{second}` exclude each other"), None);
+        }
+    }
+
+    /// Like [`Self::formula`], with a requirement on its values: `must be positive`.
+    pub fn formula_that(
+        &mut self,
+        node: &Node,
+        context: Context,
+        wanted: Dimension,
+        holds: impl Fn(f64) -> bool,
+        requirement: &str,
+    ) -> Option<Formula> {
+        let formula = self.formula(node, context, wanted)?;
+        self.require(node, &formula, holds, requirement);
+        Some(formula)
+    }
+
+    /// Checks a formula of parameters at all their corners; a formula with other names is not checked.
+    pub fn require(&mut self, node: &Node, formula: &Formula, holds: impl Fn(f64) -> bool, requirement: &str) {
+        let varies = self.is_uncertain(formula);
+        let corners = if varies { self.corners.len() } else { self.corners.len().min(1) };
+        for corner in 0..corners {
+            let Some(value) = self.evaluate(formula, corner) else { return };
+            if self.broken && !value.is_finite() {
+                return;
+            }
+            let problem = if !value.is_finite() {
+                // Reported where every formula is checked to be finite.
+                if !requirement.is_empty() {
+                    return;
+                }
+                "is not a finite number"
+            } else if !holds(value) {
+                requirement
+            } else {
+                continue;
+            };
+            let text = node.scalar().map_or("", |scalar| scalar.text.as_str());
+            let label = &self.corners[corner].label;
+            let message = if formula.as_number().is_some() || !value.is_finite() {
+                format!("`{}` {problem}{label}", clip(text))
+            } else {
+                format!("`{}` {problem}, but is {value}{label}", clip(text))
+            };
+            self.error(node.span.clone(), message, None);
+            return;
+        }
+    }
+
+    /// The formula's value at a corner; `None` where it is made of more than parameters.
+    pub fn evaluate(&self, formula: &Formula, corner: usize) -> Option<f64> {
+        let corner = self.corners.get(corner)?;
+        evaluate(formula, |name| match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => corner.values.get(index).copied(),
+            _ => None,
+        })
+    }
+
+    /// Whether an uncertain parameter stands behind a name of the formula.
+    pub fn is_uncertain(&self, formula: &Formula) -> bool {
+        formula.names().any(|(name, _)| match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => self.varies.get(index).copied().unwrap_or(false),
+            _ => false,
+        })
+    }
+
+    /// A number that is the same for every sample.
+    pub fn number(&mut self, node: &Node, wanted: Dimension) -> Option<f64> {
+        let formula = self.formula(node, Context::Constant, wanted)?;
+        if self.is_uncertain(&formula) {
+            let message = "this number is one for all samples, so it cannot depend on an uncertain parameter";
+            self.error(node.span.clone(), message, None);
+            return None;
+        }
+        self.evaluate(&formula, 0).filter(|value| value.is_finite())
+    }
+}
+
+/// The formula's value, each name's given by `name`.
+pub fn evaluate(formula: &Formula, name: impl Fn(&str) -> Option<f64>) -> Option<f64> {
+    let builder = Builder::new();
+    let built = formula.build(&builder, |text| name(text).map(|value| builder.number(value)).ok_or(()));
+    built.ok()?.as_constant()
+}

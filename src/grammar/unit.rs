@@ -1,0 +1,313 @@
+//! Numbers with units: the units there are, and `120 mm` → 0.12 m.
+
+use std::f64::consts::PI;
+
+use super::quantity::Dimension;
+use crate::syntax::source::Span;
+use crate::syntax::suggest;
+
+/// A unit: a value of 1 in it is `times / over` in SI. Two factors, so that `150 mm` is exactly 0.15 m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    times: f64,
+    over: f64,
+    /// What it measures.
+    pub dimension: Dimension,
+}
+
+impl Unit {
+    const ONE: Self = Self { times: 1.0, over: 1.0, dimension: Dimension::NUMBER };
+
+    /// A value in this unit, in SI.
+    pub fn to_si(self, value: f64) -> f64 {
+        value * self.times / self.over
+    }
+
+    /// Whether values need no conversion.
+    pub fn is_si(self) -> bool {
+        self.times == self.over
+    }
+
+    /// `N*s/m`, `kg m^2`, `N·m`, `1/s`, `N/(m/s)`, …
+    ///
+    /// # Errors
+    /// What is wrong, and where in the text.
+    pub fn parse(text: &str) -> Result<Self, UnitError> {
+        let mut parser = UnitParser { text, position: 0, depth: 0 };
+        let unit = parser.product()?;
+        match parser.peek() {
+            None => Ok(unit),
+            Some(_) => Err(parser.unexpected()),
+        }
+    }
+
+    fn combine(self, other: Self, divide: bool) -> Self {
+        if divide {
+            let dimension = self.dimension.per(other.dimension);
+            Self { times: self.times * other.over, over: self.over * other.times, dimension }
+        } else {
+            let dimension = self.dimension.times(other.dimension);
+            Self { times: self.times * other.times, over: self.over * other.over, dimension }
+        }
+    }
+}
+
+/// What is wrong with a unit.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct UnitError {
+    /// What is wrong.
+    pub message: String,
+    /// Bytes of the text.
+    pub span: Span,
+    /// What would be right.
+    pub help: Option<String>,
+}
+
+/// Name, and what one of it is in SI: a product and a divisor.
+const UNITS: [(&str, f64, f64, Dimension); 53] = [
+    ("m", 1.0, 1.0, Dimension::LENGTH),
+    ("km", 1e3, 1.0, Dimension::LENGTH),
+    ("dm", 1.0, 10.0, Dimension::LENGTH),
+    ("cm", 1.0, 100.0, Dimension::LENGTH),
+    ("mm", 1.0, 1e3, Dimension::LENGTH),
+    ("um", 1.0, 1e6, Dimension::LENGTH),
+    ("µm", 1.0, 1e6, Dimension::LENGTH),
+    ("μm", 1.0, 1e6, Dimension::LENGTH),
+    ("nm", 1.0, 1e9, Dimension::LENGTH),
+    ("in", 0.0254, 1.0, Dimension::LENGTH),
+    ("ft", 0.3048, 1.0, Dimension::LENGTH),
+    ("kg", 1.0, 1.0, Dimension::MASS),
+    ("g", 1.0, 1e3, Dimension::MASS),
+    ("mg", 1.0, 1e6, Dimension::MASS),
+    ("t", 1e3, 1.0, Dimension::MASS),
+    ("lb", 0.453_592_37, 1.0, Dimension::MASS),
+    ("s", 1.0, 1.0, Dimension::TIME),
+    ("ms", 1.0, 1e3, Dimension::TIME),
+    ("us", 1.0, 1e6, Dimension::TIME),
+    ("µs", 1.0, 1e6, Dimension::TIME),
+    ("min", 60.0, 1.0, Dimension::TIME),
+    ("h", 3600.0, 1.0, Dimension::TIME),
+    ("rad", 1.0, 1.0, Dimension::ANGLE),
+    ("mrad", 1.0, 1e3, Dimension::ANGLE),
+    ("deg", PI, 180.0, Dimension::ANGLE),
+    ("°", PI, 180.0, Dimension::ANGLE),
+    ("rev", 2.0 * PI, 1.0, Dimension::ANGLE),
+    ("rpm", 2.0 * PI, 60.0, Dimension::ANGULAR_VELOCITY),
+    ("N", 1.0, 1.0, Dimension::FORCE),
+    ("mN", 1.0, 1e3, Dimension::FORCE),
+    ("daN", 10.0, 1.0, Dimension::FORCE),
+    ("kN", 1e3, 1.0, Dimension::FORCE),
+    ("MN", 1e6, 1.0, Dimension::FORCE),
+    ("lbf", 4.448_221_615_260_5, 1.0, Dimension::FORCE),
+    ("Nm", 1.0, 1.0, Dimension::TORQUE),
+    ("Nmm", 1.0, 1e3, Dimension::TORQUE),
+    ("kNm", 1e3, 1.0, Dimension::TORQUE),
+    ("J", 1.0, 1.0, Dimension::TORQUE),
+    ("mJ", 1.0, 1e3, Dimension::TORQUE),
+    ("kJ", 1e3, 1.0, Dimension::TORQUE),
+    ("MJ", 1e6, 1.0, Dimension::TORQUE),
+    ("W", 1.0, 1.0, Dimension::POWER),
+    ("mW", 1.0, 1e3, Dimension::POWER),
+    ("kW", 1e3, 1.0, Dimension::POWER),
+    ("MW", 1e6, 1.0, Dimension::POWER),
+    ("Pa", 1.0, 1.0, Dimension::PRESSURE),
+    ("hPa", 100.0, 1.0, Dimension::PRESSURE),
+    ("kPa", 1e3, 1.0, Dimension::PRESSURE),
+    ("MPa", 1e6, 1.0, Dimension::PRESSURE),
+    ("GPa", 1e9, 1.0, Dimension::PRESSURE),
+    ("bar", 1e5, 1.0, Dimension::PRESSURE),
+    ("mbar", 100.0, 1.0, Dimension::PRESSURE),
+    ("1", 1.0, 1.0, Dimension::NUMBER),
+];
+
+/// Every unit that has a name, in the table's order.
+pub fn named_units() -> impl Iterator<Item = (&'static str, Unit)> {
+    UNITS.iter().map(|&(name, times, over, dimension)| (name, Unit { times, over, dimension }))
+}
+
+struct UnitParser<'t> {
+    text: &'t str,
+    position: usize,
+    depth: usize,
+}
+
+impl UnitParser<'_> {
+    fn peek(&mut self) -> Option<char> {
+        self.position = self.text.len() - self.text[self.position..].trim_start().len();
+        self.text[self.position..].chars().next()
+    }
+
+    fn unexpected(&mut self) -> UnitError {
+        let span = match self.peek() {
+            Some(found) => self.position..self.position + found.len_utf8(),
+            None => self.text.len()..self.text.len(),
+        };
+        let message = match self.peek() {
+            Some(found) => format!("unexpected `{found}` in a unit"),
+            None => "the unit ends too early".to_owned(),
+        };
+        UnitError { message, span, help: Some("units are written like `N*s/m` or `kg*m^2`".to_owned()) }
+    }
+
+    fn product(&mut self) -> Result<Unit, UnitError> {
+        let mut unit = self.power()?;
+        while let Some(next) = self.peek() {
+            let divide = next == '/';
+            match next {
+                '*' | '·' | '⋅' | '/' => self.position += next.len_utf8(),
+                ')' => break,
+                _ => {}
+            }
+            unit = unit.combine(self.power()?, divide);
+        }
+        Ok(unit)
+    }
+
+    fn power(&mut self) -> Result<Unit, UnitError> {
+        let unit = if self.peek() == Some('(') {
+            if self.depth == 10 {
+                return Err(self.unexpected());
+            }
+            self.depth += 1;
+            self.position += 1;
+            let inner = self.product()?;
+            if self.peek() != Some(')') {
+                return Err(self.unexpected());
+            }
+            self.position += 1;
+            self.depth -= 1;
+            inner
+        } else {
+            self.name()?
+        };
+        let exponent = self.exponent()?;
+        let part = if exponent < 0 { Unit::ONE.combine(unit, true) } else { unit };
+        Ok((0..exponent.abs()).fold(Unit::ONE, |product, _| product.combine(part, false)))
+    }
+
+    fn exponent(&mut self) -> Result<i32, UnitError> {
+        match self.peek() {
+            Some('²') => {
+                self.position += '²'.len_utf8();
+                Ok(2)
+            }
+            Some('³') => {
+                self.position += '³'.len_utf8();
+                Ok(3)
+            }
+            Some('^') => {
+                self.position += 1;
+                self.peek();
+                let rest = &self.text[self.position..];
+                let sign = usize::from(rest.starts_with('-'));
+                let digits = rest[sign..].bytes().take_while(u8::is_ascii_digit).count();
+                let exponent = rest[..sign + digits].parse::<i32>().ok().filter(|exponent| exponent.abs() <= 9);
+                let exponent = exponent.ok_or_else(|| self.unexpected())?;
+                self.position += sign + digits;
+                Ok(exponent)
+            }
+            _ => Ok(1),
+        }
+    }
+
+    fn name(&mut self) -> Result<Unit, UnitError> {
+        let rest = &self.text[self.position..];
+        let part_of_name = |c: char| c.is_alphanumeric() && c != '²' && c != '³' || c == '_' || c == '°';
+        let length = rest.find(|c: char| !part_of_name(c)).unwrap_or(rest.len());
+        if length == 0 {
+            return Err(self.unexpected());
+        }
+        let name = &rest[..length];
+        let span = self.position..self.position + length;
+        self.position += length;
+        if let Some((_, times, over, dimension)) = UNITS.iter().find(|(known, ..)| *known == name) {
+            return Ok(Unit { times: *times, over: *over, dimension: *dimension });
+        }
+        let help = match name {
+            "Hz" | "kHz" => Some("write `rev/s` or `rad/s`, whichever is meant; or `1/s`".to_owned()),
+            _ => match suggest::nearest(name, UNITS.iter().map(|(known, ..)| *known)) {
+                Some(near) => Some(format!("did you mean `{near}`?")),
+                None => {
+                    Some("units are written like `N*s/m` or `kg*m^2`; a product of numbers needs its `*`".to_owned())
+                }
+            },
+        };
+        Err(UnitError { message: format!("unknown unit `{}`", suggest::clip(name)), span, help })
+    }
+}
+
+/// Splits `120 mm` into the number and the unit's text with its place; `None` where the text is not of that form
+/// (then it is a formula: no formula has a letter directly behind its first number).
+pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
+    let start = text.len() - text.trim_start().len();
+    let bytes = text.as_bytes();
+    let digits = |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let sign = usize::from(matches!(bytes.get(start), Some(b'+' | b'-')));
+    let mut end = digits(start + sign);
+    if bytes.get(end) == Some(&b'.') {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        let after = digits(end + 1 + sign);
+        if after > end + 1 + sign {
+            end = after;
+        }
+    }
+    let number: f64 = text[start..end].parse().ok()?;
+    let unit = text[end..].trim();
+    let first = unit.chars().next()?;
+    let unit_start = end + text[end..].find(first)?;
+    (first.is_alphabetic() || first == '°' || first == '%').then_some((number, unit, unit_start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn si(value: f64, unit: &str) -> (f64, String) {
+        let unit = Unit::parse(unit).unwrap();
+        (unit.to_si(value), unit.dimension.unit())
+    }
+
+    #[test]
+    fn units_become_si() {
+        assert_eq!(si(150.0, "mm"), (0.15, "m".into()));
+        assert_eq!(si(180.0, "deg"), (PI, "rad".into()));
+        assert!((si(30.0, "rpm").0 - PI).abs() < 1e-15);
+        assert_eq!(si(1.0, "rpm").1, "rad/s");
+        assert_eq!(si(2.0, "kN"), (2000.0, "N".into()));
+        assert_eq!(si(1.0, "N*s/m"), (1.0, "N*s/m".into()));
+        assert_eq!(si(5.0, "N/mm"), (5000.0, "N/m".into()));
+        for inertia in ["kg*m^2", "kg m^2", "kg·m²", "kg * m * m", "kg/m^-2"] {
+            assert_eq!(si(1.0, inertia), (1.0, "kg*m^2".into()), "{inertia}");
+        }
+        assert_eq!(si(1.0, "N/(m/s)").1, "N*s/m");
+        assert_eq!(si(3.0, "1/s"), (3.0, "1/s".into()));
+        assert_eq!(si(1.0, "N*m/rad").1, "N*m/rad");
+        assert_eq!(si(1.0, "m^3/s").1, "m^3/s");
+    }
+
+    #[test]
+    fn unknown_units_are_placed_and_suggested() {
+        let error = Unit::parse("N*sec/m").unwrap_err();
+        assert_eq!((error.message.as_str(), error.span), ("unknown unit `sec`", 2..5));
+        assert_eq!(Unit::parse("Mm").unwrap_err().help.unwrap(), "did you mean `mm`?");
+        assert!(Unit::parse("Hz").unwrap_err().help.unwrap().contains("rev/s"));
+        assert_eq!(Unit::parse("N*").unwrap_err().span, 2..2);
+        assert!(Unit::parse(&"(".repeat(1000)).is_err());
+        assert!(Unit::parse("m^99").is_err());
+    }
+
+    #[test]
+    fn quantities_are_told_from_formulas() {
+        assert_eq!(number_and_unit("120 mm"), Some((120.0, "mm", 4)));
+        assert_eq!(number_and_unit("-9.81m/s^2"), Some((-9.81, "m/s^2", 5)));
+        assert_eq!(number_and_unit("1e-3 kg"), Some((1e-3, "kg", 5)));
+        assert_eq!(number_and_unit("1%"), Some((1.0, "%", 1)));
+        for formula in ["120", "2*l1", "l1/2", "1 + t", "-l1", "1e3", "", "2 (3)"] {
+            assert_eq!(number_and_unit(formula), None, "{formula}");
+        }
+    }
+}

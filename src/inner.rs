@@ -1,0 +1,54 @@
+//! What this package's own binary, tests and benches use of the rooms. Not part of the library: it may change with any version.
+
+pub mod assemble {
+    pub use crate::assemble::{build, in_absolute_coordinates, in_joint_coordinates};
+}
+
+pub mod cli {
+    pub use crate::cli::main;
+}
+
+pub mod compile {
+    pub use crate::compile::Scheme;
+}
+
+pub mod elements {
+    pub use crate::elements::JointKind;
+}
+
+pub mod export {
+    pub use crate::export::{bounds_csv, effects_page, write_cost};
+}
+
+pub mod methods {
+    pub use crate::methods::{BoundsRequest, Budget, Chebyshev, Degree, Expand, Scan, Taylor};
+}
+
+pub mod model {
+    pub use crate::model::{
+        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, Stepping, load,
+        load_str, read, read_str, schema,
+    };
+}
+
+pub mod numerics {
+    pub use crate::numerics::RangeKind;
+}
+
+pub mod results {
+    pub use crate::results::{Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, Summary};
+}
+
+pub mod simulate {
+    pub use crate::simulate::{
+        EnsembleRun, JetRun, Observed, Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance,
+    };
+}
+
+pub mod study {
+    pub use crate::study::{CostOptions, Options, cost, explain, language_costs, prepare, run};
+}
+
+pub mod syntax {
+    pub use crate::syntax::Diagnostics;
+}
