@@ -14,13 +14,15 @@ const AT_FACE: f64 = 0.3;
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     intervals: Vec<usize>,
+    axes: Vec<Vec<f64>>,
     grid: TensorGrid,
 }
 
 impl Lattice {
     pub(super) fn new(intervals: &[usize]) -> Self {
         let axis = |&count: &usize| (0..=count).map(|l| 0.0 - cos_pi(l, count.max(1))).collect();
-        Self { intervals: intervals.to_vec(), grid: TensorGrid::new(intervals.iter().map(axis).collect()) }
+        let axes: Vec<Vec<f64>> = intervals.iter().map(axis).collect();
+        Self { intervals: intervals.to_vec(), grid: TensorGrid::new(axes.clone()), axes }
     }
 
     pub(super) fn points(&self) -> Vec<Vec<f64>> {
@@ -35,7 +37,7 @@ impl Lattice {
     /// middle.
     pub(super) fn spacing(&self, place: usize) -> Vec<f64> {
         let of_axis = |axis: usize, at: usize| {
-            let points = self.grid.axis(axis);
+            let points = &self.axes[axis];
             let before = at.checked_sub(1).map_or(0.0, |before| points[at] - points[before]);
             let after = points.get(at + 1).map_or(0.0, |after| after - points[at]);
             before.max(after).max(AT_FACE * PI / self.intervals[axis] as f64)
