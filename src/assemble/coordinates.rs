@@ -14,16 +14,12 @@
 
 use std::collections::BTreeSet;
 
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Formula, Scalar};
 
+use super::mechanism::Mechanism;
 use crate::grammar::JointCoordinate;
-use crate::model::{Description, StartValue, Symbol, TimeOrder};
-
-use super::body::ANGLE;
-use super::error::BuildError;
-use super::joints;
-use super::mechanism::{Context, Mechanism};
-use super::space;
+use crate::model::{Description, StartValue, Symbol};
+use crate::multibody::{ANGLE, BuildError, Context};
 
 /// The coordinates of joints that are coordinates of their own.
 pub fn called_for(description: &Description) -> BTreeSet<(usize, JointCoordinate)> {
@@ -68,83 +64,41 @@ pub fn formulas_of_motion(description: &Description) -> Vec<&Formula> {
     found
 }
 
-impl Mechanism<'_> {
-    /// A joint's coordinate or its derivative. One that is not a coordinate of its own is an angle of the plane.
-    pub fn joint_coordinate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate, order: TimeOrder) -> Expr {
-        if let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) {
-            let list = match order {
-                TimeOrder::Position => &self.q,
-                TimeOrder::Velocity => &self.v,
-                TimeOrder::Acceleration => &self.w,
-            };
-            return list[index];
-        }
-        let Some(between) = self.description.joints[joint].kind.between() else { return g.constant(0.0) };
-        let [first, second] = between.map(|point| {
-            let body = &self.bodies[point.body];
-            match order {
-                TimeOrder::Position => body.position[ANGLE],
-                TimeOrder::Velocity => body.velocity[ANGLE],
-                TimeOrder::Acceleration => body.acceleration[ANGLE],
-            }
-        });
-        g.sub(second, first)
-    }
+/// Φ of a constraint that defines a joint's own coordinate.
+pub struct Definition<'g> {
+    /// Of the coordinate.
+    pub name: &'static str,
+    /// Which it is.
+    pub coordinate: JointCoordinate,
+    /// Φ, rad or m.
+    pub value: Scalar<'g>,
+}
 
-    /// The rate of a joint's coordinate; one that is not a coordinate of its own follows from the bodies' velocities.
-    pub fn joint_rate(&self, g: &Builder, joint: usize, coordinate: JointCoordinate) -> Result<Expr, BuildError> {
-        let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
-        let between = self.description.joints[joint].kind.between();
-        let (Some(between), false) =
-            (between, planar_angle || self.joint_coordinates.contains_key(&(joint, coordinate)))
-        else {
-            return Ok(self.joint_coordinate(g, joint, coordinate, TimeOrder::Velocity));
-        };
-        let axis = joints::axis_in_ground(g, self, joint, coordinate)?;
-        let [first, second] = between.map(|point| point.body);
-        let relative = match coordinate {
-            JointCoordinate::Angle => {
-                let [first, second] = [first, second].map(|body| self.bodies[body].angular_velocity(g));
-                space::sub(g, second, first)
-            }
-            JointCoordinate::Displacement => {
-                let at = self.point(g, between[1]);
-                let there = self.carried_along(g, first, at.position);
-                space::sub(g, at.velocity, there.velocity)
-            }
-        };
-        Ok(space::dot(g, axis, relative))
-    }
-
-    /// The constraints that define a joint's own coordinates: name and Φ.
-    pub fn definitions(&self, g: &Builder, joint: usize) -> Result<Vec<(&'static str, Expr)>, BuildError> {
-        let kind = &self.description.joints[joint].kind;
+impl<'g> Mechanism<'g, '_> {
+    /// The constraints that define a joint's own coordinates.
+    pub fn definitions(&self, joint: usize) -> Result<Vec<Definition<'g>>, BuildError> {
+        let kind = &self.joints[joint].kind;
         let mut rows = Vec::new();
-        if self.tree.uses(joint) {
+        if self.tree.contains(joint) {
             return Ok(rows);
         }
         for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
             let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
             let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { continue };
-            let value = self.q[index];
-            let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial();
-            let row = if planar_angle {
+            let own = self.q[index];
+            let planar_angle = coordinate == JointCoordinate::Angle && !self.is_spatial;
+            let value = if planar_angle {
                 let [first, second] = between.map(|point| self.bodies[point.body].position[ANGLE]);
-                let turned = g.sub(second, first);
-                g.sub(turned, value)
+                second - first - own
             } else {
-                let pair = self.pair(g, between);
-                let axis = self.vector(g, axis, Context::Time)?;
-                let axis = space::unit(g, axis);
+                let pair = self.pair(between);
+                let axis = self.unit_vector(axis, Context::Time)?;
                 match coordinate {
-                    JointCoordinate::Angle => pair.turned_by(g, axis, value),
-                    JointCoordinate::Displacement => {
-                        let moved = pair.displacement(g, axis);
-                        g.sub(moved, value)
-                    }
+                    JointCoordinate::Angle => pair.turned_by(axis, own),
+                    JointCoordinate::Displacement => pair.displacement(axis) - own,
                 }
             };
-            rows.push((name, row));
+            rows.push(Definition { name, coordinate, value });
         }
         Ok(rows)
     }

@@ -20,198 +20,174 @@
 //! ∫ r ds = L/2 (r_A + r_B) + L²/12 (t_A − t_B)
 //! ```
 
-use symdiff::{Builder, Expr};
-
-use crate::model::{Coordinate, LineMass, StartValue, TimeOrder};
+use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
-use super::body::MaterialPoint;
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism};
-use super::space::{self, Vector};
+use super::mechanism::Mechanism;
 use super::system::{ConstraintInfo, ResidualUnit, StartCondition};
+use crate::model::{Coordinate, Description, LineMass, StartValue, TimeOrder};
+use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Vector};
 
 /// m over μL/420.
 const MASS: [[f64; 4]; 4] =
     [[156.0, 22.0, 54.0, -13.0], [22.0, 4.0, 13.0, -3.0], [54.0, 13.0, 156.0, -22.0], [-13.0, -3.0, -22.0, 4.0]];
 
 /// An element of a beam with mass, over the symbols.
-struct Element {
-    ends: [MaterialPoint; 2],
+struct Element<'g> {
+    ends: [MaterialPoint<'g>; 2],
     /// t of both ends.
-    axes: [Vector; 2],
+    axes: [Vector<'g>; 2],
     /// L
-    length: Expr,
+    length: Scalar<'g>,
     /// μ
-    mass: Expr,
+    mass: Scalar<'g>,
 }
 
-/// The elements that have mass.
-fn beams<'d>(m: &Mechanism<'d>) -> impl Iterator<Item = LineMass<'d>> {
-    m.description.effects.iter().filter_map(|effect| effect.kind.inertia())
-}
-
-impl Mechanism<'_> {
+impl<'g> Mechanism<'g, '_> {
     /// The name of a beam with mass, if there is one.
-    pub fn flexible(&self) -> Option<String> {
-        beams(self).next().map(|beam| beam.body.to_owned())
+    pub fn flexible(&self) -> Option<&str> {
+        self.line_masses.first().map(|beam| beam.body)
     }
 
     /// Lengths of all elements with mass together.
-    pub fn length_of_beams(&self, g: &Builder) -> Result<Expr, BuildError> {
-        let lengths: Result<Vec<Expr>, BuildError> =
-            beams(self).map(|beam| self.formula(g, beam.length, Context::Parameters)).collect();
-        Ok(g.sum(lengths?))
+    pub fn length_of_beams(&self) -> Result<Scalar<'g>, BuildError> {
+        let lengths: Result<Vec<_>, BuildError> =
+            self.line_masses.iter().map(|beam| self.formula(beam.length, Context::Parameters)).collect();
+        Ok(self.g.sum(lengths?))
     }
 
-    fn elements(&self, g: &Builder) -> Result<Vec<Element>, BuildError> {
-        beams(self).map(|beam| self.element(g, &beam)).collect()
+    fn elements(&self) -> Result<Vec<Element<'g>>, BuildError> {
+        self.line_masses.iter().map(|beam| self.element(beam)).collect()
     }
 
-    fn element(&self, g: &Builder, beam: &LineMass) -> Result<Element, BuildError> {
-        let ends = beam.between.map(|point| self.point(g, point));
-        let axis = self.vector(g, beam.axis, Context::Parameters)?;
-        let axis = space::unit(g, axis);
-        let axes = beam.between.map(|point| self.bodies[point.body].rotate(g, axis));
-        let length = self.formula(g, beam.length, Context::Parameters)?;
-        let mass = self.formula(g, beam.mass_per_length, Context::Parameters)?;
+    fn element(&self, beam: &LineMass) -> Result<Element<'g>, BuildError> {
+        let ends = beam.between.map(|point| self.point(point));
+        let axis = self.unit_vector(beam.axis, Context::Parameters)?;
+        let axes = beam.between.map(|point| self.bodies[point.body].rotate(axis));
+        let length = self.formula(beam.length, Context::Parameters)?;
+        let mass = self.formula(beam.mass_per_length, Context::Parameters)?;
         Ok(Element { ends, axes, length, mass })
     }
 
     /// Generalised inertial forces of all beams, n: their part of M w, with what depends on velocities.
-    pub fn inertia_of_beams(&self, g: &Builder) -> Result<Vec<Expr>, BuildError> {
-        let mut applied = AppliedForces::new(g, self.bodies.len());
-        for element in self.elements(g)? {
-            let accelerations = element.end_values(g, |g, element, end| {
+    pub fn inertia_of_beams(&self) -> Result<Vec<Scalar<'g>>, BuildError> {
+        let mut applied = AppliedForces::new(self.g, self.bodies.len());
+        for element in self.elements()? {
+            let accelerations = element.end_values(|end| {
                 let (point, axis) = (&element.ends[end], element.axes[end]);
                 let body = &self.bodies[point.body];
-                let position = body.acceleration_of(g, point.arm);
-                let (spin, gain) = (body.angular_velocity(g)[2], body.angular_acceleration(g)[2]);
-                let (across, square) = (space::perpendicular(g, axis), g.mul(spin, spin));
-                let (along, beside) = (space::scale(g, square, axis), space::scale(g, gain, across));
-                [position, space::sub(g, beside, along)]
+                let position = body.acceleration_of(point.arm);
+                let (rate, gain) = (body.angular_velocity()[2], body.angular_acceleration()[2]);
+                let (across, square) = (axis.perpendicular(), rate * rate);
+                let (along, beside) = (square * axis, gain * across);
+                [position, beside - along]
             });
-            let momenta = element.momenta(g, &accelerations);
-            for end in 0..2 {
-                element.push(g, &mut applied, end, momenta[2 * end], momenta[2 * end + 1]);
+            let [first, turning_first, second, turning_second] = element.momenta(&accelerations);
+            for (end, force, turning) in [(0, first, turning_first), (1, second, turning_second)] {
+                element.push_by(&mut applied, end, force, element.length * turning);
             }
         }
-        Ok(applied.generalised(g, self))
+        Ok(applied.generalised(self))
     }
 
     /// T of all beams, J.
-    pub fn kinetic_energy_of_beams(&self, g: &Builder) -> Result<Expr, BuildError> {
+    pub fn total_kinetic_energy_of_beams(&self) -> Result<Scalar<'g>, BuildError> {
         let mut parts = Vec::new();
-        for element in self.elements(g)? {
-            let velocities = element.end_values(g, |g, element, end| {
-                let (point, axis) = (&element.ends[end], element.axes[end]);
-                let spin = self.bodies[point.body].angular_velocity(g)[2];
-                let across = space::perpendicular(g, axis);
-                [point.velocity, space::scale(g, spin, across)]
+        for element in self.elements()? {
+            let velocities = element.end_values(|end| {
+                let point = &element.ends[end];
+                let rate = self.bodies[point.body].angular_velocity()[2];
+                [point.velocity, rate * element.axes[end].perpendicular()]
             });
-            let momenta = element.momenta(g, &velocities);
-            for (velocity, momentum) in velocities.into_iter().zip(momenta) {
-                let part = space::dot(g, velocity, momentum);
-                parts.push(g.scale(0.5, part));
-            }
+            let momenta = element.momenta(&velocities);
+            parts.extend(velocities.into_iter().zip(momenta).map(|(velocity, momentum)| 0.5 * velocity.dot(momentum)));
         }
-        Ok(g.sum(parts))
+        Ok(self.g.sum(parts))
     }
 
     /// Adds the weights of all beams in a uniform field, with their potential energy.
-    pub fn weigh_beams(&self, g: &Builder, applied: &mut AppliedForces, field: Vector) -> Result<(), BuildError> {
-        for element in self.elements(g)? {
-            let square = g.mul(element.length, element.length);
-            let (whole, bent) = (g.mul(element.mass, element.length), g.mul(element.mass, square));
-            let (half, twelfth) = (g.scale(0.5, whole), g.scale(1.0 / 12.0, bent));
-            let weight = space::scale(g, half, field);
-            let mut potential = g.constant(0.0);
+    pub fn weigh_beams(&self, applied: &mut AppliedForces<'g>, field: Vector<'g>) -> Result<(), BuildError> {
+        for element in self.elements()? {
+            let square = element.length * element.length;
+            let (whole, bent) = (element.mass * element.length, element.mass * square);
+            let (half, twelfth) = (0.5 * whole, 1.0 / 12.0 * bent);
+            let weight = half * field;
+            let mut potential = self.g.number(0.0);
             for (end, side) in [(0, 1.0), (1, -1.0)] {
-                let lever = g.scale(side, twelfth);
-                let turning = space::scale(g, lever, field);
-                let lever = space::dot(g, turning, element.axes[end]);
-                element.push_by(g, applied, end, weight, turning);
-                let height = space::dot(g, weight, element.ends[end].position);
-                let sum = g.add(height, lever);
-                potential = g.sub(potential, sum);
+                let turning = side * twelfth * field;
+                let lever = turning.dot(element.axes[end]);
+                element.push_by(applied, end, weight, turning);
+                potential -= weight.dot(element.ends[end].position) + lever;
             }
-            applied.add_potential(g, self, &field, potential);
+            applied.add_potential(self, &field.components(), potential);
         }
         Ok(())
     }
 
     /// A beam starts straight and moves as a rigid body, but between nodes whose coordinates (velocities) are all given.
-    pub fn start_of_beams(&self, g: &Builder) -> Result<Vec<StartCondition>, BuildError> {
+    pub fn start_of_beams(&self, description: &Description) -> Result<Vec<StartCondition>, BuildError> {
         let mut conditions = Vec::new();
-        for beam in beams(self) {
+        for beam in &self.line_masses {
             let [first, second] = beam.between.map(|point| point.body);
-            let free = |order| !(self.is_given_at_start(first, order) && self.is_given_at_start(second, order));
-            let (position, velocity) = (free(TimeOrder::Position), free(TimeOrder::Velocity));
-            let element = self.element(g, &beam)?;
-            let line = space::sub(g, element.ends[1].position, element.ends[0].position);
-            let across = space::perpendicular(g, element.axes[0]);
-            let along = space::dot(g, line, element.axes[0]);
-            let angles = [first, second].map(|body| self.bodies[body].position[super::body::ANGLE]);
+            let is_free = |order| [first, second].iter().any(|&body| !is_given_at_start(description, body, order));
+            let (position, velocity) = (is_free(TimeOrder::Position), is_free(TimeOrder::Velocity));
+            let element = self.element(beam)?;
+            let line = element.ends[1].position - element.ends[0].position;
+            let across = element.axes[0].perpendicular();
+            let along = line.dot(element.axes[0]);
+            let angles = [first, second].map(|body| self.bodies[body].position[ANGLE]);
             let rows = [
-                ("x", ResidualUnit::Length, g.sub(along, element.length)),
-                ("y", ResidualUnit::Length, space::dot(g, line, across)),
-                ("angle", ResidualUnit::Angle, g.sub(angles[1], angles[0])),
+                ("x", ResidualUnit::Length, along - element.length),
+                ("y", ResidualUnit::Length, line.dot(across)),
+                ("angle", ResidualUnit::Angle, angles[1] - angles[0]),
             ];
             let joint = beam.body.to_owned();
-            let node = &self.description.bodies[second].name;
+            let node = &description.bodies[second].name;
             conditions.extend(rows.map(|(name, unit, value)| StartCondition {
                 info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone(), unit },
-                value,
+                value: value.expr(),
                 position,
                 velocity,
             }));
         }
         Ok(conditions)
     }
-
-    /// Whether `initial` names all coordinates of a body, or all their velocities.
-    fn is_given_at_start(&self, body: usize, wanted: TimeOrder) -> bool {
-        let named = |coordinate: &Coordinate| {
-            self.description.initial.iter().any(|value| {
-                matches!(value, StartValue::Coordinate { body: of, coordinate: c, order, .. }
-                    if (*of, c, *order) == (body, coordinate, wanted))
-            })
-        };
-        self.description.bodies[body].coordinates.iter().all(named)
-    }
 }
 
-impl Element {
-    /// Something of e: (r_A, L t_A, r_B, L t_B), from what it is of r and t.
-    fn end_values(&self, g: &Builder, of: impl Fn(&Builder, &Self, usize) -> [Vector; 2]) -> [Vector; 4] {
-        let ([first, turning], [second, turned]) = (of(g, self, 0), of(g, self, 1));
-        [first, space::scale(g, self.length, turning), second, space::scale(g, self.length, turned)]
+/// Whether `initial` names all coordinates of a body, or all their velocities.
+fn is_given_at_start(description: &Description, body: usize, wanted: TimeOrder) -> bool {
+    let named = |coordinate: &Coordinate| {
+        description.initial.iter().any(|value| {
+            matches!(value, StartValue::Coordinate { body: of, coordinate: c, order, .. }
+                if (*of, c, *order) == (body, coordinate, wanted))
+        })
+    };
+    description.bodies[body].coordinates.iter().all(named)
+}
+
+impl<'g> Element<'g> {
+    /// Something of e: (r_A, L t_A, r_B, L t_B), from what it is of r and t at each end.
+    fn end_values(&self, of: impl Fn(usize) -> [Vector<'g>; 2]) -> [Vector<'g>; 4] {
+        let ([first, turning_first], [second, turning_second]) = (of(0), of(1));
+        [first, self.length * turning_first, second, self.length * turning_second]
     }
 
     /// Σ m_kl x_l
-    fn momenta(&self, g: &Builder, values: &[Vector; 4]) -> [Vector; 4] {
-        let whole = g.mul(self.mass, self.length);
-        let unit = g.scale(1.0 / 420.0, whole);
+    fn momenta(&self, values: &[Vector<'g>; 4]) -> [Vector<'g>; 4] {
+        let unit = 1.0 / 420.0 * (self.mass * self.length);
         MASS.map(|row| {
-            std::array::from_fn(|axis| {
-                let parts: Vec<Expr> = row.iter().zip(values).map(|(&m, value)| g.scale(m, value[axis])).collect();
-                let sum = g.sum(parts);
-                g.mul(unit, sum)
-            })
+            let component = |axis: usize| {
+                unit * self.length.builder().sum(row.iter().zip(values).map(|(&m, value)| m * value[axis]))
+            };
+            std::array::from_fn(component).into()
         })
     }
 
-    /// What does F · δr + G · L δt for every motion of an end.
-    fn push(&self, g: &Builder, applied: &mut AppliedForces, end: usize, force: Vector, turning: Vector) {
-        let turning = space::scale(g, self.length, turning);
-        self.push_by(g, applied, end, force, turning);
-    }
-
-    /// What does F · δr + G · δt.
-    fn push_by(&self, g: &Builder, applied: &mut AppliedForces, end: usize, force: Vector, turning: Vector) {
-        let across = space::perpendicular(g, self.axes[end]);
-        let (zero, moment) = (g.constant(0.0), space::dot(g, across, turning));
-        applied.add_force(g, &self.ends[end], force);
-        applied.add_torque_pair(g, 0, self.ends[end].body, [zero, zero, moment]);
+    /// What does F · δr + G · δt for every motion of an end.
+    fn push_by(&self, applied: &mut AppliedForces<'g>, end: usize, force: Vector<'g>, turning: Vector<'g>) {
+        let across = self.axes[end].perpendicular();
+        let (zero, moment) = (self.length.builder().number(0.0), across.dot(turning));
+        applied.add_force(&self.ends[end], force);
+        applied.add_torque_pair(0, self.ends[end].body, [zero, zero, moment].into());
     }
 }

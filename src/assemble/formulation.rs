@@ -1,59 +1,57 @@
 //! Whether a mechanism can be described in joint coordinates.
 
-use symdiff::{Builder, Formula};
-
-use crate::model::{JointKind, Reference, StartValue, Symbol};
+use symdiff::Formula;
 
 use super::coordinates::formulas_of_motion;
-use super::mechanism::{Context, Mechanism};
+use super::mechanism::Mechanism;
+use crate::model::{Description, JointKind, Reference, StartValue, Symbol};
+use crate::multibody::Context;
 
-impl Mechanism<'_> {
-    /// What is in the way of joint coordinates; `None` where they do.
-    pub fn obstacle(&self, g: &Builder) -> Option<String> {
+impl Mechanism<'_, '_> {
+    /// What prevents joint coordinates; `None` where nothing does.
+    pub fn obstacle(&self, description: &Description) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can carry a body".to_owned());
         }
         if let Some(beam) = self.flexible() {
             return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
         }
-        self.lost_start().or_else(|| self.loaded_friction(g)).or_else(|| self.lost_reaction())
+        let start = self.lost_start(description);
+        start.or_else(|| self.loaded_friction(description)).or_else(|| self.lost_reaction(description))
     }
 
-    /// Friction by the load of a joint that carries.
-    fn loaded_friction(&self, g: &Builder) -> Option<String> {
-        let d = self.description;
+    /// Friction by the load of an inboard joint.
+    fn loaded_friction(&self, d: &Description) -> Option<String> {
         let joint = d.effects.iter().find_map(|effect| {
-            let (joint, factor) = effect.kind.loading_joint().filter(|(joint, _)| self.tree.uses(*joint))?;
-            let factor = self.formula(g, factor, Context::Motion);
-            (!factor.is_ok_and(|factor| g.is_zero(factor))).then_some(joint)
+            let (joint, factor) = effect.kind.loading_joint().filter(|(joint, _)| self.tree.contains(*joint))?;
+            let factor = self.formula(factor, Context::Motion);
+            (!factor.is_ok_and(|factor| factor.is_zero())).then_some(joint)
         })?;
         Some(format!("friction grows with the reaction of joint `{}`, which carries a body", d.joints[joint].name))
     }
 
     /// A value at the start of a coordinate that there is not.
-    fn lost_start(&self) -> Option<String> {
-        let d = self.description;
+    fn lost_start(&self, d: &Description) -> Option<String> {
         d.initial.iter().chain(&d.guess).find_map(|value| {
             let body = match value {
                 StartValue::Coordinate { body, coordinate, order, .. } => {
-                    let known = self.angle_of_carrier(*body, *coordinate, *order).is_some();
+                    let known = self.angle_of_inboard_joint(d, *body, *coordinate, *order).is_some();
                     Some(body).filter(|_| !known)
                 }
                 StartValue::Orientation { body, .. } | StartValue::AngularVelocity { body, .. } => Some(body),
                 StartValue::Joint { .. } => None,
             };
-            let body = body.filter(|body| self.tree.carriers[**body].is_some())?;
+            let body = body.filter(|body| self.tree.inboard[**body].is_some())?;
             let name = &d.bodies[*body].name;
             Some(format!("the start names a coordinate of body `{name}`, whose place follows from its joint's"))
         })
     }
 
-    /// A reaction of a joint that carries, where it cannot be told from the forces that it depends on.
-    fn lost_reaction(&self) -> Option<String> {
-        let d = self.description;
+    /// A reaction of an inboard joint, where it cannot be told from the forces that it depends on.
+    fn lost_reaction(&self, d: &Description) -> Option<String> {
         let reaction = |formulas: Vec<&Formula>| {
             formulas.iter().flat_map(|formula| formula.names()).find_map(|(name, _)| match d.symbol(name) {
-                Some(Symbol::Reaction { joint, .. }) if self.tree.uses(joint) => Some(&d.joints[joint].name),
+                Some(Symbol::Reaction { joint, .. }) if self.tree.contains(joint) => Some(&d.joints[joint].name),
                 _ => None,
             })
         };

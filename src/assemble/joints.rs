@@ -1,144 +1,118 @@
-//! Joints in a mechanism: what their constraints are written in, their axes, and their reactions.
+//! Joints in a mechanism: what their constraints are written in, their axes, and the rates of their coordinates.
 
-use symdiff::{Builder, Expr, Formula, Scalar, Unary};
+use symdiff::{Builder, Formula, Scalar};
 
-use crate::elements::joints::{Joint, Kinematics, Row};
+use super::mechanism::Mechanism;
+use crate::elements::joints::{Kinematics, Rows};
 use crate::grammar::{JointCoordinate, OfAngle, OnJoint, PointRef, TimeOrder};
-use crate::multibody::{Pair, Vector as Handle};
+use crate::multibody::{ANGLE, BuildError, Context, Pair, Vector};
 
-use super::body::ANGLE;
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism};
-use super::space::{self, Vector};
+impl<'g> Mechanism<'g, '_> {
+    /// A joint's constraints.
+    pub fn rows(&self, joint: usize) -> Rows<'g> {
+        self.joints[joint].kind.rows(joint, &Position(self))
+    }
 
-/// A joint's reaction on its second body, in the ground's axes.
-#[derive(Clone, Copy, Debug)]
-pub struct Reaction {
-    /// N
-    pub force: Vector,
-    /// |force|, N; for an `equation` its multiplier.
-    pub magnitude: Expr,
-    /// About the second point, N m.
-    pub torque: Vector,
+    /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
+    pub fn axis_in_ground(&self, on: OnJoint) -> Result<Vector<'g>, BuildError> {
+        let kind = &self.joints[on.joint].kind;
+        let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(on.coordinate)) else {
+            return Ok(Vector::zero(self.g));
+        };
+        let axis = self.unit_vector(axis, Context::Time)?;
+        Ok(self.pair(between).outward(axis))
+    }
+
+    /// The rate of a joint's coordinate; one that is not a coordinate of its own follows from the bodies' velocities.
+    pub fn joint_rate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
+        let planar_angle = on.coordinate == JointCoordinate::Angle && !self.is_spatial;
+        let is_own = planar_angle || self.joint_coordinates.contains_key(&(on.joint, on.coordinate));
+        let (Some(between), false) = (self.joints[on.joint].kind.between(), is_own) else {
+            return Ok(self.joint_coordinate(on, TimeOrder::Velocity));
+        };
+        let axis = self.axis_in_ground(on)?;
+        let [first, second] = between.map(|point| point.body);
+        let relative = match on.coordinate {
+            JointCoordinate::Angle => {
+                let [first, second] = [first, second].map(|body| self.bodies[body].angular_velocity());
+                second - first
+            }
+            JointCoordinate::Displacement => {
+                let at = self.point(between[1]);
+                at.velocity - self.point_now_at(first, at.position).velocity
+            }
+        };
+        Ok(axis.dot(relative))
+    }
 }
 
-/// A joint's constraints.
-pub fn rows<'g>(g: &'g Builder, m: &Mechanism, joint: usize) -> Result<Vec<Row<'g>>, BuildError> {
-    m.description.joints[joint].kind.rows(joint, &Position { g, m })
-}
+/// The positions of a mechanism.
+struct Position<'m, 'g, 'd>(&'m Mechanism<'g, 'd>);
 
-/// The positions of a mechanism, in a graph.
-struct Position<'g, 'm, 'd> {
-    g: &'g Builder,
-    m: &'m Mechanism<'d>,
-}
-
-impl<'g> Kinematics<'g> for Position<'g, '_, '_> {
+impl<'g> Kinematics<'g> for Position<'_, 'g, '_> {
     fn graph(&self) -> &'g Builder {
-        self.g
+        self.0.g
     }
 
     fn is_spatial(&self) -> bool {
-        self.m.is_spatial()
+        self.0.is_spatial
     }
 
     fn time(&self) -> Scalar<'g> {
-        self.g.scalar(self.m.time)
+        self.0.time
     }
 
     fn number(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        self.m.formula(self.g, formula, Context::Time).map(|expr| self.g.scalar(expr))
+        self.0.formula(formula, Context::Time)
     }
 
     fn of_positions(&self, formula: &Formula) -> Result<Scalar<'g>, BuildError> {
-        self.m.formula(self.g, formula, Context::Positions).map(|expr| self.g.scalar(expr))
+        self.0.formula(formula, Context::Positions)
     }
 
     fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
+        let (m, g) = (self.0, self.0.g);
         // A name that no file can give to anything else.
-        let variable = self.g.variable("own:angle");
-        let value = formula.0.build(self.g, |name| match self.m.description.symbol(name) {
-            _ if name == OfAngle::VARIABLE => Ok(variable),
-            Some(symbol) if Context::of(symbol) <= Context::Time => Ok(self.g.scalar(self.m.observe(self.g, symbol))),
-            _ => Err(BuildError::Name { name: name.to_owned(), allowed: Context::Time }),
+        let variable = g.variable("own:angle");
+        let value = formula.0.build(g, |name| match name {
+            OfAngle::VARIABLE => Ok(variable),
+            _ => m.names.known(name, Context::Time).map(|symbol| m.observe(symbol)),
         })?;
         let roots = [value.expr(), value.derivative(variable).expr()];
         let at = std::iter::once((variable.expr(), angle.expr())).collect();
-        let substituted = self.g.with(|graph| graph.substitute(&roots, &at));
-        Ok([self.g.scalar(substituted[0]), self.g.scalar(substituted[1])])
+        let substituted = g.with(|graph| graph.substitute(&roots, &at));
+        Ok([g.scalar(substituted[0]), g.scalar(substituted[1])])
     }
 
-    fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Handle<'g>, BuildError> {
-        let direction = self.m.vector(self.g, direction, Context::Time)?;
-        Ok(Handle::of(self.g, direction).unit())
+    fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Vector<'g>, BuildError> {
+        self.0.unit_vector(direction, Context::Time)
     }
 
-    fn points(&self, between: [PointRef; 2]) -> [Handle<'g>; 2] {
-        between.map(|point| Handle::of(self.g, self.m.point(self.g, point).position))
+    fn points(&self, between: [PointRef; 2]) -> [Vector<'g>; 2] {
+        between.map(|point| self.0.point(point).position)
     }
 
-    fn pair(&self, between: [PointRef; 2]) -> Pair {
-        self.m.pair(self.g, between)
+    fn pair(&self, between: [PointRef; 2]) -> Pair<'g> {
+        self.0.pair(between)
     }
 
-    fn rotated(&self, body: usize, vector: Handle<'g>) -> Handle<'g> {
-        Handle::of(self.g, self.m.bodies[body].rotate(self.g, vector.exprs()))
+    fn rotated(&self, body: usize, vector: Vector<'g>) -> Vector<'g> {
+        self.0.bodies[body].rotate(vector)
     }
 
     fn angle(&self, body: usize) -> Scalar<'g> {
-        self.g.scalar(self.m.bodies[body].position[ANGLE])
+        self.0.bodies[body].position[ANGLE]
     }
 
     fn coordinate(&self, on: OnJoint) -> Scalar<'g> {
-        self.g.scalar(self.m.joint_coordinate(self.g, on.joint, on.coordinate, TimeOrder::Position))
+        self.0.joint_coordinate(on, TimeOrder::Position)
     }
 
-    fn axis(&self, on: OnJoint) -> Result<Handle<'g>, BuildError> {
-        let axis = axis_in_ground(self.g, self.m, on.joint, on.coordinate)?;
-        Ok(Handle::of(self.g, axis))
+    fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError> {
+        self.0.axis_in_ground(on)
     }
 
-    fn nominal(&self, vector: Handle<'g>) -> [f64; 3] {
-        let values = self.m.nominal(self.g, &vector.exprs());
-        std::array::from_fn(|axis| values[axis])
+    fn nominal(&self, vector: Vector<'g>) -> [f64; 3] {
+        self.0.nominal(vector.components())
     }
-}
-
-/// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
-pub fn axis_in_ground(
-    g: &Builder,
-    m: &Mechanism,
-    joint: usize,
-    coordinate: JointCoordinate,
-) -> Result<Vector, BuildError> {
-    let kind = &m.description.joints[joint].kind;
-    let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { return Ok(space::zero(g)) };
-    let axis = m.vector(g, axis, Context::Time)?;
-    let axis = space::unit(g, axis);
-    Ok(m.pair(g, between).outward(g, axis))
-}
-
-/// The reaction Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept.
-///
-/// A dropped row (both sides prescribed) has no multiplier: how much the ground carries there is not determined by the
-/// motion, and it counts as zero.
-pub fn reaction(g: &Builder, joint: &dyn Joint, kept: &[(Row, Expr)]) -> Reaction {
-    let (mut force, mut torque) = (space::zero(g), space::zero(g));
-    let mut along = Vec::new();
-    for (row, lambda) in kept {
-        let part = space::scale(g, *lambda, row.force.exprs());
-        force = space::add(g, force, part);
-        let part = space::scale(g, *lambda, row.torque.exprs());
-        torque = space::add(g, torque, part);
-        if !row.force.is_zero() {
-            along.push(*lambda);
-        }
-    }
-    let magnitude = match (joint.equation(), kept, along.as_slice()) {
-        (Some(_), [(_, lambda)], _) => *lambda,
-        // One unit vector: no root is needed, which would have no derivative where the force vanishes.
-        (_, _, [lambda]) => g.unary(Unary::Abs, *lambda),
-        _ => space::norm(g, force),
-    };
-    Reaction { force, magnitude, torque }
 }

@@ -1,80 +1,75 @@
 //! Bodies that are welded together as one: mass, centre of mass and inertia of all are those of the body that the others follow.
 //!
-//! With R the rotation from a body's axes to those of the body it is welded to, and o its origin there (`carried`),
+//! With R the rotation from a body's axes to those of the body it is welded to, and o its origin there (`child`),
 //!
 //! ```text
 //! m = m₁ + m₂          m c = m₁ c₁ + m₂ (o + R c₂)
 //! J = J₁ + R J₂ Rᵀ + Σ mᵢ (dᵢᵀdᵢ 1 − dᵢ dᵢᵀ),   dᵢ from c to each centre; together m₁m₂/m (dᵀd 1 − d dᵀ), d = o + R c₂ − c₁
 //! ```
 
-use symdiff::{Builder, Expr};
+use symdiff::Scalar;
 
 use super::mechanism::Mechanism;
-use super::space::{self, Matrix, Vector};
+use crate::multibody::{Body, Matrix, Vector};
 
 /// Mass, centre of mass, inertia about it.
-struct Inertial {
-    mass: Expr,
-    center: Vector,
-    inertia: Matrix,
+struct Inertial<'g> {
+    mass: Scalar<'g>,
+    center: Vector<'g>,
+    inertia: Matrix<'g>,
 }
 
-impl Mechanism<'_> {
+impl<'g> Inertial<'g> {
+    fn of(body: &Body<'g>) -> Self {
+        Self { mass: body.mass, center: body.center, inertia: body.inertia }
+    }
+
+    fn give_to(self, body: &mut Body<'g>) {
+        (body.mass, body.center, body.inertia) = (self.mass, self.center, self.inertia);
+    }
+}
+
+impl Mechanism<'_, '_> {
     /// Hands the inertia of merged bodies on to what they follow.
-    pub fn merge(&mut self, g: &Builder) {
+    pub fn merge(&mut self) {
         // From the ends of the trees inwards, so that each has all of its own before it hands it on.
         for &index in self.tree.order.iter().rev().filter(|&&index| self.tree.merges(index)) {
-            let Some(carried) = &self.bodies[index].carried else { continue };
-            let (rotation, parent) = (carried.rotation, carried.parent);
-            let foot = space::times(g, &rotation, carried.foot);
-            let origin = space::sub(g, carried.reach, foot);
             let body = &self.bodies[index];
-            let center = space::times(g, &rotation, body.center);
-            let half = space::product(g, &rotation, &body.inertia);
-            let back = space::transposed(&rotation);
-            let there = Inertial {
-                mass: body.mass,
-                center: space::add(g, origin, center),
-                inertia: space::product(g, &half, &back),
-            };
-            let body = &self.bodies[parent];
-            let here = Inertial { mass: body.mass, center: body.center, inertia: body.inertia };
-            let one = together(g, here, there);
-            let body = &mut self.bodies[parent];
-            (body.mass, body.center, body.inertia) = (one.mass, one.center, one.inertia);
-            let zero = space::zero(g);
-            let body = &mut self.bodies[index];
-            (body.mass, body.center, body.inertia) = (zero[0], zero, [zero; 3]);
+            let Some(motion) = &body.relative_motion else { continue };
+            let rotation = motion.rotation;
+            let origin = motion.outboard_in_parent - rotation * motion.outboard_in_child;
+            let center = rotation * body.center;
+            let half = rotation * body.inertia;
+            let center = origin + center;
+            let there = Inertial { mass: body.mass, center, inertia: half * rotation.transposed() };
+            let parent = motion.parent;
+            together(Inertial::of(&self.bodies[parent]), there).give_to(&mut self.bodies[parent]);
+            let nothing =
+                Inertial { mass: self.g.number(0.0), center: Vector::zero(self.g), inertia: Matrix::zero(self.g) };
+            nothing.give_to(&mut self.bodies[index]);
         }
     }
 }
 
-fn together(g: &Builder, a: Inertial, b: Inertial) -> Inertial {
-    let inertia = sum(g, &a.inertia, &b.inertia);
+fn together<'g>(a: Inertial<'g>, b: Inertial<'g>) -> Inertial<'g> {
+    let inertia = a.inertia + b.inertia;
     // Without mass there is no centre, and nothing to be moved to another.
-    if g.is_zero(b.mass) {
+    if b.mass.is_zero() {
         return Inertial { inertia, ..a };
     }
-    if g.is_zero(a.mass) {
+    if a.mass.is_zero() {
         return Inertial { inertia, ..b };
     }
-    let mass = g.add(a.mass, b.mass);
-    let share = g.div(b.mass, mass);
-    let apart = space::sub(g, b.center, a.center);
-    let shift = space::scale(g, share, apart);
-    let center = space::add(g, a.center, shift);
-    let reduced = g.mul(a.mass, share);
-    let square = space::dot(g, apart, apart);
-    let steiner: Matrix = std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let across = g.mul(apart[i], apart[j]);
-            let entry = if i == j { g.sub(square, across) } else { g.neg(across) };
-            g.mul(reduced, entry)
-        })
+    let mass = a.mass + b.mass;
+    let share = b.mass / mass;
+    let apart = b.center - a.center;
+    let center = a.center + share * apart;
+    let reduced = a.mass * share;
+    let square = apart.dot(apart);
+    let steiner = Matrix::from_fn(|i, j| {
+        let across = apart[i] * apart[j];
+        let entry = if i == j { square - across } else { -across };
+        reduced * entry
     });
-    Inertial { mass, center, inertia: sum(g, &inertia, &steiner) }
-}
-
-fn sum(g: &Builder, a: &Matrix, b: &Matrix) -> Matrix {
-    std::array::from_fn(|i| space::add(g, a[i], b[i]))
+    Inertial { mass, center, inertia: inertia + steiner }
 }

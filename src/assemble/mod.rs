@@ -1,7 +1,7 @@
 //! Description → [`System`]: the equations of motion as expressions.
 //!
-//! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `body`), constraints
-//! (`joints`), applied forces (`applied_forces`), inertia, outputs, and where the motion starts (`start`, `placement` in the plane,
+//! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `construction`), constraints
+//! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`), outputs (`symbols`), and where the motion starts (`start`, `placement` in the plane,
 //! `pose` in space).
 //!
 //! | symbol  | meaning                                   | unit                       |
@@ -15,28 +15,28 @@
 
 mod acting;
 mod applied_forces;
-mod body;
 mod build;
-mod carried;
+mod child;
+mod constraints;
+mod construction;
 mod coordinates;
 mod flexible;
 mod formulation;
-mod inertia;
 mod joints;
 mod mechanism;
 mod merging;
-mod outputs;
+mod names;
 mod placement;
 mod pose;
+mod reaction;
 mod recursion;
 mod start;
+mod symbols;
 mod system;
 #[cfg(test)]
 pub(crate) mod tests;
 mod tree;
 
-use crate::multibody::{error, rotation, space};
-
+pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use error::BuildError;
 pub use system::{ConstraintInfo, FormulationInfo, ResidualUnit, StartCondition, System};

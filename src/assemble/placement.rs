@@ -5,7 +5,7 @@
 //! the other, each onto a joint with a body that is already placed:
 //!
 //! - pins and welds before slides, since a slide does not say where along its line a body is;
-//! - bodies whose angle is given (kept, guessed or held) before others;
+//! - bodies whose angle is given (kept, guessed or prescribed) before others;
 //! - the angle, where it is not given: that of a weld or slide to a placed body; or towards the other pin, where the
 //!   body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that of the
 //!   triangle with both bodies' lengths as sides, its corner on top; or 0.
@@ -14,14 +14,12 @@
 
 use std::collections::VecDeque;
 
-use symdiff::{Builder, Expr};
+use symdiff::Scalar;
 
+use super::mechanism::Mechanism;
 use crate::elements::joints::{Orientation, Separation};
 use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef};
-
-use super::body;
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism};
+use crate::multibody::{self, BuildError, Context};
 
 /// x, y, θ.
 const DEGREES_OF_FREEDOM: usize = 3;
@@ -71,19 +69,19 @@ pub struct PlanarPoses {
 
 impl PlanarPoses {
     /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(g: &Builder, m: &Mechanism, known: &[Option<Expr>]) -> Result<Self, BuildError> {
+    pub fn of<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Self, BuildError> {
         let mut given = vec![[None; DEGREES_OF_FREEDOM]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
-            for (dof, given) in [0, 1, body::ANGLE].into_iter().zip(given) {
+            for (dof, given) in [0, 1, multibody::ANGLE].into_iter().zip(given) {
                 let value = match body.index[dof] {
                     Some(index) => known[index],
-                    None => body.carried.is_none().then_some(body.position[dof]),
+                    None => (!body.is_child()).then_some(body.position[dof]),
                 };
-                *given = value.map(|value| m.nominal(g, &[value])[0]);
+                *given = value.map(|value| m.nominal([value])[0]);
             }
         }
         let poses = given.iter().map(|given| Some([given[0]?, given[1]?, given[ANGLE]?])).collect();
-        let mut placement = Self { links: links(g, m)?, given, poses };
+        let mut placement = Self { links: links(m)?, given, poses };
         placement.walk();
         Ok(placement)
     }
@@ -99,17 +97,17 @@ impl PlanarPoses {
     }
 
     /// A joint's coordinate.
-    pub fn joint(&self, g: &Builder, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
-        let kind = &m.description.joints[joint].kind;
+    pub fn joint(&self, m: &Mechanism, joint: usize, coordinate: JointCoordinate) -> f64 {
+        let kind = &m.joints[joint].kind;
         let Some(between) = kind.between() else { return 0.0 };
         let [first, second] = between.map(|point| self.pose(point.body));
         match coordinate {
             JointCoordinate::Angle => second[ANGLE] - first[ANGLE],
             JointCoordinate::Displacement => {
-                let [a, b] = between.map(|point| at(self.pose(point.body), local(g, m, point)));
-                let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(g, axis, Context::Time).ok());
-                let axis = axis.map_or(vec![1.0, 0.0], |axis| m.nominal(g, &axis));
-                let along = at([0.0, 0.0, first[ANGLE] + axis[1].atan2(axis[0])], [1.0, 0.0]);
+                let [a, b] = between.map(|point| at(self.pose(point.body), local(m, point)));
+                let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(axis, Context::Time).ok());
+                let [x, y, _] = axis.map_or([1.0, 0.0, 0.0], |axis| m.nominal(axis.components()));
+                let along = at([0.0, 0.0, first[ANGLE] + y.atan2(x)], [1.0, 0.0]);
                 along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1])
             }
         }
@@ -217,13 +215,10 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
 }
 
 /// The joints of each body, and the elements of beams, straight.
-fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
+fn links(m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
-    for joint in &m.description.joints {
-        let value = |formula| {
-            let expr = m.formula(g, formula, Context::Time)?;
-            Ok(m.nominal(g, &[expr])[0])
-        };
+    for joint in m.joints {
+        let value = |formula| Ok(m.nominal([m.formula(formula, Context::Time)?])[0]);
         let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
         let kind = match (placement.separation, placement.orientation) {
             (Separation::Coincident, Orientation::Fixed(angle)) => LinkKind::Weld(value(angle)?),
@@ -232,15 +227,13 @@ fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
             (Separation::Unknown, _) => LinkKind::Loose(0.0),
             (Separation::Distance(length), _) => LinkKind::Loose(value(length)?),
         };
-        let [here, there] = between.map(|point| local(g, m, point));
+        let [here, there] = between.map(|point| local(m, point));
         let link = Link { here, there, other: between[1].body, kind };
         links[between[0].body].push(link);
         links[between[1].body].push(link.reversed(between[0].body));
     }
-    for effect in &m.description.effects {
-        let Some(LineMass { between, length, .. }) = effect.kind.inertia() else { continue };
-        let length = m.formula(g, length, Context::Parameters)?;
-        let here = [m.nominal(g, &[length])[0], 0.0];
+    for LineMass { between, length, .. } in &m.line_masses {
+        let here = [m.nominal([m.formula(length, Context::Parameters)?])[0], 0.0];
         let link = Link { here, there: [0.0, 0.0], other: between[1].body, kind: LinkKind::Weld(0.0) };
         links[between[0].body].push(link);
         links[between[1].body].push(link.reversed(between[0].body));
@@ -248,8 +241,7 @@ fn links(g: &Builder, m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
     Ok(links)
 }
 
-fn local(g: &Builder, m: &Mechanism, point: PointRef) -> [f64; 2] {
-    let expr = m.local(g, point);
-    let values = m.nominal(g, &expr);
-    [values[0], values[1]]
+fn local(m: &Mechanism, point: PointRef) -> [f64; 2] {
+    let [x, y, _] = m.nominal(m.local(point).components());
+    [x, y]
 }

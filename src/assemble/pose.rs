@@ -14,15 +14,12 @@
 use std::collections::VecDeque;
 
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Formula, Scalar};
 
+use super::mechanism::{Mechanism, Owner, dof};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
-
-use super::body::{ANGLE, Body, EULER, RotationCoordinates};
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, Owner, dof};
-use super::rotation;
+use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, RotationCoordinates};
 
 /// A frame against another, in numbers.
 #[derive(Clone, Copy)]
@@ -74,8 +71,8 @@ enum LinkKind {
 }
 
 /// Poses of all bodies.
-pub struct Poses<'m, 'd> {
-    mechanism: &'m Mechanism<'d>,
+pub struct Poses<'m, 'g, 'd> {
+    mechanism: &'m Mechanism<'g, 'd>,
     known: Vec<Known>,
     /// Known values of joints' own coordinates, by their place in q.
     values: Vec<Option<f64>>,
@@ -83,24 +80,24 @@ pub struct Poses<'m, 'd> {
     poses: Vec<Option<Pose>>,
 }
 
-impl<'m, 'd> Poses<'m, 'd> {
+impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
     /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(g: &Builder, m: &'m Mechanism<'d>, known: &[Option<Expr>]) -> Result<Self, BuildError> {
-        let values: Vec<Option<f64>> = known.iter().map(|known| known.map(|value| m.nominal(g, &[value])[0])).collect();
-        let known: Vec<Known> = m.bodies.iter().map(|body| known_of(g, m, body, &values)).collect();
+    pub fn of(m: &'m Mechanism<'g, 'd>, known: &[Option<Scalar<'g>>]) -> Result<Self, BuildError> {
+        let values: Vec<Option<f64>> = known.iter().map(|known| known.map(|value| m.nominal([value])[0])).collect();
+        let known: Vec<Known> = m.bodies.iter().map(|body| known_of(m, body, &values)).collect();
         let complete = |known: &Known| {
             let [x, y, z] = known.position;
             Some(Pose::at(Vector3::new(x?, y?, z?), known.orientation?))
         };
         let poses = known.iter().map(complete).collect();
         let mut placed = Self { mechanism: m, known, values, links: vec![Vec::new(); m.bodies.len()], poses };
-        placed.find_links(g)?;
+        placed.find_links()?;
         placed.walk();
         Ok(placed)
     }
 
     /// Values of all coordinates.
-    pub fn coordinates(&self, g: &Builder) -> Result<Vec<f64>, BuildError> {
+    pub fn coordinates(&self) -> Result<Vec<f64>, BuildError> {
         let m = self.mechanism;
         let mut values = Vec::with_capacity(m.coordinates.len());
         for &owner in &m.coordinates {
@@ -108,24 +105,24 @@ impl<'m, 'd> Poses<'m, 'd> {
                 Owner::Body(body, coordinate) => {
                     let pose = self.pose(body);
                     let place = dof(coordinate);
-                    match (place, m.bodies[body].turn) {
+                    match (place, m.bodies[body].rotation_coordinates) {
                         (0..3, _) => pose.position[place],
                         (_, RotationCoordinates::Angle) => angle_about(&pose.orientation, &Vector3::z()),
                         // nalgebra keeps the scalar part last.
                         (_, RotationCoordinates::Euler) => pose.orientation.coords[(place - EULER + 3) % 4],
                     }
                 }
-                Owner::Joint(joint, coordinate) => self.joint(g, joint, coordinate)?,
+                Owner::Joint(joint, coordinate) => self.joint(joint, coordinate)?,
             });
         }
         Ok(values)
     }
 
-    fn joint(&self, g: &Builder, joint: usize, coordinate: JointCoordinate) -> Result<f64, BuildError> {
-        let kind = &self.mechanism.description.joints[joint].kind;
+    fn joint(&self, joint: usize, coordinate: JointCoordinate) -> Result<f64, BuildError> {
+        let kind = &self.mechanism.joints[joint].kind;
         let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { return Ok(0.0) };
-        let axis = self.direction(g, axis)?;
-        let [first, second] = between.map(|point| self.pose(point.body).then(&local(g, self.mechanism, point)));
+        let axis = self.direction(axis)?;
+        let [first, second] = between.map(|point| self.pose(point.body).then(&local(self.mechanism, point)));
         let relative = first.inverse().then(&second);
         Ok(match coordinate {
             JointCoordinate::Angle => angle_about(&relative.orientation, &axis),
@@ -133,32 +130,31 @@ impl<'m, 'd> Poses<'m, 'd> {
         })
     }
 
-    fn direction(&self, g: &Builder, axis: &[Formula; 3]) -> Result<Vector3<f64>, BuildError> {
-        let axis = self.mechanism.vector(g, axis, Context::Time)?;
-        let values = self.mechanism.nominal(g, &axis);
-        Ok(Vector3::from_column_slice(&values).normalize())
+    fn direction(&self, axis: &[Formula; 3]) -> Result<Vector3<f64>, BuildError> {
+        let axis = self.mechanism.vector(axis, Context::Time)?;
+        Ok(Vector3::from(self.mechanism.nominal(axis.components())).normalize())
     }
 
     fn pose(&self, body: usize) -> Pose {
         self.poses[body].unwrap_or_else(|| self.known[body].or(Vector3::zeros(), UnitQuaternion::identity()))
     }
 
-    fn find_links(&mut self, g: &Builder) -> Result<(), BuildError> {
+    fn find_links(&mut self) -> Result<(), BuildError> {
         let m = self.mechanism;
-        for (index, joint) in m.description.joints.iter().enumerate() {
+        for (index, joint) in m.joints.iter().enumerate() {
             let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
             let kind = match (placement.orientation, placement.separation) {
                 (Orientation::Free, Separation::Coincident) => LinkKind::Ball,
                 (Orientation::Free, Separation::Unknown) => LinkKind::Loose(0.0),
-                (Orientation::Free, Separation::Distance(length)) => LinkKind::Loose(self.nominal(g, length)?),
-                (Orientation::AboutAxis, _) => LinkKind::Axis(self.across(g, index, UnitQuaternion::identity())?),
+                (Orientation::Free, Separation::Distance(length)) => LinkKind::Loose(self.nominal(length)?),
+                (Orientation::AboutAxis, _) => LinkKind::Axis(self.across(index, UnitQuaternion::identity())?),
                 (Orientation::Fixed(angle), _) => {
-                    let angle = self.nominal(g, angle)?;
+                    let angle = self.nominal(angle)?;
                     let twist = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
-                    LinkKind::Axis(self.across(g, index, twist)?)
+                    LinkKind::Axis(self.across(index, twist)?)
                 }
             };
-            let [here, there] = between.map(|point| local(g, m, point));
+            let [here, there] = between.map(|point| local(m, point));
             let link = Link { here, there, other: between[1].body, kind };
             let kind = match kind {
                 LinkKind::Axis(pose) => LinkKind::Axis(pose.inverse()),
@@ -171,20 +167,20 @@ impl<'m, 'd> Poses<'m, 'd> {
         Ok(())
     }
 
-    fn nominal(&self, g: &Builder, formula: &Formula) -> Result<f64, BuildError> {
-        let value = self.mechanism.formula(g, formula, Context::Time)?;
-        Ok(self.mechanism.nominal(g, &[value])[0])
+    fn nominal(&self, formula: &Formula) -> Result<f64, BuildError> {
+        let value = self.mechanism.formula(formula, Context::Time)?;
+        Ok(self.mechanism.nominal([value])[0])
     }
 
     /// A joint's second frame against the first: turned by `twist`, the joint's coordinates zero where they are not known.
-    fn across(&self, g: &Builder, joint: usize, twist: UnitQuaternion<f64>) -> Result<Pose, BuildError> {
-        let kind = &self.mechanism.description.joints[joint].kind;
+    fn across(&self, joint: usize, twist: UnitQuaternion<f64>) -> Result<Pose, BuildError> {
+        let kind = &self.mechanism.joints[joint].kind;
         let mut pose = Pose::at(Vector3::zeros(), twist);
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
             let place = self.mechanism.joint_coordinates.get(&(joint, coordinate));
             let value = place.and_then(|&place| self.values[place]);
             if let (Some(axis), Some(value)) = (kind.axis_of(coordinate), value) {
-                let axis = self.direction(g, axis)?;
+                let axis = self.direction(axis)?;
                 match coordinate {
                     JointCoordinate::Angle => {
                         pose.orientation = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(axis), value);
@@ -259,13 +255,13 @@ impl Known {
     }
 }
 
-fn known_of(g: &Builder, m: &Mechanism, body: &Body, values: &[Option<f64>]) -> Known {
+fn known_of<'g>(m: &Mechanism<'g, '_>, body: &Body<'g>, values: &[Option<f64>]) -> Known {
     let value = |place: usize| match body.index[place] {
         Some(index) => values[index],
-        None if body.carried.is_some() => None,
-        None => Some(m.nominal(g, &[body.position[place]])[0]),
+        None if body.is_child() => None,
+        None => Some(m.nominal([body.position[place]])[0]),
     };
-    let orientation = match body.turn {
+    let orientation = match body.rotation_coordinates {
         RotationCoordinates::Angle => {
             value(ANGLE).map(|angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle))
         }
@@ -284,11 +280,9 @@ fn angle_about(rotation: &UnitQuaternion<f64>, axis: &Vector3<f64>) -> f64 {
 }
 
 /// The frame at a point against its body's.
-fn local(g: &Builder, m: &Mechanism, point: PointRef) -> Pose {
-    let position = m.local(g, point);
-    let frame = point.point.and_then(|index| m.bodies[point.body].frames[index]);
-    let frame = frame.unwrap_or_else(|| rotation::identity(g));
-    let (position, p) = (m.nominal(g, &position), m.nominal(g, &frame));
-    let orientation = UnitQuaternion::from_quaternion(Quaternion::new(p[0], p[1], p[2], p[3]));
-    Pose::at(Vector3::from_column_slice(&position), orientation)
+fn local(m: &Mechanism, point: PointRef) -> Pose {
+    let position = m.local(point);
+    let frame = m.local_frame(point);
+    let (position, [p0, p1, p2, p3]) = (m.nominal(position.components()), m.nominal(frame.components()));
+    Pose::at(Vector3::from(position), UnitQuaternion::from_quaternion(Quaternion::new(p0, p1, p2, p3)))
 }

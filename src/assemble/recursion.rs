@@ -1,4 +1,4 @@
-//! Newton–Euler recursion: the inertial forces of bodies that joints carry, as generalised forces.
+//! Newton–Euler recursion: the inertial forces of children, as generalised forces.
 //!
 //! In each body's own axes, with ω, ω̇ and the acceleration a of its origin, outwards from a root
 //!
@@ -19,255 +19,218 @@
 //! Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69; with U, Khalil & Dombre, *Modeling, Identification and Control of
 //! Robots*, ch. 9.) The generalised forces are linear in w; their slopes are the mass matrix.
 
-use symdiff::{Builder, Expr};
-
-use crate::grammar::JointCoordinate;
+use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
-use super::body::{Body, EULER, RotationCoordinates};
-use super::joints::Reaction;
 use super::mechanism::Mechanism;
-use super::rotation;
-use super::space::{self, Matrix, Vector};
+use super::reaction::Reaction;
+use crate::grammar::JointCoordinate;
+use crate::multibody::{Body, Matrix, RelativeMotion, RotationCoordinates, Vector, Wrench};
 
 /// How a body's frame moves, in its own axes.
 #[derive(Clone, Copy)]
-struct Motion {
-    omega: Vector,
-    alpha: Vector,
-    acceleration: Vector,
+struct Motion<'g> {
+    omega: Vector<'g>,
+    alpha: Vector<'g>,
+    acceleration: Vector<'g>,
     /// U.
-    spread: Matrix,
+    spread: Matrix<'g>,
 }
 
-impl Motion {
-    fn new(g: &Builder, omega: Vector, alpha: Vector, acceleration: Vector) -> Self {
-        Self { omega, alpha, acceleration, spread: spread(g, omega, alpha) }
+impl<'g> Motion<'g> {
+    fn new(omega: Vector<'g>, alpha: Vector<'g>, acceleration: Vector<'g>) -> Self {
+        Self { omega, alpha, acceleration, spread: spread(omega, alpha) }
+    }
+
+    /// A root moves as its own coordinates say, in a field of acceleration.
+    fn of_root(body: &Body<'g>, field: Vector<'g>) -> Self {
+        let felt = body.acceleration_of_origin() - field;
+        let acceleration = body.matrix().transposed() * felt;
+        let (omega, alpha) = (body.angular_velocity_in_body(), body.angular_acceleration_in_body());
+        Self::new(omega, alpha, acceleration)
+    }
+
+    fn of_child(motion: &RelativeMotion<'g>, parent: &Self) -> Self {
+        let back = motion.rotation.transposed();
+        let (inherited, own) = (back * parent.omega, motion.angular[0] * motion.axis);
+        let omega = inherited + own;
+        let gyration = inherited.cross(own);
+        let alpha = back * parent.alpha + motion.angular[1] * motion.axis + gyration;
+
+        let rotational = parent.acceleration + parent.spread * motion.outboard_in_parent;
+        let slip = motion.sliding[0] * motion.axis_in_parent;
+        let coriolis = 2.0 * parent.omega.cross(slip);
+        let at_joint = rotational + coriolis + motion.sliding[1] * motion.axis_in_parent;
+        let at_joint = Self::new(omega, alpha, back * at_joint);
+        let acceleration = at_joint.acceleration - at_joint.spread * motion.outboard_in_child;
+        Self { acceleration, ..at_joint }
     }
 }
 
-/// A force, and a torque about a body's origin.
-pub type Wrench = [Vector; 2];
-
-/// What it takes to move the carried bodies.
-pub struct InertialForces {
+/// What it takes to move the bodies of the trees.
+pub struct InertialForces<'g> {
     /// On each coordinate, n.
-    pub generalised: Vec<Expr>,
-    /// On each body, of it and all that it carries, in its own axes; zero where it is a root that carries nothing.
-    pub wrenches: Vec<Wrench>,
+    pub generalised: Vec<Scalar<'g>>,
+    /// On each body, of it and all its children, and of theirs, in its own axes; zero where it is a root without any.
+    pub wrenches: Vec<Wrench<'g>>,
 }
 
-/// The inertial forces of all carried bodies, less their weight in a uniform field of acceleration (m/s², in the
-/// ground's axes).
-pub fn inertial_forces(g: &Builder, m: &Mechanism, field: Vector) -> InertialForces {
-    let zero = space::zero(g);
+/// The inertial forces of all children, less their weight in a uniform field of acceleration (m/s², in the ground's
+/// axes).
+pub fn inertial_forces<'g>(m: &Mechanism<'g, '_>, field: Vector<'g>) -> InertialForces<'g> {
+    let g = m.g;
     let mut forces =
-        InertialForces { generalised: vec![g.constant(0.0); m.q.len()], wrenches: vec![[zero; 2]; m.bodies.len()] };
+        InertialForces { generalised: vec![g.number(0.0); m.q.len()], wrenches: vec![Wrench::zero(g); m.bodies.len()] };
     let mut motions: Vec<Option<Motion>> = vec![None; m.bodies.len()];
     for &index in &m.tree.order {
         let body = &m.bodies[index];
-        let Some(carried) = &body.carried else { continue };
-        let parent = match motions[carried.parent] {
-            Some(motion) => motion,
-            None => *motions[carried.parent].insert(root(g, &m.bodies[carried.parent], field)),
-        };
-        let motion = carried_motion(g, body, &parent);
-        forces.wrenches[index] = inertial_wrench(g, body, &motion);
+        let Some(relative) = &body.relative_motion else { continue };
+        let parent = relative.parent;
+        let parent = *motions[parent].get_or_insert_with(|| Motion::of_root(&m.bodies[parent], field));
+        let motion = Motion::of_child(relative, &parent);
+        forces.wrenches[index] = inertial_wrench(body, &motion);
         motions[index] = Some(motion);
     }
     for &index in m.tree.order.iter().rev() {
-        let Some(carried) = &m.bodies[index].carried else { continue };
-        let [force, torque] = forces.wrenches[index];
-        let moment = space::cross(g, carried.foot, force);
-        let at_joint = space::sub(g, torque, moment);
-        let (about, along) = (space::dot(g, carried.axis[0], at_joint), space::dot(g, carried.axis[0], force));
-        for dof in &carried.dofs {
-            let (turn, slide) = (g.mul(dof.turn, about), g.mul(dof.slide, along));
-            forces.generalised[dof.index] = g.add(turn, slide);
+        let Some(relative) = &m.bodies[index].relative_motion else { continue };
+        let wrench = forces.wrenches[index];
+        let at_joint = wrench.torque_about(relative.outboard_in_child);
+        let (about, along) = (relative.axis.dot(at_joint), relative.axis.dot(wrench.force));
+        for (row, part) in relative.generalised(about, along) {
+            forces.generalised[row] = part;
         }
-        let force = space::times(g, &carried.rotation, force);
-        let torque = space::times(g, &carried.rotation, at_joint);
-        let moment = space::cross(g, carried.reach, force);
-        let torque = space::add(g, torque, moment);
-        let [parent_force, parent_torque] = &mut forces.wrenches[carried.parent];
-        *parent_force = space::add(g, *parent_force, force);
-        *parent_torque = space::add(g, *parent_torque, torque);
+        let force = relative.rotation * wrench.force;
+        let torque = relative.rotation * at_joint + relative.outboard_in_parent.cross(force);
+        forces.wrenches[relative.parent] += Wrench { force, torque };
     }
     for (body, &wrench) in m.bodies.iter().zip(&forces.wrenches) {
-        on_root(g, body, wrench, &mut forces.generalised);
+        add_on_root(body, wrench, &mut forces.generalised);
     }
     forces
 }
 
-/// A root moves as its own coordinates say, in the field.
-fn root(g: &Builder, body: &Body, field: Vector) -> Motion {
-    let felt = space::sub(g, [body.acceleration[0], body.acceleration[1], body.acceleration[2]], field);
-    let back = space::transposed(&body.matrix(g));
-    let acceleration = space::times(g, &back, felt);
-    let (omega, alpha) = (body.angular_velocity_in_body(g), body.angular_acceleration_in_body(g));
-    Motion::new(g, omega, alpha, acceleration)
-}
-
-fn carried_motion(g: &Builder, body: &Body, parent: &Motion) -> Motion {
-    let Some(carried) = &body.carried else { return *parent };
-    let [axis, axis_in_parent] = carried.axis;
-    let back = space::transposed(&carried.rotation);
-    let handed = space::times(g, &back, parent.omega);
-    let own = space::scale(g, carried.turning[0], axis);
-    let omega = space::add(g, handed, own);
-    let gyration = space::cross(g, handed, own);
-    let handed = space::times(g, &back, parent.alpha);
-    let own = space::scale(g, carried.turning[1], axis);
-    let alpha = space::add(g, handed, own);
-    let alpha = space::add(g, alpha, gyration);
-
-    let swung = space::times(g, &parent.spread, carried.reach);
-    let acceleration = space::add(g, parent.acceleration, swung);
-    let slip = space::scale(g, carried.sliding[0], axis_in_parent);
-    let half = space::cross(g, parent.omega, slip);
-    let coriolis = half.map(|component| g.scale(2.0, component));
-    let acceleration = space::add(g, acceleration, coriolis);
-    let speeding = space::scale(g, carried.sliding[1], axis_in_parent);
-    let acceleration = space::add(g, acceleration, speeding);
-    let acceleration = space::times(g, &back, acceleration);
-    let motion = Motion::new(g, omega, alpha, acceleration);
-    let swung = space::times(g, &motion.spread, carried.foot);
-    Motion { acceleration: space::sub(g, acceleration, swung), ..motion }
-}
-
 /// U = ω̇̃ + ω̃ ω̃.
-fn spread(g: &Builder, omega: Vector, alpha: Vector) -> Matrix {
-    let squares = omega.map(|component| g.mul(component, component));
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            if i == j {
-                let sum = g.add(squares[(i + 1) % 3], squares[(i + 2) % 3]);
-                return g.neg(sum);
-            }
-            let product = g.mul(omega[i], omega[j]);
-            let other = alpha[3 - i - j];
-            if (i + 1) % 3 == j { g.sub(product, other) } else { g.add(product, other) }
-        })
+fn spread<'g>(omega: Vector<'g>, alpha: Vector<'g>) -> Matrix<'g> {
+    let squares = omega.map(|component| component * component);
+    Matrix::from_fn(|i, j| {
+        if i == j {
+            return -(squares[(i + 1) % 3] + squares[(i + 2) % 3]);
+        }
+        let product = omega[i] * omega[j];
+        let other = alpha[3 - i - j];
+        if (i + 1) % 3 == j { product - other } else { product + other }
     })
 }
 
 /// F and N of the body alone.
-fn inertial_wrench(g: &Builder, body: &Body, motion: &Motion) -> Wrench {
-    let first = space::scale(g, body.mass, body.center);
-    let straight = space::scale(g, body.mass, motion.acceleration);
-    let swung = space::times(g, &motion.spread, first);
-    let force = space::add(g, straight, swung);
+fn inertial_wrench<'g>(body: &Body<'g>, motion: &Motion<'g>) -> Wrench<'g> {
+    let first = body.mass * body.center;
+    let force = body.mass * motion.acceleration + motion.spread * first;
 
-    let inertia = body.inertia_about_origin(g);
-    let trace = g.sum((0..3).map(|i| inertia[i][i]));
-    let half = g.scale(0.5, trace);
-    let second: Matrix = std::array::from_fn(|i| {
-        std::array::from_fn(|j| if i == j { g.sub(half, inertia[i][j]) } else { g.neg(inertia[i][j]) })
-    });
-    let turned = match body.turn {
-        // Of its inertia only that about z is known, and nothing else turns.
+    let inertia = body.inertia_about_origin();
+    let half = 0.5 * inertia.trace();
+    let second = Matrix::from_fn(|i, j| if i == j { half - inertia[i][j] } else { -inertia[i][j] });
+    let rotational = match body.rotation_coordinates {
+        // Of its inertia only that about z is known, and nothing else rotates.
         RotationCoordinates::Angle => {
-            let zero = g.constant(0.0);
-            [zero, zero, g.mul(inertia[2][2], motion.alpha[2])]
+            let zero = body.mass.builder().number(0.0);
+            [zero, zero, inertia[2][2] * motion.alpha[2]]
         }
         RotationCoordinates::Euler => {
-            let product = space::product(g, &motion.spread, &second);
+            let product = motion.spread * second;
             std::array::from_fn(|i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                g.sub(product[k][j], product[j][k])
+                product[k][j] - product[j][k]
             })
         }
     };
-    let moment = space::cross(g, first, motion.acceleration);
-    [force, space::add(g, moment, turned)]
+    Wrench { force, torque: first.cross(motion.acceleration) + Vector::from(rotational) }
 }
 
-/// What a root's own coordinates feel of what it carries.
-fn on_root(g: &Builder, body: &Body, [force, torque]: Wrench, generalised: &mut [Expr]) {
-    if body.carried.is_some() || body.index.iter().all(Option::is_none) {
+/// What a root's own coordinates feel of its children.
+fn add_on_root<'g>(body: &Body<'g>, Wrench { force, torque }: Wrench<'g>, generalised: &mut [Scalar<'g>]) {
+    if body.has_no_coordinates() {
         return;
     }
-    let force = body.rotate(g, force);
-    let zero = g.constant(0.0);
-    let turning = match body.turn {
-        RotationCoordinates::Angle => [torque[2], zero, zero, zero],
-        RotationCoordinates::Euler => {
-            let rates = rotation::body_rates(g, body.euler());
-            rotation::transposed(g, 2.0, &rates, torque)
-        }
-    };
-    let parts = [(0, force[0]), (1, force[1]), (2, force[2])].into_iter();
-    for (dof, part) in parts.chain((EULER..).zip(turning)) {
-        if let Some(row) = body.index.get(dof).copied().flatten() {
-            generalised[row] = g.add(generalised[row], part);
+    let parts = body.generalised_of_torque_in_body(body.rotate(force), torque);
+    for (index, part) in body.index.iter().zip(parts) {
+        if let Some(row) = *index {
+            generalised[row] += part;
         }
     }
 }
 
-impl Mechanism<'_> {
-    /// The reactions of the joints that carry, in the ground's axes: what moves a body and all that it carries, less the
+impl<'g> Mechanism<'g, '_> {
+    /// The reactions of the joints of the trees, in the ground's axes: what moves a body and all its children, less the
     /// forces on them and the reactions of the joints `closures`, which are constraints. Along its own coordinates a joint
     /// has none.
-    pub fn react(&mut self, g: &Builder, applied: &AppliedForces, forces: &InertialForces, closures: &[usize]) {
-        let mut applied = applied.clone();
+    pub fn add_reactions_of_trees(
+        &mut self,
+        applied: AppliedForces<'g>,
+        forces: &InertialForces<'g>,
+        closures: &[usize],
+    ) {
+        let mut applied = applied;
         for &joint in closures {
             let Reaction { force, torque, .. } = self.reactions[joint];
-            let Some([first, second]) = self.description.joints[joint].kind.between() else { continue };
-            let place = self.point(g, second);
-            applied.add_force(g, &place, force);
-            let at_first = self.carried_along(g, first.body, place.position);
-            let opposite = space::neg(g, force);
-            applied.add_force(g, &at_first, opposite);
-            applied.add_torque_pair(g, first.body, second.body, torque);
+            let Some([first, second]) = self.joints[joint].kind.between() else { continue };
+            let place = self.point(second);
+            applied.add_force(&place, force);
+            applied.add_force(&self.point_now_at(first.body, place.position), -force);
+            applied.add_torque_pair(first.body, second.body, torque);
         }
-        let applied = applied.carried_on(g, self);
-        for &index in self.tree.order.iter().filter(|&&index| !self.tree.merges(index)) {
-            let body = &self.bodies[index];
-            let (Some(carried), Some(carrier)) = (&body.carried, self.tree.carriers[index]) else { continue };
-            let [force, torque] = forces.wrenches[index].map(|part| body.rotate(g, part));
-            let [fx, fy, fz, tx, ty, tz] = applied[index];
-            let force = space::sub(g, force, [fx, fy, fz]);
-            let torque = space::sub(g, torque, [tx, ty, tz]);
-            let foot = body.rotate(g, carried.foot);
-            let moment = space::cross(g, foot, force);
-            let torque = space::sub(g, torque, moment);
-            let axis = body.rotate(g, carried.axis[0]);
-            let kind = &self.description.joints[carried.joint].kind;
-            let free = |coordinate| kind.axis_of(coordinate).is_some();
-            let (slides, turns) = (free(JointCoordinate::Displacement), free(JointCoordinate::Angle));
-            let is_helix = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
-            let mut torque = if turns { across(g, torque, axis) } else { torque };
-            let mut force = force;
-            match carried.dofs.as_slice() {
-                // A thread pushes along its axis, and turns by as much as does no work with that.
-                [dof] if is_helix => {
-                    let push = space::dot(g, force, axis);
-                    let advance = g.mul(dof.turn, dof.slide);
-                    let turning = g.mul(advance, push);
-                    let turning = space::scale(g, turning, axis);
-                    torque = space::sub(g, torque, turning);
-                }
-                _ if slides => force = across(g, force, axis),
-                _ => {}
+        let applied = applied.with_children(self);
+        for index in self.tree.order.clone() {
+            if self.tree.merges(index) {
+                continue;
             }
-            if carrier.reversed {
-                // It is the first body that is carried; the second feels the opposite, about its own point.
-                (force, torque) = (space::neg(g, force), space::neg(g, torque));
-                let origin = self.local(g, carrier.parent);
-                let from_second = space::sub(g, carried.reach, origin);
-                let arm = self.bodies[carried.parent].rotate(g, from_second);
-                let moment = space::cross(g, arm, force);
-                torque = space::add(g, torque, moment);
+            if let Some((joint, reaction)) = self.reaction_of_tree(index, applied[index], forces.wrenches[index]) {
+                self.reactions[joint] = reaction;
             }
-            let magnitude = space::norm(g, force);
-            self.reactions[carried.joint] = Reaction { force, magnitude, torque };
         }
+    }
+
+    /// The reaction of the joint between a child and its parent.
+    fn reaction_of_tree(
+        &self,
+        child: usize,
+        applied: Wrench<'g>,
+        inertial: Wrench<'g>,
+    ) -> Option<(usize, Reaction<'g>)> {
+        let body = &self.bodies[child];
+        let (motion, inboard) = (body.relative_motion.as_ref()?, self.tree.inboard[child]?);
+        let (force, torque) = (body.rotate(inertial.force), body.rotate(inertial.torque));
+        let wrench = Wrench { force: force - applied.force, torque: torque - applied.torque };
+        let (mut force, mut torque) = (wrench.force, wrench.torque_about(body.rotate(motion.outboard_in_child)));
+        let axis = body.rotate(motion.axis);
+        let kind = &self.joints[motion.joint].kind;
+        let free = |coordinate| kind.axis_of(coordinate).is_some();
+        let is_helix = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
+        if free(JointCoordinate::Angle) {
+            torque = across(torque, axis);
+        }
+        match motion.dofs.as_slice() {
+            // A thread pushes along its axis, and turns by as much as does no work with that.
+            [dof] if is_helix => {
+                let push = force.dot(axis);
+                let twist = dof.rotation * dof.translation * push;
+                torque = torque - twist * axis;
+            }
+            _ if free(JointCoordinate::Displacement) => force = across(force, axis),
+            _ => {}
+        }
+        if inboard.reversed {
+            // The child is the joint's first body; the second feels the opposite, about its own point.
+            (force, torque) = (-force, -torque);
+            let from_second = motion.outboard_in_parent - self.local(inboard.parent);
+            let arm = self.bodies[inboard.parent.body].rotate(from_second);
+            torque += arm.cross(force);
+        }
+        Some((motion.joint, Reaction { force, magnitude: force.norm(), torque }))
     }
 }
 
 /// The part of a vector across a unit vector.
-fn across(g: &Builder, a: Vector, axis: Vector) -> Vector {
-    let along = space::dot(g, a, axis);
-    let part = space::scale(g, along, axis);
-    space::sub(g, a, part)
+fn across<'g>(a: Vector<'g>, axis: Vector<'g>) -> Vector<'g> {
+    a - a.dot(axis) * axis
 }

@@ -1,96 +1,90 @@
 //! What is known at the start, and the model's size.
 
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Formula, Scalar};
 
-use crate::elements::joints::{Placement, Separation};
-use crate::grammar::JointCoordinate;
-use crate::model::{Coordinate, StartValue, TimeOrder};
-
-use super::body::EULER;
-use super::error::BuildError;
-use super::mechanism::{Context, Mechanism, Owner, dof};
+use super::mechanism::{Mechanism, Owner, dof};
 use super::placement::PlanarPoses;
 use super::pose::Poses;
-use super::rotation;
 use super::system::Start;
+use crate::elements::joints::{Placement, Separation};
+use crate::grammar::JointCoordinate;
+use crate::model::{Coordinate, Description, StartValue, TimeOrder};
+use crate::multibody::{BuildError, Context, EULER, Quaternion};
 
-/// What the angle of a carried body says of its joint's.
-pub struct CarrierAngle<'d> {
+/// What the angle of a child says of its inboard joint's.
+pub struct InboardAngle<'g, 'd> {
     /// Place of the joint's angle in q.
     index: usize,
-    /// Turn of the body for one of it: 1 or −1.
-    turn: Expr,
-    /// The angle of the body that carries; `None` for the ground.
+    /// Rotation of the child for one of it: 1 or −1.
+    rotation: Scalar<'g>,
+    /// The angle of the parent; `None` for the ground.
     parent: Option<&'d Formula>,
 }
 
-impl Mechanism<'_> {
+impl<'g> Mechanism<'g, '_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
     /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the nominal
     /// parameters.
-    pub fn start(&self, g: &Builder) -> Result<Start, BuildError> {
-        let description = self.description;
-        let position = self.values_at_start(g, &description.initial, TimeOrder::Position)?;
-        let velocity = self.values_at_start(g, &description.initial, TimeOrder::Velocity)?;
-        let guessed = self.values_at_start(g, &description.guess, TimeOrder::Position)?;
-        let known: Vec<Option<Expr>> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
-        let placed = self.placed(g, &known)?;
-        let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| g.constant(placed)));
-        let guess = guess.collect();
-        let conditions = self.start_of_beams(g)?;
-        Ok(Start { position, velocity, guess, conditions })
+    pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
+        let position = self.values_at_start(description, &description.initial, TimeOrder::Position)?;
+        let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
+        let guessed = self.values_at_start(description, &description.guess, TimeOrder::Position)?;
+        let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
+        let placed = self.placed(&known)?;
+        let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
+        let guess = guess.map(Scalar::expr).collect();
+        let conditions = self.start_of_beams(description)?;
+        let exprs = |values: Vec<Option<Scalar>>| values.into_iter().map(|value| value.map(Scalar::expr)).collect();
+        Ok(Start { position: exprs(position), velocity: exprs(velocity), guess, conditions })
     }
 
     /// Where the joints put the coordinates.
-    fn placed(&self, g: &Builder, known: &[Option<Expr>]) -> Result<Vec<f64>, BuildError> {
-        if self.is_spatial() {
-            return Poses::of(g, self, known)?.coordinates(g);
+    fn placed(&self, known: &[Option<Scalar<'g>>]) -> Result<Vec<f64>, BuildError> {
+        if self.is_spatial {
+            return Poses::of(self, known)?.coordinates();
         }
-        let placement = PlanarPoses::of(g, self, known)?;
+        let placement = PlanarPoses::of(self, known)?;
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
-            Owner::Joint(joint, coordinate) => placement.joint(g, self, joint, coordinate),
+            Owner::Joint(joint, coordinate) => placement.joint(self, joint, coordinate),
         };
         Ok(self.coordinates.iter().map(value).collect())
     }
 
     fn values_at_start(
         &self,
-        g: &Builder,
+        description: &Description,
         values: &[StartValue],
         wanted: TimeOrder,
-    ) -> Result<Vec<Option<Expr>>, BuildError> {
+    ) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
         let mut found = vec![None; self.q.len()];
         for value in values {
             match value {
                 StartValue::Coordinate { body, coordinate, order, value } if *order == wanted => {
                     if let Some(index) = self.bodies[*body].index[dof(*coordinate)] {
-                        found[index] = Some(self.formula(g, value, Context::Parameters)?);
-                    } else if let Some(carrier) = self.angle_of_carrier(*body, *coordinate, *order) {
-                        let own = self.formula(g, value, Context::Parameters)?;
-                        let parent = match carrier.parent {
-                            Some(parent) => self.formula(g, parent, Context::Parameters)?,
-                            None => g.constant(0.0),
+                        found[index] = Some(self.formula(value, Context::Parameters)?);
+                    } else if let Some(joint) = self.angle_of_inboard_joint(description, *body, *coordinate, *order) {
+                        let own = self.formula(value, Context::Parameters)?;
+                        let parent = match joint.parent {
+                            Some(parent) => self.formula(parent, Context::Parameters)?,
+                            None => self.g.number(0.0),
                         };
-                        let angle = g.sub(own, parent);
-                        found[carrier.index] = Some(g.mul(carrier.turn, angle));
+                        found[joint.index] = Some(joint.rotation * (own - parent));
                     }
                 }
                 StartValue::Joint { joint, coordinate, order, value } if *order == wanted => {
                     if let Some(&index) = self.joint_coordinates.get(&(*joint, *coordinate)) {
-                        found[index] = Some(self.formula(g, value, Context::Parameters)?);
+                        found[index] = Some(self.formula(value, Context::Parameters)?);
                     }
                 }
                 StartValue::Orientation { body, rotation } if wanted == TimeOrder::Position => {
-                    let orientation = self.rotation(g, rotation)?;
-                    self.set_euler(*body, orientation, &mut found);
+                    self.set_euler(*body, self.rotation(rotation)?, &mut found);
                 }
                 StartValue::AngularVelocity { body, value, in_body } if wanted == TimeOrder::Velocity => {
-                    let omega = self.vector(g, value, Context::Parameters)?;
+                    let omega = self.vector(value, Context::Parameters)?;
                     let p = self.bodies[*body].euler();
-                    let rates = if *in_body { rotation::body_rates(g, p) } else { rotation::ground_rates(g, p) };
-                    let rate = rotation::transposed(g, 0.5, &rates, omega);
-                    self.set_euler(*body, rate, &mut found);
+                    let rates = if *in_body { p.body_rates() } else { p.ground_rates() };
+                    self.set_euler(*body, rates.transposed_times(0.5, omega), &mut found);
                 }
                 _ => {}
             }
@@ -98,53 +92,59 @@ impl Mechanism<'_> {
         Ok(found)
     }
 
-    /// The coordinate that an angle at the start, of a body of the plane that is carried, comes to: the joint's, where the
-    /// angle of the body that carries is named too or is the ground's.
-    pub fn angle_of_carrier(&self, body: usize, coordinate: Coordinate, order: TimeOrder) -> Option<CarrierAngle<'_>> {
-        let carried = self.bodies[body].carried.as_ref()?;
-        let [dof] = carried.dofs.as_slice() else { return None };
-        let turns = self.description.joints[carried.joint].kind.axis_of(JointCoordinate::Angle).is_some();
-        if coordinate != Coordinate::Angle || !turns {
+    /// The coordinate that stands for an angle at the start of a child in the plane: its inboard joint's, where the angle of
+    /// the parent is named too or is the ground's.
+    pub fn angle_of_inboard_joint<'d>(
+        &self,
+        description: &'d Description,
+        body: usize,
+        coordinate: Coordinate,
+        order: TimeOrder,
+    ) -> Option<InboardAngle<'g, 'd>> {
+        let motion = self.bodies[body].relative_motion.as_ref()?;
+        let [dof] = motion.dofs.as_slice() else { return None };
+        let rotates = self.joints[motion.joint].kind.axis_of(JointCoordinate::Angle).is_some();
+        if coordinate != Coordinate::Angle || !rotates {
             return None;
         }
-        let named = self.description.initial.iter().chain(&self.description.guess).find_map(|value| match value {
+        let named = description.initial.iter().chain(&description.guess).find_map(|value| match value {
             StartValue::Coordinate { body, coordinate: Coordinate::Angle, order: of, value } => {
-                (*body == carried.parent && *of == order).then_some(value)
+                (*body == motion.parent && *of == order).then_some(value)
             }
             _ => None,
         });
-        (named.is_some() || carried.parent == 0).then_some(CarrierAngle {
+        (named.is_some() || motion.parent == 0).then_some(InboardAngle {
             index: dof.index,
-            turn: dof.turn,
+            rotation: dof.rotation,
             parent: named,
         })
     }
 
-    fn set_euler(&self, body: usize, values: rotation::Quaternion, found: &mut [Option<Expr>]) {
-        for (value, index) in values.into_iter().zip(&self.bodies[body].index[EULER..]) {
+    fn set_euler(&self, body: usize, values: Quaternion<'g>, found: &mut [Option<Scalar<'g>>]) {
+        for (value, index) in values.components().into_iter().zip(&self.bodies[body].index[EULER..]) {
             if let Some(index) = *index {
                 found[index] = Some(value);
             }
         }
     }
 
-    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances, held
-    /// and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, g: &Builder) -> Result<f64, BuildError> {
-        let mut lengths: Vec<Expr> = Vec::new();
+    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances,
+    /// prescribed and initial positions; 1 where it names none.
+    pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
+        let mut lengths: Vec<Scalar> = Vec::new();
         for body in &self.bodies {
-            lengths.extend(body.points.iter().flatten());
-            lengths.extend(body.center);
+            lengths.extend(body.points.iter().flat_map(|point| point.components()));
+            lengths.extend(body.center.components());
             // A coordinate's symbol counts as zero here.
             lengths.extend(&body.position[..3]);
         }
-        for joint in &self.description.joints {
+        for joint in self.joints {
             if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
-                lengths.push(self.formula(g, length, Context::Time)?);
+                lengths.push(self.formula(length, Context::Time)?);
             }
         }
-        lengths.push(self.length_of_beams(g)?);
-        let starts = self.description.initial.iter().chain(&self.description.guess);
+        lengths.push(self.length_of_beams()?);
+        let starts = description.initial.iter().chain(&description.guess);
         let formulas: Vec<&Formula> = starts
             .filter_map(|value| match value {
                 StartValue::Coordinate { coordinate, order: TimeOrder::Position, value, .. }
@@ -162,9 +162,10 @@ impl Mechanism<'_> {
             })
             .collect();
         for formula in formulas {
-            lengths.push(self.formula(g, formula, Context::Parameters)?);
+            lengths.push(self.formula(formula, Context::Parameters)?);
         }
-        let largest = self.nominal(g, &lengths).into_iter().map(f64::abs).filter(|length| length.is_finite());
+        let values = self.sample(&lengths, 0.0, |parameter| parameter.nominal);
+        let largest = values.into_iter().map(f64::abs).filter(|length| length.is_finite());
         let largest = largest.fold(0.0, f64::max);
         Ok(if largest > 0.0 { largest } else { 1.0 })
     }

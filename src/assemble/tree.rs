@@ -1,8 +1,9 @@
-//! Which bodies their joints carry.
+//! Which bodies are children, and of which.
 //!
-//! In joint coordinates a body has none of its own: its place follows from that of another body and from the coordinates of
-//! the joint between them. The joints chosen for that form trees, whose roots are the ground and bodies with coordinates
-//! of their own; what is left of the joints closes loops, by constraints. Bodies that are merged follow one of them in absolute coordinates too.
+//! In joint coordinates a child has none of its own: its place follows from that of its parent and from the coordinates of
+//! its inboard joint, the one between them. The inboard joints form trees, whose roots are the ground and bodies with
+//! coordinates of their own; the joints that are left close loops, by constraints. Bodies that are merged are children of
+//! one of them in absolute coordinates too.
 
 use std::collections::VecDeque;
 
@@ -10,29 +11,29 @@ use crate::elements::joints::Mobilizer;
 use crate::grammar::PointRef;
 use crate::model::{Description, StartValue};
 
-/// A joint that carries a body.
+/// The joint between a child and its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Carrier {
+pub struct InboardJoint {
     /// Joint index.
     pub joint: usize,
-    /// On the body that carries.
+    /// Its point on the parent.
     pub parent: PointRef,
-    /// On the body that is carried.
+    /// Its point on the child.
     pub child: PointRef,
-    /// Whether the body that is carried is the joint's first.
+    /// Whether the child is the joint's first body.
     pub reversed: bool,
 }
 
 /// The trees.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tree {
-    /// What carries each body, if anything does.
-    pub carriers: Vec<Option<Carrier>>,
-    /// The bodies that are carried, parents first.
+    /// The inboard joint of each body; `None` of a root.
+    pub inboard: Vec<Option<InboardJoint>>,
+    /// The children, after their parents.
     pub order: Vec<usize>,
-    /// Whether each joint carries a body.
-    carrying: Vec<bool>,
-    /// Whether each body is merged with what carries it.
+    /// Whether each joint is an inboard joint.
+    joints: Vec<bool>,
+    /// Whether each body is merged with its parent.
     merged: Vec<bool>,
 }
 
@@ -42,14 +43,13 @@ impl Tree {
         Self::spanning(description, |_| false)
     }
 
-    /// As much as can be carried, near the roots first. `steady` says of a joint whether what it is made of stays as it
-    /// is.
-    pub fn spanning(description: &Description, mut steady: impl FnMut(&Mobilizer) -> bool) -> Self {
+    /// As many children as can be, near the roots first. `is_time_independent` says it of the formulas of a mobilizer.
+    pub fn spanning(description: &Description, mut is_time_independent: impl FnMut(&Mobilizer) -> bool) -> Self {
         let bodies = &description.bodies;
         let mut tree = Self {
-            carriers: vec![None; bodies.len()],
+            inboard: vec![None; bodies.len()],
             order: Vec::new(),
-            carrying: vec![false; description.joints.len()],
+            joints: vec![false; description.joints.len()],
             merged: vec![false; bodies.len()],
         };
         let (mut joints, mut welds) = (vec![Vec::new(); bodies.len()], vec![Vec::new(); bodies.len()]);
@@ -57,27 +57,27 @@ impl Tree {
             let Some([first, second]) = joint.kind.between() else { continue };
             let list = match joint.kind.mobilizer() {
                 Some(_) if joint.merged => &mut welds,
-                Some(mobilizer) if steady(&mobilizer) => &mut joints,
+                Some(mobilizer) if is_time_independent(&mobilizer) => &mut joints,
                 _ => continue,
             };
-            list[first.body].push(Carrier { joint: index, parent: first, child: second, reversed: false });
-            list[second.body].push(Carrier { joint: index, parent: second, child: first, reversed: true });
+            list[first.body].push(InboardJoint { joint: index, parent: first, child: second, reversed: false });
+            list[second.body].push(InboardJoint { joint: index, parent: second, child: first, reversed: true });
         }
         let mut reached: Vec<bool> = bodies.iter().map(|body| !body.is_free(description.space.spatial)).collect();
         let mut queue = VecDeque::new();
         for root in (0..bodies.len()).filter(|&body| reached[body]).collect::<Vec<_>>() {
             tree.merge(root, &welds, &mut reached, &mut queue);
         }
-        // What nothing joins to a root moves freely, and may carry others; of merged bodies the one that the start names.
+        // What nothing joins to a root moves freely, and may have children; of merged bodies the one that the start names.
         let named = if welds.iter().all(Vec::is_empty) { Vec::new() } else { named_at_start(description) };
         let mut roots = named.into_iter().chain(0..bodies.len());
         loop {
             while let Some(body) = queue.pop_front() {
-                for &carrier in &joints[body] {
-                    let child = carrier.child.body;
+                for &joint in &joints[body] {
+                    let child = joint.child.body;
                     if !reached[child] {
                         reached[child] = true;
-                        tree.carry(carrier);
+                        tree.add_child(joint);
                         tree.merge(child, &welds, &mut reached, &mut queue);
                     }
                 }
@@ -89,35 +89,35 @@ impl Tree {
         tree
     }
 
-    fn carry(&mut self, carrier: Carrier) {
-        self.carriers[carrier.child.body] = Some(carrier);
-        self.carrying[carrier.joint] = true;
-        self.order.push(carrier.child.body);
+    fn add_child(&mut self, inboard: InboardJoint) {
+        self.inboard[inboard.child.body] = Some(inboard);
+        self.joints[inboard.joint] = true;
+        self.order.push(inboard.child.body);
     }
 
-    /// Merges a body that was reached with all that is welded to it, and lets them carry others.
-    fn merge(&mut self, body: usize, welds: &[Vec<Carrier>], reached: &mut [bool], queue: &mut VecDeque<usize>) {
+    /// Merges a body that was reached with all that is welded to it, and lets them have children.
+    fn merge(&mut self, body: usize, welds: &[Vec<InboardJoint>], reached: &mut [bool], queue: &mut VecDeque<usize>) {
         let mut next = vec![body];
         while let Some(body) = next.pop() {
             queue.push_back(body);
-            for &carrier in &welds[body] {
-                let child = carrier.child.body;
+            for &weld in &welds[body] {
+                let child = weld.child.body;
                 if !reached[child] {
                     reached[child] = true;
                     self.merged[child] = true;
-                    self.carry(carrier);
+                    self.add_child(weld);
                     next.push(child);
                 }
             }
         }
     }
 
-    /// Whether nothing is carried but what is merged.
+    /// Whether all children are merged with their parents.
     pub fn is_absolute(&self) -> bool {
         self.order.iter().all(|&body| self.merged[body])
     }
 
-    /// Whether a body is merged with what carries it.
+    /// Whether a body is merged with its parent.
     pub fn merges(&self, body: usize) -> bool {
         self.merged[body]
     }
@@ -128,23 +128,23 @@ impl Tree {
         if self.is_absolute() {
             return None;
         }
-        let mut joints = description.joints.iter().zip(&self.carrying);
-        if joints.any(|(joint, carrying)| !carrying && joint.kind.between().is_some()) {
+        let mut joints = description.joints.iter().zip(&self.joints);
+        if joints.any(|(joint, inboard)| !inboard && joint.kind.between().is_some()) {
             return Some("joints close loops (`formulation: joint` is there to be tried)".to_owned());
         }
-        let mut depths = vec![0; self.carriers.len()];
+        let mut depths = vec![0; self.inboard.len()];
         for &body in &self.order {
             depths[body] =
-                self.carriers[body].map_or(0, |carrier| depths[carrier.parent.body] + usize::from(!self.merged[body]));
+                self.inboard[body].map_or(0, |inboard| depths[inboard.parent.body] + usize::from(!self.merged[body]));
         }
         let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());
         (depth > deepest)
             .then(|| format!("its bodies are {depth} joints from their roots, and each would depend on all before it"))
     }
 
-    /// Whether a joint carries a body.
-    pub fn uses(&self, joint: usize) -> bool {
-        self.carrying[joint]
+    /// Whether a joint is an inboard joint.
+    pub fn contains(&self, joint: usize) -> bool {
+        self.joints[joint]
     }
 }
 

@@ -28,10 +28,7 @@ mod urdf;
 
 pub use crate::elements::JointKind;
 pub use crate::elements::effects::*;
-pub use crate::grammar::{
-    Coordinate, EnergyKind, JointCoordinate, PointRef, ReactionComponent, Reference, Rotation, Sensor, Symbol,
-    TimeOrder,
-};
+pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotation, Symbol, TimeOrder};
 pub use description::*;
 pub use file::schema;
 pub use load::{Reading, Scene, UnknownScene, load, load_str, read, read_str, shown};

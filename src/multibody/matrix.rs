@@ -1,8 +1,8 @@
 //! Matrices of space, as expressions.
 
-use std::ops::{Add, Index, Mul};
+use std::ops::{Add, Index, IndexMut, Mul};
 
-use symdiff::{Builder, Expr, Scalar};
+use symdiff::{Builder, Scalar};
 
 use super::vector::Vector;
 
@@ -16,11 +16,6 @@ impl<'g> Matrix<'g> {
         Self([Vector::zero(g); 3])
     }
 
-    /// Of nine nodes.
-    pub fn of(g: &'g Builder, rows: [[Expr; 3]; 3]) -> Self {
-        Self(rows.map(|row| Vector::of(g, row)))
-    }
-
     /// The entry of each row and column.
     pub fn from_fn(mut entry: impl FnMut(usize, usize) -> Scalar<'g>) -> Self {
         Self(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)).into()))
@@ -31,9 +26,9 @@ impl<'g> Matrix<'g> {
         self.0
     }
 
-    /// The nodes, by rows.
-    pub fn exprs(self) -> [[Expr; 3]; 3] {
-        self.0.map(Vector::exprs)
+    /// Σ Aᵢᵢ
+    pub fn trace(self) -> Scalar<'g> {
+        self.0[0][0].builder().sum((0..3).map(|i| self.0[i][i]))
     }
 
     /// `Aᵀ`
@@ -53,6 +48,12 @@ impl<'g> Index<usize> for Matrix<'g> {
 
     fn index(&self, row: usize) -> &Vector<'g> {
         &self.0[row]
+    }
+}
+
+impl IndexMut<usize> for Matrix<'_> {
+    fn index_mut(&mut self, row: usize) -> &mut Self::Output {
+        &mut self.0[row]
     }
 }
 

@@ -1,19 +1,25 @@
-//! The kernel of multibody dynamics: vectors, matrices, rotations, points and frames as expressions. It knows no model description.
+//! The kernel of multibody dynamics: vectors, matrices, rotations, points, frames and bodies as expressions. It knows no
+//! model description.
 
+mod body;
 mod context;
-pub(crate) mod error;
-#[allow(dead_code)] // for the assembly of equations, which does not use it yet
+mod error;
+mod inertia;
 mod matrix;
 mod pair;
 mod point;
+mod relative_motion;
 pub(crate) mod rotation;
-pub(crate) mod space;
 mod vector;
+mod wrench;
 
+pub use body::{ANGLE, Attitude, Body, DEGREES_OF_FREEDOM, EULER, RotationCoordinates};
 pub use context::Context;
 pub use error::BuildError;
-#[allow(unused_imports)] // as above
 pub use matrix::Matrix;
 pub use pair::Pair;
 pub use point::{Frame, MaterialPoint};
+pub use relative_motion::{DegreeOfFreedom, RelativeMotion};
+pub use rotation::Quaternion;
 pub use vector::Vector;
+pub use wrench::Wrench;

@@ -2,68 +2,62 @@
 //!
 //! q = (q₀, e) is the rotation of the second frame F₂ against the first F₁, as Euler parameters: q = p̄_F₁ ∘ p_F₂.
 
-use symdiff::{Builder, Expr};
+use symdiff::Scalar;
 
 use super::point::Frame;
-use super::rotation::{self, Quaternion};
-use super::space::{self, Vector};
+use super::rotation::Quaternion;
+use super::vector::Vector;
 
 /// The frames at the first and the second point.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair {
+pub struct Pair<'g> {
     /// F₁.
-    pub first: Frame,
+    pub first: Frame<'g>,
     /// F₂.
-    pub second: Frame,
+    pub second: Frame<'g>,
 }
 
-impl Pair {
-    /// The first frame turned by an angle about its z.
-    pub fn turned(mut self, g: &Builder, angle: Expr) -> Self {
-        if !g.is_zero(angle) {
-            let axis = space::along(g, 2);
-            let turn = rotation::about(g, axis, angle);
-            self.first.orientation = rotation::product(g, self.first.orientation, turn);
+impl<'g> Pair<'g> {
+    /// The first frame rotated by an angle about its z.
+    pub fn turned(mut self, angle: Scalar<'g>) -> Self {
+        if !angle.is_zero() {
+            let rotation = Quaternion::about(Vector::along(angle.builder(), 2), angle);
+            self.first.orientation = self.first.orientation * rotation;
         }
         self
     }
 
-    /// q.
-    pub fn relative(&self, g: &Builder) -> Quaternion {
-        let back = rotation::conjugate(g, self.first.orientation);
-        rotation::product(g, back, self.second.orientation)
+    /// q
+    pub fn relative(&self) -> Quaternion<'g> {
+        self.first.orientation.conjugate() * self.second.orientation
     }
 
     /// r_B − r_A, in the ground's axes.
-    pub fn offset(&self, g: &Builder) -> Vector {
-        space::sub(g, self.second.point.position, self.first.point.position)
+    pub fn offset(&self) -> Vector<'g> {
+        self.second.point.position - self.first.point.position
     }
 
     /// A direction of the first frame in the ground's axes.
-    pub fn outward(&self, g: &Builder, direction: Vector) -> Vector {
-        rotation::matrix(g, self.first.orientation).map(|row| space::dot(g, row, direction))
+    pub fn outward(&self, direction: Vector<'g>) -> Vector<'g> {
+        self.first.orientation.matrix() * direction
     }
 
     /// A direction of the second frame in the ground's axes.
-    pub fn outward_of_second(&self, g: &Builder, direction: Vector) -> Vector {
-        rotation::matrix(g, self.second.orientation).map(|row| space::dot(g, row, direction))
+    pub fn outward_of_second(&self, direction: Vector<'g>) -> Vector<'g> {
+        self.second.orientation.matrix() * direction
     }
 
     /// a · (r_B − r_A) with a direction of the first frame.
-    pub fn displacement(&self, g: &Builder, direction: Vector) -> Expr {
-        let direction = self.outward(g, direction);
-        let offset = self.offset(g);
-        space::dot(g, direction, offset)
+    pub fn displacement(&self, direction: Vector<'g>) -> Scalar<'g> {
+        self.outward(direction).dot(self.offset())
     }
 
-    /// Zero where the second frame is turned about the axis (a unit vector) by the angle: 2 [cos(φ/2) e·a − sin(φ/2) q₀].
-    pub fn turned_by(&self, g: &Builder, axis: Vector, angle: Expr) -> Expr {
-        let relative = self.relative(g);
-        let half = g.scale(0.5, angle);
-        let (cos, sin) = (g.cos(half), g.sin(half));
-        let about = space::dot(g, rotation::vector_part(relative), axis);
-        let (left, right) = (g.mul(cos, about), g.mul(sin, relative[0]));
-        let half = g.sub(left, right);
-        g.scale(2.0, half)
+    /// Zero where the second frame is rotated about the axis (a unit vector) by the angle: 2 [cos(φ/2) e·a − sin(φ/2) q₀].
+    pub fn turned_by(&self, axis: Vector<'g>, angle: Scalar<'g>) -> Scalar<'g> {
+        let relative = self.relative();
+        let half = 0.5 * angle;
+        let (cos, sin) = (half.cos(), half.sin());
+        let about = relative.vector_part().dot(axis);
+        2.0 * (cos * about - sin * relative[0])
     }
 }

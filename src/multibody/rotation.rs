@@ -12,145 +12,169 @@
 //! on p, since 2 E δp is the virtual rotation. (Nikravesh, *Computer-Aided Analysis of Mechanical Systems*, ch. 6.)
 //! A second rotation in the turned frame multiplies from the right: R(p) R(r) = R(p ∘ r).
 
-use symdiff::{Builder, Expr};
+use std::ops::{Index, Mul};
 
-use super::space::{self, Matrix, Vector};
+use symdiff::{Builder, Scalar};
 
-/// p₀, p₁, p₂, p₃.
-pub type Quaternion = [Expr; 4];
+use super::matrix::Matrix;
+use super::vector::Vector;
 
-/// E or G.
-pub type Rates = [[Expr; 4]; 3];
+/// A rotation as Euler parameters p = (p₀, e), or their derivative by time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion<'g>([Scalar<'g>; 4]);
 
-/// No rotation.
-pub fn identity(g: &Builder) -> Quaternion {
-    let (one, zero) = (g.constant(1.0), g.constant(0.0));
-    [one, zero, zero, zero]
+impl<'g> Quaternion<'g> {
+    /// No rotation.
+    pub fn identity(g: &'g Builder) -> Self {
+        let (one, zero) = (g.number(1.0), g.number(0.0));
+        Self([one, zero, zero, zero])
+    }
+
+    /// By an angle about a unit vector.
+    pub fn about(axis: Vector<'g>, angle: Scalar<'g>) -> Self {
+        let half = 0.5 * angle;
+        let (cos, sin) = (half.cos(), half.sin());
+        Self::of(cos, sin * axis)
+    }
+
+    /// About the fixed x, then y, then z.
+    pub fn roll_pitch_yaw(angles: Vector<'g>) -> Self {
+        let g = angles[0].builder();
+        let [roll, pitch, yaw] = std::array::from_fn(|axis| Self::about(Vector::along(g, axis), angles[axis]));
+        yaw * pitch * roll
+    }
+
+    fn of(scalar: Scalar<'g>, vector: Vector<'g>) -> Self {
+        let [x, y, z] = vector.components();
+        Self([scalar, x, y, z])
+    }
+
+    /// p₀ to p₃.
+    pub fn components(self) -> [Scalar<'g>; 4] {
+        self.0
+    }
+
+    /// e
+    pub fn vector_part(self) -> Vector<'g> {
+        let [_, x, y, z] = self.0;
+        [x, y, z].into()
+    }
+
+    /// The inverse of a rotation.
+    pub fn conjugate(self) -> Self {
+        Self::of(self.0[0], -self.vector_part())
+    }
+
+    /// `pᵀ r`
+    pub fn dot(self, other: Self) -> Scalar<'g> {
+        self.0[0].builder().dot(&self.0, &other.0)
+    }
+
+    /// p / |p|
+    pub fn normalised(self) -> Self {
+        let length = self.dot(self).sqrt();
+        Self(self.0.map(|component| component / length))
+    }
+
+    /// R
+    pub fn matrix(self) -> Matrix<'g> {
+        let p = self.0;
+        let squares = p.map(|component| component * component);
+        let all = squares[1..].iter().fold(squares[0], |rest, &square| rest - square);
+        let [px, py, pz] = [1, 2, 3].map(|i| p[0] * p[i]);
+        let [xy, xz, yz] = [(1, 2), (1, 3), (2, 3)].map(|(i, j)| p[i] * p[j]);
+        let [xx, yy, zz] = [1, 2, 3].map(|i| all + 2.0 * squares[i]);
+        let rows = [
+            [xx, 2.0 * (xy - pz), 2.0 * (xz + py)],
+            [2.0 * (xy + pz), yy, 2.0 * (yz - px)],
+            [2.0 * (xz - py), 2.0 * (yz + px), zz],
+        ];
+        rows.map(Vector::from).into()
+    }
+
+    /// E: the rates of a rotation in the ground's axes.
+    pub fn ground_rates(self) -> Rates<'g> {
+        let p = self.0;
+        let [n1, n2, n3] = (-self.vector_part()).components();
+        Rates([[n1, p[0], n3, p[2]], [n2, p[3], p[0], n1], [n3, n2, p[1], p[0]]].map(Self))
+    }
+
+    /// G: the rates of a rotation in the body's axes.
+    pub fn body_rates(self) -> Rates<'g> {
+        let p = self.0;
+        let [n1, n2, n3] = (-self.vector_part()).components();
+        Rates([[n1, p[0], p[3], n2], [n2, n3, p[0], p[1]], [n3, p[2], n1, p[0]]].map(Self))
+    }
 }
 
-/// The inverse of a rotation.
-pub fn conjugate(g: &Builder, p: Quaternion) -> Quaternion {
-    [p[0], g.neg(p[1]), g.neg(p[2]), g.neg(p[3])]
+impl<'g> From<[Scalar<'g>; 4]> for Quaternion<'g> {
+    fn from(components: [Scalar<'g>; 4]) -> Self {
+        Self(components)
+    }
 }
 
-/// p ∘ r = (p₀ r₀ − e·f, p₀ f + r₀ e + e × f).
-pub fn product(g: &Builder, p: Quaternion, r: Quaternion) -> Quaternion {
-    let (e, f) = (vector_part(p), vector_part(r));
-    let (scalars, dot) = (g.mul(p[0], r[0]), space::dot(g, e, f));
-    let (left, right) = (space::scale(g, p[0], f), space::scale(g, r[0], e));
-    let sum = space::add(g, left, right);
-    let cross = space::cross(g, e, f);
-    let vector = space::add(g, sum, cross);
-    [g.sub(scalars, dot), vector[0], vector[1], vector[2]]
+impl<'g> Index<usize> for Quaternion<'g> {
+    type Output = Scalar<'g>;
+
+    fn index(&self, component: usize) -> &Scalar<'g> {
+        &self.0[component]
+    }
 }
 
-/// e.
-pub fn vector_part(p: Quaternion) -> Vector {
-    [p[1], p[2], p[3]]
+/// p ∘ r = (p₀ r₀ − e·f, p₀ f + r₀ e + e × f)
+impl Mul for Quaternion<'_> {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let (e, f) = (self.vector_part(), other.vector_part());
+        let (scalars, dot) = (self.0[0] * other.0[0], e.dot(f));
+        let vector = self.0[0] * f + other.0[0] * e + e.cross(f);
+        Self::of(scalars - dot, vector)
+    }
 }
 
-/// By an angle about a unit vector.
-pub fn about(g: &Builder, axis: Vector, angle: Expr) -> Quaternion {
-    let half = g.scale(0.5, angle);
-    let (cos, sin) = (g.cos(half), g.sin(half));
-    let e = space::scale(g, sin, axis);
-    [cos, e[0], e[1], e[2]]
+/// E or G, by rows.
+#[derive(Clone, Copy, Debug)]
+pub struct Rates<'g>([Quaternion<'g>; 3]);
+
+impl<'g> Rates<'g> {
+    /// 2 E ṗ or 2 G ṗ; 2 E p̈ or 2 G p̈.
+    pub fn rotation(self, derivative: Quaternion<'g>) -> Vector<'g> {
+        self.0.map(|row| 2.0 * row.dot(derivative)).into()
+    }
+
+    /// `factor` Eᵀ a or Gᵀ a: with 2 a torque's generalised forces, with ½ an angular velocity's ṗ.
+    pub fn transposed_times(self, factor: f64, a: Vector<'g>) -> Quaternion<'g> {
+        Quaternion(std::array::from_fn(|column| factor * self.column(column).dot(a)))
+    }
+
+    /// One of the four columns.
+    pub fn column(self, column: usize) -> Vector<'g> {
+        self.0.map(|row| row[column]).into()
+    }
 }
 
-/// About the fixed x, then y, then z.
-pub fn roll_pitch_yaw(g: &Builder, angles: [Expr; 3]) -> Quaternion {
-    let [roll, pitch, yaw] = std::array::from_fn(|axis| {
-        let axis_vector = space::along(g, axis);
-        about(g, axis_vector, angles[axis])
-    });
-    let first = product(g, yaw, pitch);
-    product(g, first, roll)
-}
-
-/// p / |p|.
-pub fn normalised(g: &Builder, p: Quaternion) -> Quaternion {
-    let square = g.dot(&p, &p);
-    let length = g.sqrt(square);
-    p.map(|component| g.div(component, length))
-}
-
-/// R, by rows.
-pub fn matrix(g: &Builder, p: Quaternion) -> Matrix {
-    let squares = p.map(|component| g.mul(component, component));
-    let all = squares[1..].iter().fold(squares[0], |rest, &square| g.sub(rest, square));
-    let [px, py, pz] = [1, 2, 3].map(|i| g.mul(p[0], p[i]));
-    let [xy, xz, yz] = [(1, 2), (1, 3), (2, 3)].map(|(i, j)| g.mul(p[i], p[j]));
-    let diagonal = |i: usize| {
-        let twice = g.scale(2.0, squares[i]);
-        g.add(all, twice)
-    };
-    let [xx, yy, zz] = [diagonal(1), diagonal(2), diagonal(3)];
-    let twice = |a: Expr, b: Expr, plus: bool| {
-        let sum = if plus { g.add(a, b) } else { g.sub(a, b) };
-        g.scale(2.0, sum)
-    };
-    [
-        [xx, twice(xy, pz, false), twice(xz, py, true)],
-        [twice(xy, pz, true), yy, twice(yz, px, false)],
-        [twice(xz, py, false), twice(yz, px, true), zz],
-    ]
-}
-
-/// R of a rotation by an angle about a unit vector a: cos φ 1 + sin φ ã + (1 − cos φ) a aᵀ, by rows.
-pub fn matrix_about(g: &Builder, axis: Vector, angle: Expr) -> Matrix {
-    let (cos, sin, one) = (g.cos(angle), g.sin(angle), g.constant(1.0));
-    let rest = g.sub(one, cos);
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            let both = g.mul(axis[i], axis[j]);
-            if i == j {
-                // a² + (1 − a²) cos φ: nothing but 1 or cos φ about an axis of the frame.
-                let across = g.sub(one, both);
-                let turning = g.mul(across, cos);
-                return g.add(both, turning);
-            }
-            let straight = g.mul(both, rest);
-            let across = g.mul(axis[3 - i - j], sin);
-            if (i + 1) % 3 == j { g.sub(straight, across) } else { g.add(straight, across) }
-        })
-    })
-}
-
-/// E: rates of rotation in the ground's axes.
-pub fn ground_rates(g: &Builder, p: Quaternion) -> Rates {
-    let [n1, n2, n3] = vector_part(p).map(|component| g.neg(component));
-    [[n1, p[0], n3, p[2]], [n2, p[3], p[0], n1], [n3, n2, p[1], p[0]]]
-}
-
-/// G: rates of rotation in the body's axes.
-pub fn body_rates(g: &Builder, p: Quaternion) -> Rates {
-    let [n1, n2, n3] = vector_part(p).map(|component| g.neg(component));
-    [[n1, p[0], p[3], n2], [n2, n3, p[0], p[1]], [n3, p[2], n1, p[0]]]
-}
-
-/// 2 E ṗ or 2 G ṗ; 2 E p̈ or 2 G p̈.
-pub fn turning(g: &Builder, rates: &Rates, derivative: Quaternion) -> Vector {
-    rates.map(|row| {
-        let half = g.dot(&row, &derivative);
-        g.scale(2.0, half)
-    })
-}
-
-/// `factor` Eᵀ a or Gᵀ a: with 2 a torque's generalised forces, with ½ an angular velocity's ṗ.
-pub fn transposed(g: &Builder, factor: f64, rates: &Rates, a: Vector) -> Quaternion {
-    std::array::from_fn(|i| {
-        let sum = g.dot(&rates.map(|row| row[i]), &a);
-        g.scale(factor, sum)
+/// R of a rotation by an angle about a unit vector a: cos φ 1 + sin φ ã + (1 − cos φ) a aᵀ.
+pub fn matrix_about<'g>(axis: Vector<'g>, angle: Scalar<'g>) -> Matrix<'g> {
+    let (cos, sin) = (angle.cos(), angle.sin());
+    let rest = 1.0 - cos;
+    Matrix::from_fn(|i, j| {
+        let both = axis[i] * axis[j];
+        if i == j {
+            // a² + (1 − a²) cos φ: nothing but 1 or cos φ about an axis of the frame.
+            return both + (1.0 - both) * cos;
+        }
+        let straight = both * rest;
+        let across = axis[3 - i - j] * sin;
+        if (i + 1) % 3 == j { straight - across } else { straight + across }
     })
 }
 
 /// Roll, pitch and yaw of a rotation matrix, each between −π and π, pitch at most a right angle.
-pub fn angles(g: &Builder, r: &[Vector; 3]) -> [Expr; 3] {
-    let (square, other) = (g.mul(r[2][1], r[2][1]), g.mul(r[2][2], r[2][2]));
-    let sum = g.add(square, other);
-    let (level, down) = (g.sqrt(sum), g.neg(r[2][0]));
-    let atan2 = |y: Expr, x: Expr| g.binary(symdiff::Binary::Atan2, y, x);
-    [atan2(r[2][1], r[2][2]), atan2(down, level), atan2(r[1][0], r[0][0])]
+pub fn angles<'g>(r: &Matrix<'g>) -> [Scalar<'g>; 3] {
+    let (square, other) = (r[2][1] * r[2][1], r[2][2] * r[2][2]);
+    let (level, down) = ((square + other).sqrt(), -r[2][0]);
+    [r[2][1].atan2(r[2][2]), down.atan2(level), r[1][0].atan2(r[0][0])]
 }
 
 #[cfg(test)]
@@ -162,17 +186,23 @@ mod tests {
     const P: Numbers = [0.5, -0.1, 0.7, 0.5];
     const RATE: Numbers = [0.3, 0.8, -0.2, 0.14];
 
-    fn symbols(g: &Builder, name: &str) -> Quaternion {
-        std::array::from_fn(|i| g.symbol(&format!("{name}{i}")))
+    fn symbols<'g>(g: &'g Builder, name: &str) -> Quaternion<'g> {
+        std::array::from_fn(|i| g.variable(&format!("{name}{i}"))).into()
     }
 
-    fn values(g: &Builder, exprs: &[Expr], p: Numbers, rate: Numbers) -> Vec<f64> {
-        let graph = g.graph();
-        graph.evaluate(exprs, |symbol| {
+    /// Values where p is `P` and v is `RATE`.
+    fn values<const N: usize>(scalars: [Scalar<'_>; N]) -> [f64; N] {
+        let graph = scalars[0].builder().graph();
+        let values = graph.evaluate(&scalars.map(Scalar::expr), |symbol| {
             let name = graph.symbol_name(symbol).unwrap();
             let index: usize = name[1..].parse().unwrap();
-            if name.starts_with('p') { p[index] } else { rate[index] }
-        })
+            if name.starts_with('p') { P[index] } else { RATE[index] }
+        });
+        values.try_into().unwrap()
+    }
+
+    fn entries(matrix: &Matrix) -> [[f64; 3]; 3] {
+        matrix.rows().map(|row| values(row.components()))
     }
 
     fn close(a: f64, b: f64) {
@@ -183,32 +213,28 @@ mod tests {
     fn the_matrix_is_a_rotation_and_its_derivative_turns_by_omega() {
         let g = &Builder::new();
         let (p, rate) = (symbols(g, "p"), symbols(g, "v"));
-        let r = matrix(g, p);
-        let rates = ground_rates(g, p);
-        let omega = turning(g, &rates, rate);
-        let rates = body_rates(g, p);
-        let turned = turning(g, &rates, rate);
-        let r_values = values(g, r.as_flattened(), P, RATE);
-        let r_at = |i: usize, j: usize| r_values[3 * i + j];
+        let matrix = p.matrix();
+        let omega = p.ground_rates().rotation(rate);
+        let omega_in_body = p.body_rates().rotation(rate);
+        let r = entries(&matrix);
         for i in 0..3 {
             for j in 0..3 {
-                close((0..3).map(|k| r_at(i, k) * r_at(j, k)).sum(), f64::from(u8::from(i == j)));
+                close((0..3).map(|k| r[i][k] * r[j][k]).sum(), f64::from(u8::from(i == j)));
             }
         }
         // Ṙ = ω × R, column by column; ω = R ω'.
-        let (omega, turned) = (values(g, &omega, P, RATE), values(g, &turned, P, RATE));
-        for (i, row) in r.iter().enumerate() {
-            close((0..3).map(|k| r_at(i, k) * turned[k]).sum(), omega[i]);
-            for (j, &entry) in row.iter().enumerate() {
-                let slopes: Vec<Expr> = p.iter().map(|&symbol| g.derivative(entry, symbol)).collect();
-                let change: f64 = values(g, &slopes, P, RATE).iter().zip(RATE).map(|(slope, rate)| slope * rate).sum();
+        let (omega, in_body) = (values(omega.components()), values(omega_in_body.components()));
+        for i in 0..3 {
+            close((0..3).map(|k| r[i][k] * in_body[k]).sum(), omega[i]);
+            for j in 0..3 {
+                let slopes = values(p.components().map(|symbol| matrix[i][j].derivative(symbol)));
+                let change: f64 = slopes.iter().zip(RATE).map(|(slope, rate)| slope * rate).sum();
                 let (k, l) = ((i + 1) % 3, (i + 2) % 3);
-                close(change, omega[k] * r_at(l, j) - omega[l] * r_at(k, j));
+                close(change, omega[k] * r[l][j] - omega[l] * r[k][j]);
             }
         }
-        let turned: Vector = std::array::from_fn(|i| g.constant(turned[i]));
-        let back = transposed(g, 0.5, &rates, turned);
-        for (found, wanted) in values(g, &back, P, RATE).into_iter().zip(RATE) {
+        let back = p.body_rates().transposed_times(0.5, in_body.map(|component| g.number(component)).into());
+        for (found, wanted) in values(back.components()).into_iter().zip(RATE) {
             close(found, wanted);
         }
     }
@@ -216,24 +242,19 @@ mod tests {
     #[test]
     fn products_turn_one_after_the_other() {
         let g = &Builder::new();
-        let angles = [0.3, -0.7, 1.9].map(|angle| g.constant(angle));
-        let p = roll_pitch_yaw(g, angles);
-        let r = matrix(g, p);
-        let found = self::angles(g, &r);
-        for (found, wanted) in g.evaluate(&found, |_| 0.0).into_iter().zip([0.3, -0.7, 1.9]) {
+        let angles = [0.3, -0.7, 1.9];
+        let p = Quaternion::roll_pitch_yaw(angles.map(|angle| g.number(angle)).into());
+        for (found, wanted) in values(self::angles(&p.matrix())).into_iter().zip(angles) {
             close(found, wanted);
         }
-        // R(z, π/2) R(x, π/2) takes z to x: first in the turned frame, −y, then turned by z.
-        let right = g.constant(std::f64::consts::FRAC_PI_2);
-        let (x, z) = (space::along(g, 0), space::along(g, 2));
-        let (about_x, about_z) = (about(g, x, right), about(g, z, right));
-        let both = product(g, about_z, about_x);
-        let r = matrix(g, both);
-        let column = g.evaluate(&[r[0][2], r[1][2], r[2][2]], |_| 0.0);
-        close(column[0], 1.0);
-        close(column[1], 0.0);
-        let back = conjugate(g, both);
-        let none = product(g, back, both);
-        close(g.evaluate(&none, |_| 0.0)[0], 1.0);
+        // R(z, π/2) R(x, π/2) takes z to x: first in the rotated frame, −y, then rotated by z.
+        let right = g.number(std::f64::consts::FRAC_PI_2);
+        let [about_x, about_z] = [0, 2].map(|axis| Quaternion::about(Vector::along(g, axis), right));
+        let both = about_z * about_x;
+        let r = entries(&both.matrix());
+        close(r[0][2], 1.0);
+        close(r[1][2], 0.0);
+        let none = both.conjugate() * both;
+        close(values(none.components())[0], 1.0);
     }
 }

@@ -1,8 +1,8 @@
 //! Vectors of space, as expressions. What stays in the plane has z = 0, a constant that folds away.
 
-use std::ops::{Add, AddAssign, Div, Index, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, Neg, Sub};
 
-use symdiff::{Builder, Expr, Scalar};
+use symdiff::{Builder, Scalar};
 
 /// (x, y, z).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,19 +21,9 @@ impl<'g> Vector<'g> {
         vector
     }
 
-    /// Of three nodes.
-    pub fn of(g: &'g Builder, components: [Expr; 3]) -> Self {
-        Self(components.map(|component| g.scalar(component)))
-    }
-
     /// x, y, z.
     pub fn components(self) -> [Scalar<'g>; 3] {
         self.0
-    }
-
-    /// The nodes of x, y, z.
-    pub fn exprs(self) -> [Expr; 3] {
-        self.0.map(Scalar::expr)
     }
 
     /// Whether it is the constant 0.
@@ -48,8 +38,7 @@ impl<'g> Vector<'g> {
 
     /// `self · other`
     pub fn dot(self, other: Self) -> Scalar<'g> {
-        let zero = self.0[0].builder().number(0.0);
-        self.0.into_iter().zip(other.0).fold(zero, |sum, (a, b)| sum + a * b)
+        self.0[0].builder().dot(&self.0, &other.0)
     }
 
     /// `self × other`
@@ -89,6 +78,12 @@ impl<'g> Index<usize> for Vector<'g> {
 
     fn index(&self, axis: usize) -> &Scalar<'g> {
         &self.0[axis]
+    }
+}
+
+impl IndexMut<usize> for Vector<'_> {
+    fn index_mut(&mut self, axis: usize) -> &mut Self::Output {
+        &mut self.0[axis]
     }
 }
 

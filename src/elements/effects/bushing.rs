@@ -16,16 +16,14 @@
 //! q₀ y + e × y of the rotational part y of 𝐊 x, so that V gains ½ xᵀ 𝐊 x. Where 𝐊 is not symmetric, or a stiffness depends on
 //! the motion, there is no potential and none is counted.
 
-
 use mbint_derive::Element;
 use schemars::{Schema, SchemaGenerator};
-use symdiff::{Builder, Expr, Formula, Scalar};
+use symdiff::{Formula, Scalar};
 
-use super::{ForceElement, Forces, MovingPoint, TypedSensor};
+use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
-use crate::multibody::space::{self, Vector};
-use crate::multibody::{BuildError, Vector as Handle, rotation};
+use crate::multibody::{BuildError, Matrix, Vector};
 use crate::syntax::yaml;
 
 /// Springs and dampers between two frames.
@@ -64,134 +62,112 @@ impl ForceElement for Bushing {
     const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let g = forces.graph();
         let stiffness =
             Law::of(forces, [&self.stiffness, &self.torsional_stiffness], self.stiffness_matrix.as_ref())?;
         let damping = Law::of(forces, [&self.damping, &self.torsional_damping], self.damping_matrix.as_ref())?;
         let pair = forces.pair(self.between);
-        let axes: [Vector; 3] = std::array::from_fn(|axis| {
-            let unit = space::along(g, axis);
-            pair.outward(g, unit)
-        });
+        let axes: [Vector; 3] =
+            std::array::from_fn(|axis| pair.outward(Vector::along(forces.graph(), axis)));
+        // Into the first frame.
+        let inward = Matrix::from(axes);
         let (first, second) = (pair.first.point, pair.second.point);
-        let omega = [first, second].map(|point| forces.angular_velocity(point.body).exprs());
-        let turning = space::sub(g, omega[1], omega[0]);
-        let q = pair.relative(g);
-        let e = rotation::vector_part(q);
+        let omega = [first, second].map(|point| forces.angular_velocity(point.body));
+        let relative_omega = omega[1] - omega[0];
+        let q = pair.relative();
+        let e = q.vector_part();
 
-        let offset = pair.offset(g);
-        let carried = space::cross(g, omega[0], offset);
-        let rate = space::sub(g, second.velocity, first.velocity);
-        let rate = space::sub(g, rate, carried);
-        let displacement = axes.map(|axis| space::dot(g, axis, offset));
-        let elastic = weighted(g, stiffness.straight, displacement);
-        let doubled = space::dot(g, displacement, elastic);
-        let rate = axes.map(|axis| space::dot(g, axis, rate));
-        let viscous = weighted(g, damping.straight, rate);
-        let mut pull = space::add(g, elastic, viscous);
+        let offset = pair.offset();
+        let entrained = omega[0].cross(offset);
+        let rate = second.velocity - first.velocity - entrained;
+        let displacement = inward * offset;
+        let elastic = weighted(stiffness.straight, displacement);
+        let doubled = displacement.dot(elastic);
+        let rate = inward * rate;
+        let mut pull = elastic + weighted(damping.straight, rate);
 
-        let twisted = weighted(g, stiffness.torsional, e);
-        let half = conjugate(g, q[0], e, twisted);
-        let elastic = half.map(|component| g.scale(2.0, component));
-        let spin = axes.map(|axis| space::dot(g, axis, turning));
-        let viscous = weighted(g, damping.torsional, spin);
-        let mut torque = space::add(g, elastic, viscous);
+        let twisted = weighted(stiffness.torsional, e);
+        let elastic = 2.0 * conjugate(q[0], e, twisted);
+        let spin = inward * relative_omega;
+        let mut torque = elastic + weighted(damping.torsional, spin);
 
-        let halved = space::dot(g, e, twisted);
-        let (straight, twisting) = (g.scale(0.5, doubled), g.scale(2.0, halved));
-        let mut potential = g.add(straight, twisting);
-        let rotation = e.map(|component| g.scale(2.0, component));
-        if let Some([force, moment]) = stiffness.full_times(g, displacement, rotation) {
-            pull = space::add(g, pull, force);
-            let moment_here = conjugate(g, q[0], e, moment);
-            torque = space::add(g, torque, moment_here);
-            let (straight, twisting) = (space::dot(g, displacement, force), space::dot(g, rotation, moment));
-            let doubled = g.add(straight, twisting);
-            let stored = g.scale(0.5, doubled);
-            potential = g.add(potential, stored);
+        let halved = e.dot(twisted);
+        let mut potential = 0.5 * doubled + 2.0 * halved;
+        let rotation = 2.0 * e;
+        if let Some([force, moment]) = stiffness.full_times(displacement, rotation) {
+            pull += force;
+            torque += conjugate(q[0], e, moment);
+            potential += 0.5 * (displacement.dot(force) + rotation.dot(moment));
         }
-        if let Some([force, moment]) = damping.full_times(g, rate, spin) {
-            pull = space::add(g, pull, force);
-            torque = space::add(g, torque, moment);
+        if let Some([force, moment]) = damping.full_times(rate, spin) {
+            pull += force;
+            torque += moment;
         }
-        let pull = in_ground(g, axes, pull);
-        let there = forces.point_at(first.body, Handle::of(g, second.position));
-        forces.between(&MovingPoint::of(g, second), &there, Handle::of(g, pull));
-        let torque = in_ground(g, axes, torque);
-        forces.torque(second.body, first.body, Handle::of(g, torque));
+        let pull = in_ground(axes, pull);
+        let there = forces.point_at(first.body, second.position);
+        forces.between(&second, &there, pull);
+        forces.torque(second.body, first.body, in_ground(axes, torque));
         if stiffness.is_symmetric() {
-            let coefficients: Vec<Scalar> = stiffness.coefficients().into_iter().map(|part| g.scalar(part)).collect();
-            forces.potential(&coefficients, g.scalar(potential));
+            forces.potential(&stiffness.coefficients(), potential);
         }
         Ok(())
     }
 }
 
 /// Stiffness or damping: by axis and, where there is one, the full matrix.
-struct Law {
-    straight: Vector,
-    torsional: Vector,
-    full: Option<[[Expr; 6]; 6]>,
+struct Law<'g> {
+    straight: Vector<'g>,
+    torsional: Vector<'g>,
+    full: Option<[[Scalar<'g>; 6]; 6]>,
 }
 
-impl Law {
+impl<'g> Law<'g> {
     fn of(
-        forces: &dyn Forces<'_>,
+        forces: &dyn Forces<'g>,
         [straight, torsional]: [&PerAxis; 2],
         full: Option<&SixBySix>,
     ) -> Result<Self, BuildError> {
-        let g = forces.graph();
-        let straight = forces.vector(straight)?.exprs();
-        let torsional = forces.vector(torsional)?.exprs();
-        let mut matrix = full.map(|_| [[g.constant(0.0); 6]; 6]);
+        let (straight, torsional) = (forces.vector(straight)?, forces.vector(torsional)?);
+        let mut matrix = full.map(|_| [[forces.graph().number(0.0); 6]; 6]);
         if let (Some(matrix), Some(full)) = (&mut matrix, full) {
             for (entry, formula) in matrix.iter_mut().flatten().zip(full.0.iter().flatten()) {
-                *entry = forces.value(formula)?.expr();
+                *entry = forces.value(formula)?;
             }
         }
         Ok(Self { straight, torsional, full: matrix })
     }
 
     /// The full matrix times (displacement, rotation): a force and a torque.
-    fn full_times(&self, g: &Builder, displacement: Vector, rotation: Vector) -> Option<[Vector; 2]> {
-        let along = [displacement, rotation].concat();
-        let matrix = self.full?;
-        let product = matrix.map(|row| g.dot(&row, &along));
-        Some([[product[0], product[1], product[2]], [product[3], product[4], product[5]]])
+    fn full_times(&self, displacement: Vector<'g>, rotation: Vector<'g>) -> Option<[Vector<'g>; 2]> {
+        let along = [displacement.components(), rotation.components()].concat();
+        let [fx, fy, fz, tx, ty, tz] = self.full?.map(|row| row[0].builder().dot(&row, &along));
+        Some([[fx, fy, fz].into(), [tx, ty, tz].into()])
     }
 
     /// All its numbers.
-    fn coefficients(&self) -> Vec<Expr> {
+    fn coefficients(&self) -> Vec<Scalar<'g>> {
         let full = self.full.iter().flatten().flatten().copied();
-        self.straight.into_iter().chain(self.torsional).chain(full).collect()
+        self.straight.components().into_iter().chain(self.torsional.components()).chain(full).collect()
     }
 
     fn is_symmetric(&self) -> bool {
-        let symmetric = |m: &[[Expr; 6]; 6]| (0..6).all(|i| (0..i).all(|j| m[i][j] == m[j][i]));
+        let symmetric = |m: &[[Scalar; 6]; 6]| (0..6).all(|i| (0..i).all(|j| m[i][j] == m[j][i]));
         self.full.as_ref().is_none_or(symmetric)
     }
 }
 
-
 /// The torque q₀ y + e × y that does the work y · d(2 e).
-fn conjugate(g: &Builder, q0: Expr, e: Vector, y: Vector) -> Vector {
-    let (straight, across) = (space::scale(g, q0, y), space::cross(g, e, y));
-    space::add(g, straight, across)
+fn conjugate<'g>(q0: Scalar<'g>, e: Vector<'g>, y: Vector<'g>) -> Vector<'g> {
+    q0 * y + e.cross(y)
 }
 
 /// Component by component.
-fn weighted(g: &Builder, weights: Vector, a: Vector) -> Vector {
-    std::array::from_fn(|i| g.mul(weights[i], a[i]))
+fn weighted<'g>(weights: Vector<'g>, a: Vector<'g>) -> Vector<'g> {
+    Vector::from(std::array::from_fn(|i| weights[i] * a[i]))
 }
 
 /// A vector along given axes.
-fn in_ground(g: &Builder, axes: [Vector; 3], a: Vector) -> Vector {
-    let mut sum = space::zero(g);
-    for (axis, component) in axes.into_iter().zip(a) {
-        let part = space::scale(g, component, axis);
-        sum = space::add(g, sum, part);
-    }
-    sum
+fn in_ground<'g>(axes: [Vector<'g>; 3], a: Vector<'g>) -> Vector<'g> {
+    axes.into_iter().zip(a.components()).fold(Vector::zero(a[0].builder()), |sum, (axis, part)| sum + part * axis)
 }
 
 /// Rows of forces, then torques, by displacements, then rotations, or by their rates.

@@ -49,10 +49,10 @@ impl ForceElement for ClearanceJoint {
     const SENSORS: &'static [TypedSensor] = contact::SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let clearance = forces.prescribed(&self.clearance)?.expr();
-        let radius = forces.prescribed(&self.radius)?.expr();
+        let clearance = forces.prescribed(&self.clearance)?;
+        let radius = forces.prescribed(&self.radius)?;
         let axis = forces.prescribed_vector(&self.axis)?;
-        let axis = forces.is_spatial().then(|| axis.unit().exprs());
+        let axis = forces.is_spatial().then(|| axis.unit());
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
         let shape = Shape::Hollow(clearance);

@@ -15,15 +15,14 @@
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
 use mbint_derive::Element;
-use symdiff::{Builder, Expr, Formula};
+use symdiff::{Formula, Scalar};
 
 use super::dry_friction::Resistance;
 use super::impact::Push;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Axis, Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
-use crate::multibody::space::{self, Vector};
-use crate::multibody::{BuildError, Pair, Vector as Handle};
+use crate::multibody::{BuildError, Pair, Vector};
 
 /// ε over R − r.
 const CENTRED: f64 = 1e-4;
@@ -74,14 +73,13 @@ impl ForceElement for Contact {
     const SENSORS: &'static [TypedSensor] = SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let g = forces.graph();
-        let radius = forces.prescribed(&self.radius)?.expr();
-        let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(|vector| vector.unit().exprs());
+        let radius = forces.prescribed(&self.radius)?;
+        let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(Vector::unit);
         let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
         let shape = match (&self.plane, &self.circle, &self.hollow) {
             (Some(normal), ..) => Shape::Plane(direction(normal)?),
-            (_, Some(outer), _) => Shape::Round(forces.prescribed(outer)?.expr()),
-            (.., Some(bore)) => Shape::Hollow(g.sub(forces.prescribed(bore)?.expr(), radius)),
+            (_, Some(outer), _) => Shape::Round(forces.prescribed(outer)?),
+            (.., Some(bore)) => Shape::Hollow(forces.prescribed(bore)? - radius),
             (None, None, None) => return Ok(()),
         };
         let impact = Push::of(forces, &self.impact)?;
@@ -110,47 +108,45 @@ impl Checked for Contact {
 
 /// The first body's surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Shape {
+pub(super) enum Shape<'g> {
     /// A unit normal, in the first frame.
-    Plane(Vector),
+    Plane(Vector<'g>),
     /// R, m
-    Round(Expr),
+    Round(Scalar<'g>),
     /// R − r, m
-    Hollow(Expr),
+    Hollow(Scalar<'g>),
 }
 
 /// Two surfaces and what they do to one another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch<'g> {
     pub between: [PointRef; 2],
-    pub shape: Shape,
+    pub shape: Shape<'g>,
     /// r, m
-    pub radius: Expr,
+    pub radius: Scalar<'g>,
     /// A unit vector in the first frame across which centres are apart.
-    pub axis: Option<Vector>,
+    pub axis: Option<Vector<'g>>,
     pub impact: Push<'g>,
     pub friction: Option<Resistance<'g>>,
 }
 
 /// Where two surfaces are to one another.
 #[derive(Clone, Copy, Debug)]
-struct Gap {
+struct Gap<'g> {
     /// How far they are apart, m.
-    gap: Expr,
+    gap: Scalar<'g>,
     /// The direction in which the second is pushed.
-    normal: Vector,
+    normal: Vector<'g>,
     /// Positive where they overlap; as few operations as tell.
-    overlap: Expr,
+    overlap: Scalar<'g>,
 }
 
 impl<'g> Touch<'g> {
     /// Adds the forces.
     pub fn apply(&self, forces: &mut dyn Forces<'g>) {
-        let g = forces.graph();
         let pair = forces.pair(self.between);
-        let Gap { gap, normal, overlap } = self.gap(g, &pair);
-        let (gap, overlap, normal) = (g.scalar(gap), g.scalar(overlap), Handle::of(g, normal));
-        let place = Handle::of(g, pair.second.point.position) - g.scalar(self.radius) * normal;
+        let Gap { gap, normal, overlap } = self.gap(&pair);
+        let place = pair.second.point.position - self.radius * normal;
         let [first, second] = self.between.map(|point| forces.point_at(point.body, place));
         let velocity = second.velocity - first.velocity;
         let parting = normal.dot(velocity);
@@ -178,48 +174,43 @@ impl<'g> Touch<'g> {
         forces.sensors([(Sensor::GAP, gap), (Sensor::RATE, parting), (Sensor::FORCE, push)]);
     }
 
-    fn gap(&self, g: &Builder, pair: &Pair) -> Gap {
-        let offset = pair.offset(g);
+    fn gap(&self, pair: &Pair<'g>) -> Gap<'g> {
+        let offset = pair.offset();
         match self.shape {
             Shape::Plane(normal) => {
-                let normal = pair.outward(g, normal);
-                let height = space::dot(g, normal, offset);
-                let gap = g.sub(height, self.radius);
-                Gap { gap, normal, overlap: g.sub(self.radius, height) }
+                let normal = pair.outward(normal);
+                let height = normal.dot(offset);
+                Gap { gap: height - self.radius, normal, overlap: self.radius - height }
             }
             Shape::Round(outer) => {
-                let (across, square) = self.across(g, pair, offset);
-                let distance = g.sqrt(square);
-                let normal = across.map(|component| g.div(component, distance));
-                let together = g.add(outer, self.radius);
-                let touching = g.mul(together, together);
-                Gap { gap: g.sub(distance, together), normal, overlap: g.sub(touching, square) }
+                let (across, square) = self.across(pair, offset);
+                let distance = square.sqrt();
+                let normal = across / distance;
+                let together = outer + self.radius;
+                let touching = together * together;
+                Gap { gap: distance - together, normal, overlap: touching - square }
             }
             Shape::Hollow(clearance) => {
-                let (across, square) = self.across(g, pair, offset);
-                let centred = g.scale(CENTRED, clearance);
-                let centred = g.mul(centred, centred);
-                let smooth = g.add(square, centred);
-                let distance = g.sqrt(smooth);
-                let outward = across.map(|component| g.div(component, distance));
-                let touching = g.mul(clearance, clearance);
-                let (gap, overlap) = (g.sub(clearance, distance), g.sub(smooth, touching));
-                Gap { gap, normal: space::neg(g, outward), overlap }
+                let (across, square) = self.across(pair, offset);
+                let centred = CENTRED * clearance;
+                let smooth = square + centred * centred;
+                let distance = smooth.sqrt();
+                let outward = across / distance;
+                let touching = clearance * clearance;
+                Gap { gap: clearance - distance, overlap: smooth - touching, normal: -outward }
             }
         }
     }
 
     /// d, and its square.
-    fn across(&self, g: &Builder, pair: &Pair, offset: Vector) -> (Vector, Expr) {
+    fn across(&self, pair: &Pair<'g>, offset: Vector<'g>) -> (Vector<'g>, Scalar<'g>) {
         let across = match self.axis {
             Some(axis) => {
-                let axis = pair.outward(g, axis);
-                let along = space::dot(g, axis, offset);
-                let along = space::scale(g, along, axis);
-                space::sub(g, offset, along)
+                let axis = pair.outward(axis);
+                offset - axis.dot(offset) * axis
             }
             None => offset,
         };
-        (across, space::dot(g, across, across))
+        (across, across.dot(across))
     }
 }

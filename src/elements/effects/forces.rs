@@ -5,34 +5,6 @@ use symdiff::{Builder, Formula, Scalar};
 use crate::grammar::{OnJoint, PointRef, Rotating, Sensor, TimeOrder};
 use crate::multibody::{BuildError, MaterialPoint, Pair, Vector};
 
-/// A point fixed in a body, in the ground's axes.
-#[derive(Clone, Copy, Debug)]
-pub struct MovingPoint<'g> {
-    /// Index of the body.
-    body: usize,
-    /// From the origin of the body's frame to the point, m.
-    arm: Vector<'g>,
-    /// r, m
-    pub position: Vector<'g>,
-    /// ṙ, m/s
-    pub velocity: Vector<'g>,
-}
-
-impl<'g> MovingPoint<'g> {
-    /// A point of the kernel, to compute with.
-    pub fn of(g: &'g Builder, point: MaterialPoint) -> Self {
-        let [arm, position, velocity] =
-            [point.arm, point.position, point.velocity].map(|components| Vector::of(g, components));
-        Self { body: point.body, arm, position, velocity }
-    }
-
-    /// The kernel's form of it.
-    pub fn material(&self) -> MaterialPoint {
-        let Self { body, arm, position, velocity } = *self;
-        MaterialPoint { body, arm: arm.exprs(), position: position.exprs(), velocity: velocity.exprs() }
-    }
-}
-
 /// The motion of a mechanism as formulas of an effect may depend on it, and the sum of the forces on it.
 ///
 /// # Errors
@@ -56,11 +28,11 @@ pub trait Forces<'g> {
     fn prescribed_vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
 
     /// A named point.
-    fn point(&self, point: PointRef) -> MovingPoint<'g>;
+    fn point(&self, point: PointRef) -> MaterialPoint<'g>;
     /// The point of a body that is now at a position in the ground's frame.
-    fn point_at(&self, body: usize, position: Vector<'g>) -> MovingPoint<'g>;
+    fn point_at(&self, body: usize, position: Vector<'g>) -> MaterialPoint<'g>;
     /// The frames at two points.
-    fn pair(&self, between: [PointRef; 2]) -> Pair;
+    fn pair(&self, between: [PointRef; 2]) -> Pair<'g>;
     /// A vector of a body's frame, in the ground's axes.
     fn rotated(&self, body: usize, vector: Vector<'g>) -> Vector<'g>;
     /// ω of a body in the ground's axes, rad/s.
@@ -80,9 +52,9 @@ pub trait Forces<'g> {
     /// computed where no sample of a tile needs them, so they have to vanish continuously as the condition does.
     fn only_where(&mut self, condition: Scalar<'g>);
     /// A force at a point, N.
-    fn at(&mut self, point: &MovingPoint<'g>, force: Vector<'g>);
+    fn at(&mut self, point: &MaterialPoint<'g>, force: Vector<'g>);
     /// A force at one point and its opposite at another, N.
-    fn between(&mut self, from: &MovingPoint<'g>, to: &MovingPoint<'g>, force: Vector<'g>);
+    fn between(&mut self, from: &MaterialPoint<'g>, to: &MaterialPoint<'g>, force: Vector<'g>);
     /// A torque on a body and its opposite on another, N m.
     fn torque(&mut self, from: usize, on: usize, torque: Vector<'g>);
     /// A force or torque that pushes a joint's coordinate up, N or N m.

@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use symdiff::Formula;
 
 pub use self::dry_friction::{DryFriction, Friction};
-pub use self::forces::{Forces, MovingPoint};
+pub use self::forces::Forces;
 pub use self::impact::Impact;
 #[cfg(test)]
 pub use self::impact::{Exponent, RestitutionLaw};

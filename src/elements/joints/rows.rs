@@ -14,7 +14,7 @@
 use symdiff::{Builder, Formula, Scalar};
 
 use crate::grammar::{OfAngle, OnJoint, PointRef};
-use crate::multibody::{BuildError, Pair, Vector, rotation};
+use crate::multibody::{BuildError, Pair, Vector};
 
 /// One scalar constraint.
 ///
@@ -51,7 +51,7 @@ pub trait Kinematics<'g> {
     /// Positions of two points in the ground's frame, m.
     fn points(&self, between: [PointRef; 2]) -> [Vector<'g>; 2];
     /// The frames at two points.
-    fn pair(&self, between: [PointRef; 2]) -> Pair;
+    fn pair(&self, between: [PointRef; 2]) -> Pair<'g>;
     /// A vector of a body's frame, in the ground's axes.
     fn rotated(&self, body: usize, vector: Vector<'g>) -> Vector<'g>;
     /// The angle of a body about z, rad.
@@ -71,7 +71,7 @@ pub type Rows<'g> = Result<Vec<Row<'g>>, BuildError>;
 pub(super) struct Frames<'g, 'k> {
     k: &'k dyn Kinematics<'g>,
     g: &'g Builder,
-    pair: Pair,
+    pair: Pair<'g>,
 }
 
 impl<'g, 'k> Frames<'g, 'k> {
@@ -82,28 +82,28 @@ impl<'g, 'k> Frames<'g, 'k> {
 
     /// The first frame turned by an angle about its z.
     pub fn turned(mut self, angle: Scalar<'g>) -> Self {
-        self.pair = self.pair.turned(self.g, angle.expr());
+        self.pair = self.pair.turned(angle);
         self
     }
 
     /// A direction of the first frame in the ground's axes.
     pub fn outward(&self, direction: Vector<'g>) -> Vector<'g> {
-        Vector::of(self.g, self.pair.outward(self.g, direction.exprs()))
+        self.pair.outward(direction)
     }
 
     /// A direction of the second frame in the ground's axes.
     pub fn outward_of_second(&self, direction: Vector<'g>) -> Vector<'g> {
-        Vector::of(self.g, self.pair.outward_of_second(self.g, direction.exprs()))
+        self.pair.outward_of_second(direction)
     }
 
     /// r_B − r_A, in the ground's axes.
     pub fn offset(&self) -> Vector<'g> {
-        Vector::of(self.g, self.pair.offset(self.g))
+        self.pair.offset()
     }
 
     /// a · (r_B − r_A) with a direction of the first frame.
     pub fn displacement(&self, direction: Vector<'g>) -> Scalar<'g> {
-        self.g.scalar(self.pair.displacement(self.g, direction.exprs()))
+        self.pair.displacement(direction)
     }
 
     /// No displacement along n, a unit vector of the first frame: Φ = n₁ · (r_B − r_A), m. −Φ_qᵀ λ is the force −λ n₁ at B
@@ -116,8 +116,8 @@ impl<'g, 'k> Frames<'g, 'k> {
 
     /// No rotation with a part about n, a unit vector of the first frame.
     fn turn_row(&self, name: &'static str, normal: Vector<'g>) -> Row<'g> {
-        let relative = self.pair.relative(self.g);
-        let (q0, e) = (self.g.scalar(relative[0]), Vector::of(self.g, rotation::vector_part(relative)));
+        let relative = self.pair.relative();
+        let (q0, e) = (relative[0], relative.vector_part());
         let value = 2.0 * normal.dot(e);
         let torque = self.outward(q0 * normal + e.cross(normal));
         Row { name, value, force: Vector::zero(self.g), torque: -torque }

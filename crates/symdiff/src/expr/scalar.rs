@@ -6,9 +6,8 @@ use std::cell::{Ref, RefCell};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use super::derivative::SparseMatrix;
 use super::graph::Graph;
-use super::node::{Binary, Expr, Node, Unary};
+use super::node::{Binary, Expr, Unary};
 
 /// A graph under construction, which any number of [`Scalar`]s add nodes to.
 #[derive(Debug, Default)]
@@ -57,6 +56,29 @@ impl Builder {
     pub fn variable(&self, name: &str) -> Scalar<'_> {
         self.scalar(self.with(|graph| graph.symbol(name)))
     }
+
+    /// The sum of all terms; zero if there are none.
+    pub fn sum<'g>(&'g self, terms: impl IntoIterator<Item = Scalar<'g>>) -> Scalar<'g> {
+        // All terms are made before the first addition.
+        let terms: Vec<Scalar<'g>> = terms.into_iter().collect();
+        terms.into_iter().fold(self.number(0.0), Add::add)
+    }
+
+    /// `Σ aᵢ bᵢ`; both of one length.
+    pub fn dot<'g>(&'g self, a: &[Scalar<'g>], b: &[Scalar<'g>]) -> Scalar<'g> {
+        assert_eq!(a.len(), b.len(), "a dot product is of two vectors of one length");
+        a.iter().zip(b).fold(self.number(0.0), |sum, (&x, &y)| sum + x * y)
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.graph.borrow().len()
+    }
+
+    /// Whether there are no nodes.
+    pub fn is_empty(&self) -> bool {
+        self.graph.borrow().is_empty()
+    }
 }
 
 /// A node of a graph that is being built, with operators.
@@ -79,6 +101,11 @@ impl<'g> Scalar<'g> {
     /// The node.
     pub fn expr(self) -> Expr {
         self.expr
+    }
+
+    /// The nodes of several.
+    pub fn exprs(scalars: &[Self]) -> Vec<Expr> {
+        scalars.iter().map(|scalar| scalar.expr).collect()
     }
 
     /// What it belongs to.
@@ -254,66 +281,9 @@ operators! {
     Div div, DivAssign div_assign;
 }
 
-// What the mechanics calls on nodes without operators yet.
-macro_rules! delegated {
-    ($borrow:ident: $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
-        impl Builder {
-            $(
-                #[doc = concat!("[`Graph::", stringify!($name), "`].")]
-                pub fn $name(&self, $($argument: $kind),*) -> $result {
-                    self.graph.$borrow().$name($($argument),*)
-                }
-            )*
-        }
-    };
-}
-
-delegated! {
-    borrow_mut:
-    add(a: Expr, b: Expr) -> Expr;
-    assume(roots: &[Expr], condition: Expr, holds: bool) -> Vec<Expr>;
-    binary(function: Binary, a: Expr, b: Expr) -> Expr;
-    constant(value: f64) -> Expr;
-    cos(a: Expr) -> Expr;
-    derivative(of: Expr, by: Expr) -> Expr;
-    div(a: Expr, b: Expr) -> Expr;
-    dot(a: &[Expr], b: &[Expr]) -> Expr;
-    integral(of: Expr, by: Expr) -> Option<Expr>;
-    jacobian(rows: &[Expr], by: &[Expr]) -> SparseMatrix;
-    mul(a: Expr, b: Expr) -> Expr;
-    neg(a: Expr) -> Expr;
-    only_where(condition: Expr, value: Expr) -> Expr;
-    powi(a: Expr, exponent: i32) -> Expr;
-    scale(factor: f64, a: Expr) -> Expr;
-    select(condition: Expr, a: Expr, b: Expr) -> Expr;
-    sin(a: Expr) -> Expr;
-    sqrt(a: Expr) -> Expr;
-    sub(a: Expr, b: Expr) -> Expr;
-    symbol(name: &str) -> Expr;
-    unary(function: Unary, a: Expr) -> Expr;
-}
-
-delegated! {
-    borrow:
-    as_constant(a: Expr) -> Option<f64>;
-    evaluate(roots: &[Expr], value_of: impl FnMut(Expr) -> f64) -> Vec<f64>;
-    is_empty() -> bool;
-    is_zero(a: Expr) -> bool;
-    len() -> usize;
-    node(a: Expr) -> Node;
-    symbols_of(roots: &[Expr]) -> Vec<Expr>;
-}
-
-impl Builder {
-    /// [`Graph::sum`].
-    pub fn sum(&self, terms: impl IntoIterator<Item = Expr>) -> Expr {
-        let terms: Vec<Expr> = terms.into_iter().collect();
-        self.with(|graph| graph.sum(terms))
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::node::Node;
     use super::*;
 
     #[test]

@@ -1,0 +1,195 @@
+//! A child's place and motion by the coordinates of its joint.
+//!
+//! With F₁, F₂ the joint's frames, A₁, A₂ their rotations in their bodies, u the axis, φ the angle, s the displacement, the
+//! second body is rotated by A₁ R(u, φ) A₂ᵀ against the first, and F₂'s origin is u s from that of F₁. Seen from the parent
+//! (the first body, or the second with φ and s reversed):
+//!
+//! ```text
+//! R_c = R_p Rᵣ                    ω_c = ω_p + R_c a φ̇
+//! r_c = r_p + R_p ρ − R_c f       ρ  = joint in p, with the displacement       f = joint in c       a = axis in c
+//! ```
+
+use std::f64::consts::TAU;
+
+use symdiff::Scalar;
+
+use super::mechanism::Mechanism;
+use super::tree::InboardJoint;
+use crate::elements::joints::Mobilizer;
+use crate::grammar::JointCoordinate;
+use crate::multibody::{
+    ANGLE, Attitude, Body, BuildError, Context, DegreeOfFreedom, EULER, Matrix, Quaternion, RelativeMotion,
+    RotationCoordinates, Vector, rotation,
+};
+
+/// Entries of a rotation nearer than this to 0 or ±1 are so but for rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// The matrix of a rotation that does not change. A quarter turn has zeros and ones, which cost nothing.
+fn constant_matrix(p: Quaternion<'_>) -> Matrix<'_> {
+    let rows = p.matrix().rows().map(|row| {
+        row.map(|entry| match entry.as_constant() {
+            Some(value) if (value - value.round()).abs() < ROUNDING => entry.builder().number(value.round()),
+            _ => entry,
+        })
+    });
+    rows.into()
+}
+
+/// A rotation against the parent: as Euler parameters, and in the plane as an angle.
+struct RelativeRotation<'g> {
+    euler: Quaternion<'g>,
+    angle: Scalar<'g>,
+}
+
+impl<'g> Mechanism<'g, '_> {
+    /// Places a child against its parent, which is placed already.
+    pub fn place_child(&mut self, body: usize, inboard: InboardJoint) -> Result<(), BuildError> {
+        let joints = self.joints;
+        // A joint of the tree has a mobilizer; without one a body would be welded.
+        let Some(mobilizer) = joints[inboard.joint].kind.mobilizer() else { return Ok(()) };
+        let dofs = self.degrees_of_freedom(&mobilizer, inboard)?;
+        let g = self.g;
+        let total = |list: &[Scalar<'g>], part: fn(&DegreeOfFreedom<'g>) -> Scalar<'g>| {
+            g.sum(dofs.iter().map(|dof| part(dof) * list[dof.index]))
+        };
+        let angle = total(&self.q, |dof| dof.rotation);
+        let angular = [total(&self.v, |dof| dof.rotation), total(&self.w, |dof| dof.rotation)];
+        let displacement = total(&self.q, |dof| dof.translation);
+        let sliding = [total(&self.v, |dof| dof.translation), total(&self.w, |dof| dof.translation)];
+
+        let axis = match mobilizer.axis() {
+            Some(axis) => self.unit_vector(axis, Context::Parameters)?,
+            None => Vector::along(g, 2),
+        };
+        // The second frame may be rotated against the first, about its z; the axis is one of the first.
+        let rest = match mobilizer.twist() {
+            Some(angle) => self.formula(angle, Context::Parameters)?,
+            None => g.number(0.0),
+        };
+        let twist = Quaternion::about(Vector::along(g, 2), rest);
+        let [parent, child] = [inboard.parent, inboard.child].map(|point| self.local_frame(point));
+        let (before, after) = if inboard.reversed {
+            (parent * twist.conjugate(), child.conjugate())
+        } else {
+            (parent, twist * child.conjugate())
+        };
+        let (r_before, r_after) = (constant_matrix(before), constant_matrix(after));
+        let relative = r_before * rotation::matrix_about(axis, angle) * r_after;
+        let axis_in_parent = r_before * axis;
+        let axis_in_child = r_after.transposed() * axis;
+
+        let moved = displacement * axis_in_parent;
+        let motion = RelativeMotion {
+            parent: inboard.parent.body,
+            joint: inboard.joint,
+            rotation: relative,
+            outboard_in_parent: self.local(inboard.parent) + moved,
+            outboard_in_child: self.local(inboard.child),
+            axis: axis_in_child,
+            axis_in_parent,
+            angular,
+            sliding,
+            dofs,
+        };
+        let euler = before * Quaternion::about(axis, angle) * after;
+        let angle = if inboard.reversed { angle - rest } else { angle + rest };
+        self.set_motion(body, motion, RelativeRotation { euler, angle });
+        Ok(())
+    }
+
+    /// The coordinates of a joint of the tree; φ and s count from the parent.
+    fn degrees_of_freedom(
+        &mut self,
+        mobilizer: &Mobilizer,
+        inboard: InboardJoint,
+    ) -> Result<Vec<DegreeOfFreedom<'g>>, BuildError> {
+        let g = self.g;
+        let (zero, one) = (g.number(0.0), g.number(if inboard.reversed { -1.0 } else { 1.0 }));
+        let mut dofs = Vec::new();
+        for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
+            let (rotation, translation) = match (mobilizer.pitch(), coordinate) {
+                (Some(pitch), JointCoordinate::Angle) => {
+                    let advance = 1.0 / TAU * self.formula(pitch, Context::Parameters)?;
+                    (one, one * advance)
+                }
+                (Some(_), JointCoordinate::Displacement) => continue,
+                (None, JointCoordinate::Angle) => (one, zero),
+                (None, JointCoordinate::Displacement) => (zero, one),
+            };
+            if mobilizer.axis_of(coordinate).is_some() {
+                let index = self.add_joint_coordinate(inboard.joint, coordinate);
+                dofs.push(DegreeOfFreedom { index, rotation, translation });
+            }
+        }
+        Ok(dofs)
+    }
+
+    /// Position, velocity and acceleration of a child in the ground's axes.
+    fn set_motion(&mut self, index: usize, motion: RelativeMotion<'g>, relative: RelativeRotation<'g>) {
+        let parent = &self.bodies[motion.parent];
+        let mut body = self.bodies[index].clone();
+        let arm = parent.rotate(motion.outboard_in_parent);
+        let axis = parent.rotate(motion.axis_in_parent);
+        let (joint, joint_velocity) = (parent.position_of(arm), parent.velocity_of(arm));
+        let joint_acceleration = parent.acceleration_of(arm);
+        let omega = parent.angular_velocity();
+        match body.rotation_coordinates {
+            RotationCoordinates::Angle => {
+                body.position[ANGLE] = parent.position[ANGLE] + relative.angle;
+                body.velocity[ANGLE] = parent.velocity[ANGLE] + motion.angular[0];
+                body.acceleration[ANGLE] = parent.acceleration[ANGLE] + motion.angular[1];
+            }
+            RotationCoordinates::Euler => set_orientation(&mut body, parent, &motion, axis, relative.euler),
+        }
+
+        // The outboard frame moves with the parent and slides; the child's origin follows from it.
+        let slip = motion.sliding[0] * axis;
+        let joint_velocity = joint_velocity + slip;
+        let gain = motion.sliding[1] * axis;
+        let coriolis = 2.0 * omega.cross(slip);
+        let joint_acceleration = joint_acceleration + gain + coriolis;
+        let arm = body.rotate(-motion.outboard_in_child);
+        set_origin(&mut body, [joint, joint_velocity, joint_acceleration]);
+        let origin = [body.position_of(arm), body.velocity_of(arm), body.acceleration_of(arm)];
+        set_origin(&mut body, origin);
+        body.relative_motion = Some(Box::new(motion));
+        self.bodies[index] = body;
+    }
+}
+
+/// Euler parameters and their derivatives of a child in space; `axis` is the joint's in the ground's axes.
+fn set_orientation<'g>(
+    body: &mut Body<'g>,
+    parent: &Body<'g>,
+    motion: &RelativeMotion<'g>,
+    axis: Vector<'g>,
+    relative: Quaternion<'g>,
+) {
+    let p = parent.orientation() * relative;
+    let matrix = parent.matrix() * motion.rotation;
+    let omega_of_parent = parent.angular_velocity();
+    let own = motion.angular[0] * axis;
+    let omega = omega_of_parent + own;
+    let alpha_of_parent = parent.angular_acceleration();
+    let (gain, gyration) = (motion.angular[1] * axis, omega_of_parent.cross(own));
+    let alpha = alpha_of_parent + gain + gyration;
+    let rates = p.ground_rates();
+    let velocity = rates.transposed_times(0.5, omega);
+    let acceleration = rates.transposed_times(0.5, alpha);
+    // p̈ = ½ Eᵀ ω̇ − ¼ |ω|² p
+    let pull = 0.25 * omega.dot(omega);
+    for component in 0..4 {
+        body.position[EULER + component] = p[component];
+        body.velocity[EULER + component] = velocity[component];
+        body.acceleration[EULER + component] = acceleration[component] - pull * p[component];
+    }
+    body.attitude = Some(Attitude { matrix, omega, alpha });
+}
+
+/// Position, velocity and acceleration of a body's origin.
+fn set_origin<'g>(body: &mut Body<'g>, [position, velocity, acceleration]: [Vector<'g>; 3]) {
+    body.position[..3].copy_from_slice(&position.components());
+    body.velocity[..3].copy_from_slice(&velocity.components());
+    body.acceleration[..3].copy_from_slice(&acceleration.components());
+}

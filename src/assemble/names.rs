@@ -1,0 +1,47 @@
+//! What names in formulas stand for, and where that is known.
+
+use crate::grammar::{Symbol, TimeOrder};
+use crate::model::Description;
+use crate::multibody::{BuildError, Context};
+
+/// The names of a description.
+#[derive(Clone, Copy)]
+pub struct Names<'d>(&'d Description);
+
+impl<'d> Names<'d> {
+    /// All of them.
+    pub fn of(description: &'d Description) -> Self {
+        Self(description)
+    }
+
+    /// What a name stands for, if it stands for anything.
+    pub fn symbol(self, name: &str) -> Option<Symbol> {
+        self.0.symbol(name)
+    }
+
+    /// What a name stands for, where that is known in the context.
+    pub fn known(self, name: &str, context: Context) -> Result<Symbol, BuildError> {
+        let known = self.symbol(name).filter(|&symbol| least_context(symbol) <= context);
+        known.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: context })
+    }
+}
+
+/// The smallest context in which something is known.
+fn least_context(symbol: Symbol) -> Context {
+    match symbol {
+        Symbol::Parameter(_) => Context::Parameters,
+        Symbol::Time => Context::Time,
+        Symbol::Coordinate { order, .. }
+        | Symbol::Point { order, .. }
+        | Symbol::AngularMotion { order, .. }
+        | Symbol::JointCoordinate { order, .. } => match order {
+            TimeOrder::Position => Context::Positions,
+            TimeOrder::Velocity => Context::Motion,
+            TimeOrder::Acceleration => Context::Everything,
+        },
+        Symbol::RollPitchYaw { .. } => Context::Positions,
+        Symbol::Reaction { .. } => Context::Motion,
+        Symbol::Sensor { measure, .. } if measure.is_motion() => Context::Motion,
+        Symbol::Sensor { .. } | Symbol::Energy(_) => Context::Everything,
+    }
+}

@@ -1,0 +1,42 @@
+//! Reactions of joints.
+
+use symdiff::{Builder, Scalar};
+
+use crate::elements::joints::{Joint, Row};
+use crate::multibody::Vector;
+
+/// A joint's reaction on its second body, in the ground's axes.
+#[derive(Clone, Copy, Debug)]
+pub struct Reaction<'g> {
+    /// N
+    pub force: Vector<'g>,
+    /// |force|, N; for an `equation` its multiplier.
+    pub magnitude: Scalar<'g>,
+    /// About the second point, N m.
+    pub torque: Vector<'g>,
+}
+
+impl<'g> Reaction<'g> {
+    /// Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept, each with its multiplier.
+    ///
+    /// A dropped row (both sides prescribed) has no multiplier: how much the ground carries there is not determined by the
+    /// motion, and it counts as zero.
+    pub fn of(g: &'g Builder, joint: &dyn Joint, kept: &[(Row<'g>, Scalar<'g>)]) -> Self {
+        let (mut force, mut torque) = (Vector::zero(g), Vector::zero(g));
+        let mut along = Vec::new();
+        for &(row, lambda) in kept {
+            force += lambda * row.force;
+            torque += lambda * row.torque;
+            if !row.force.is_zero() {
+                along.push(lambda);
+            }
+        }
+        let magnitude = match (joint.equation(), kept, along.as_slice()) {
+            (Some(_), &[(_, lambda)], _) => lambda,
+            // One unit vector: no root is needed, which would have no derivative where the force vanishes.
+            (_, _, [lambda]) => lambda.abs(),
+            _ => force.norm(),
+        };
+        Self { force, magnitude, torque }
+    }
+}

@@ -1,0 +1,119 @@
+//! Formulas as expressions over t, q, v, w, λ and the parameters: what each symbol stands for.
+
+use symdiff::{Formula, Scalar};
+
+use super::mechanism::{Mechanism, dof};
+use super::system::OutputInfo;
+use crate::grammar::{EnergyKind, OnJoint, ReactionComponent, Sensor, Symbol, TimeOrder};
+use crate::model::{Description, Rotation};
+use crate::multibody::{BuildError, Context, Quaternion, Vector, rotation};
+
+impl<'g> Mechanism<'g, '_> {
+    /// A formula as an expression: the one place where names become expressions.
+    pub fn formula(&self, formula: &Formula, context: Context) -> Result<Scalar<'g>, BuildError> {
+        formula.build(self.g, |name| self.names.known(name, context).map(|symbol| self.observe(symbol)))
+    }
+
+    /// A formula of an effect, which may speak of what the effect measures itself.
+    pub fn own_formula(&self, formula: &Formula, own: &[(Sensor, Scalar<'g>)]) -> Result<Scalar<'g>, BuildError> {
+        formula.build(self.g, |name| match self.names.symbol(name) {
+            Some(Symbol::Sensor { effect, measure }) if !self.sensors.contains_key(&(effect, measure)) => {
+                let found = own.iter().find(|(known, _)| *known == measure).map(|&(_, value)| value);
+                found.ok_or_else(|| BuildError::Name { name: name.to_owned(), allowed: Context::Motion })
+            }
+            _ => self.names.known(name, Context::Motion).map(|symbol| self.observe(symbol)),
+        })
+    }
+
+    /// Three formulas as a vector.
+    pub fn vector(&self, formulas: &[Formula; 3], context: Context) -> Result<Vector<'g>, BuildError> {
+        let [x, y, z] = formulas;
+        Ok([self.formula(x, context)?, self.formula(y, context)?, self.formula(z, context)?].into())
+    }
+
+    /// Three formulas as a vector of length 1.
+    pub fn unit_vector(&self, formulas: &[Formula; 3], context: Context) -> Result<Vector<'g>, BuildError> {
+        self.vector(formulas, context).map(Vector::unit)
+    }
+
+    /// A rotation of parameters as Euler parameters of length 1.
+    pub fn rotation(&self, rotation: &Rotation) -> Result<Quaternion<'g>, BuildError> {
+        match rotation {
+            Rotation::RollPitchYaw(angles) => self.vector(angles, Context::Parameters).map(Quaternion::roll_pitch_yaw),
+            Rotation::AxisAngle(axis, angle) => {
+                let axis = self.unit_vector(axis, Context::Parameters)?;
+                Ok(Quaternion::about(axis, self.formula(angle, Context::Parameters)?))
+            }
+            Rotation::Quaternion(formulas) => {
+                let [p0, p1, p2, p3] = formulas.each_ref().map(|p| self.formula(p, Context::Parameters));
+                Ok(Quaternion::from([p0?, p1?, p2?, p3?]).normalised())
+            }
+        }
+    }
+
+    /// The expression that a name stands for. Joints whose reactions are asked for must have been built.
+    pub fn observe(&self, symbol: Symbol) -> Scalar<'g> {
+        let g = self.g;
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[index],
+            Symbol::Time => self.time,
+            Symbol::Coordinate { body, coordinate, order } => self.bodies[body].motion(order)[dof(coordinate)],
+            Symbol::AngularMotion { body, axis, order, in_body } => {
+                let body = &self.bodies[body];
+                let rate = match (order, in_body) {
+                    (TimeOrder::Acceleration, true) => body.angular_acceleration_in_body(),
+                    (TimeOrder::Acceleration, false) => body.angular_acceleration(),
+                    (_, true) => body.angular_velocity_in_body(),
+                    (_, false) => body.angular_velocity(),
+                };
+                rate[axis]
+            }
+            Symbol::RollPitchYaw { body, angle } => rotation::angles(&self.bodies[body].orientation().matrix())[angle],
+            Symbol::JointCoordinate { joint, coordinate, order } => {
+                self.joint_coordinate(OnJoint { joint, coordinate }, order)
+            }
+            Symbol::Point { body, point, coordinate, order } => {
+                let body = &self.bodies[body];
+                let arm = body.rotate(body.points[point]);
+                let vector = match order {
+                    TimeOrder::Position => body.position_of(arm),
+                    TimeOrder::Velocity => body.velocity_of(arm),
+                    TimeOrder::Acceleration => body.acceleration_of(arm),
+                };
+                vector[dof(coordinate)]
+            }
+            Symbol::Reaction { joint, component } => {
+                let reaction = &self.reactions[joint];
+                match component {
+                    ReactionComponent::Force => reaction.magnitude,
+                    ReactionComponent::ForceAlong(axis) => reaction.force[axis],
+                    ReactionComponent::Torque if self.is_spatial => reaction.torque.norm(),
+                    ReactionComponent::Torque => reaction.torque[2],
+                    ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
+                }
+            }
+            Symbol::Sensor { effect, measure } => {
+                self.sensors.get(&(effect, measure)).copied().unwrap_or_else(|| g.number(0.0))
+            }
+            Symbol::Energy(EnergyKind::Kinetic) => self.kinetic_energy(),
+            Symbol::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
+            Symbol::Energy(EnergyKind::Total) => self.kinetic_energy() + g.sum(self.potentials.iter().copied()),
+        }
+    }
+
+    /// All outputs of a description.
+    pub fn outputs(&self, description: &Description) -> Result<Vec<OutputInfo>, BuildError> {
+        let outputs = description.outputs.iter();
+        outputs
+            .map(|output| {
+                let expr = self.formula(&output.formula, Context::Everything)?.expr();
+                Ok(OutputInfo { name: output.name.clone(), unit: output.unit.clone(), expr })
+            })
+            .collect()
+    }
+
+    fn kinetic_energy(&self) -> Scalar<'g> {
+        let bodies = self.bodies.iter().map(|body| body.kinetic_energy());
+        self.g.sum(bodies.chain([self.kinetic_energy_of_beams]))
+    }
+}

@@ -1,0 +1,207 @@
+//! Dormand and Prince's method of order 8 with embedded errors of orders 5 and 3, DOP853: another method for truths.
+//! Coefficients are the published ones (Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I* (1993),
+//! section II.10 and its program).
+
+/// Times of the stages.
+#[rustfmt::skip]
+const TIMES: [f64; 12] = [
+    0.0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726, 1.0 / 3.0, 0.25, 4.0 / 13.0,
+    127.0 / 195.0, 0.6, 6.0 / 7.0, 1.0,
+];
+
+/// Weights of the stages before each stage.
+const WEIGHTS: [&[f64]; 12] = [
+    &[],
+    &[0.05260015195876773],
+    &[0.0197250569845379, 0.0591751709536137],
+    &[0.02958758547680685, 0.0, 0.08876275643042054],
+    &[0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792],
+    &[0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242],
+    &[0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125],
+    &[
+        0.03709200011850479,
+        0.0,
+        0.0,
+        0.17038392571223998,
+        0.10726203044637328,
+        -0.015319437748624402,
+        0.008273789163814023,
+    ],
+    &[
+        0.6241109587160757,
+        0.0,
+        0.0,
+        -3.3608926294469414,
+        -0.868219346841726,
+        27.59209969944671,
+        20.154067550477894,
+        -43.48988418106996,
+    ],
+    &[
+        0.47766253643826434,
+        0.0,
+        0.0,
+        -2.4881146199716677,
+        -0.590290826836843,
+        21.230051448181193,
+        15.279233632882423,
+        -33.28821096898486,
+        -0.020331201708508627,
+    ],
+    &[
+        -0.9371424300859873,
+        0.0,
+        0.0,
+        5.186372428844064,
+        1.0914373489967295,
+        -8.149787010746927,
+        -18.52006565999696,
+        22.739487099350505,
+        2.4936055526796523,
+        -3.0467644718982196,
+    ],
+    &[
+        2.273310147516538,
+        0.0,
+        0.0,
+        -10.53449546673725,
+        -2.0008720582248625,
+        -17.9589318631188,
+        27.94888452941996,
+        -2.8589982771350235,
+        -8.87285693353063,
+        12.360567175794303,
+        0.6433927460157636,
+    ],
+];
+
+/// Weights of the stages in the result, of order 8.
+const RESULT: [f64; 12] = [
+    0.054293734116568765,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    4.450312892752409,
+    1.8915178993145003,
+    -5.801203960010585,
+    0.3111643669578199,
+    -0.1521609496625161,
+    0.20136540080403034,
+    0.04471061572777259,
+];
+
+/// What the result is off from one of order 5.
+const FIFTH: [f64; 12] = [
+    0.01312004499419488,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    -1.2251564463762044,
+    -0.4957589496572502,
+    1.6643771824549864,
+    -0.35032884874997366,
+    0.3341791187130175,
+    0.08192320648511571,
+    -0.022355307863886294,
+];
+
+/// A result of order 3.
+const THIRD: [f64; 12] =
+    [0.2440944881889764, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.7338466882816118, 0.0, 0.0, 0.022058823529411766];
+
+/// y' = f(t, y): f writes the derivative into its last argument.
+pub trait Equation: Fn(f64, &[f64], &mut [f64]) {}
+impl<F: Fn(f64, &[f64], &mut [f64])> Equation for F {}
+
+/// The solution at ascending times, from the first of them on; none of them is stepped over. Each step's error is below
+/// `tolerance`, relative to y or 1, whichever is larger. Steps are no longer than `longest`.
+pub fn solve(f: impl Equation, start: &[f64], times: &[f64], tolerance: f64, longest: f64) -> Vec<Vec<f64>> {
+    let n = start.len();
+    let mut y = start.to_vec();
+    let mut stages = vec![vec![0.0; n]; 12];
+    let mut inner = vec![0.0; n];
+    let mut solution = vec![y.clone()];
+    let mut h = 1e-3 * (times.last().copied().unwrap_or(0.0) - times[0]).min(longest);
+    for ends in times.windows(2) {
+        let mut t = ends[0];
+        while t < ends[1] {
+            let is_last = t + h >= ends[1];
+            let step = if is_last { ends[1] - t } else { h };
+            for stage in 0..12 {
+                inner.copy_from_slice(&y);
+                for (k, weight) in stages.iter().zip(WEIGHTS[stage]).filter(|(_, weight)| **weight != 0.0) {
+                    inner.iter_mut().zip(k).for_each(|(inner, k)| *inner += step * weight * k);
+                }
+                f(t + TIMES[stage] * step, &inner, &mut stages[stage]);
+            }
+            let error = step * error(&stages, &y, tolerance);
+            if error <= 1.0 {
+                for (i, y) in y.iter_mut().enumerate() {
+                    *y += step * weighted(&stages, &RESULT, i);
+                }
+                t = if is_last { ends[1] } else { t + step };
+            }
+            // A step that was cut short by a row says nothing against longer ones.
+            if !is_last || error > 1.0 {
+                h = (step * (0.9 * error.powf(-0.125)).clamp(0.2, 5.0)).min(longest);
+            }
+            assert!(step > 1e-14 * ends[1].abs() || is_last, "the reference solution does not proceed at {t} s");
+        }
+        solution.push(y.clone());
+    }
+    solution
+}
+
+fn weighted(stages: &[Vec<f64>], weights: &[f64; 12], i: usize) -> f64 {
+    stages.iter().zip(weights).map(|(k, weight)| weight * k[i]).sum()
+}
+
+/// By the formula of the program: e₅² / √(e₅² + 0.01 e₃²), over the step and relative to the tolerance.
+fn error(stages: &[Vec<f64>], y: &[f64], tolerance: f64) -> f64 {
+    let (mut fifth, mut third) = (0.0, 0.0);
+    for (i, y) in y.iter().enumerate() {
+        let scale = tolerance * y.abs().max(1.0);
+        let of_third = weighted(stages, &RESULT, i) - weighted(stages, &THIRD, i);
+        fifth += (weighted(stages, &FIFTH, i) / scale).powi(2);
+        third += (of_third / scale).powi(2);
+    }
+    let both = fifth + 0.01 * third;
+    if both > 0.0 { fifth / (both * y.len() as f64).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solve;
+
+    /// A fixed step: with no tolerance, `longest` decides.
+    fn error_at(steps: usize) -> f64 {
+        // x'' = −x + cos(2t), from rest at x = 1: x = (4 cos t − cos 2t)/3.
+        let f = |t: f64, y: &[f64], d: &mut [f64]| (d[0], d[1]) = (y[1], -y[0] + (2.0 * t).cos());
+        let times: Vec<f64> = (0..=steps).map(|i| 3.0 * i as f64 / steps as f64).collect();
+        let solution = solve(f, &[1.0, 0.0], &times, 1e9, 3.0 / steps as f64);
+        (solution[steps][0] - (4.0 * 3.0_f64.cos() - 6.0_f64.cos()) / 3.0).abs()
+    }
+
+    #[test]
+    fn converges_with_order_eight() {
+        let [coarse, fine] = [6, 12].map(error_at);
+        let order = (coarse / fine).log2();
+        assert!((7.5..9.5).contains(&order), "{order}: {coarse:e}, {fine:e}");
+    }
+
+    /// Kepler's ellipse of eccentricity 0.6: after a period it is where it was.
+    #[test]
+    fn closes_an_ellipse() {
+        let f = |_: f64, y: &[f64], d: &mut [f64]| {
+            let cube = y[0].hypot(y[1]).powi(3);
+            d.copy_from_slice(&[y[2], y[3], -y[0] / cube, -y[1] / cube]);
+        };
+        let start = [0.4, 0.0, 0.0, 2.0];
+        let solution = solve(f, &start, &[0.0, std::f64::consts::TAU], 1e-13, 1.0);
+        for (end, start) in solution[1].iter().zip(start) {
+            assert!((end - start).abs() < 1e-10, "{end} {start}");
+        }
+    }
+}

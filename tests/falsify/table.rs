@@ -1,0 +1,128 @@
+//! What many draws came to: a line for each family and method.
+
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+
+use crate::verdict::{Failure, Verdict};
+
+/// Bands of a family by a method.
+#[derive(Default)]
+struct Line {
+    bands: usize,
+    missed: usize,
+    rows: usize,
+    flagged: usize,
+    misses: usize,
+    /// Of every row that is not flagged, stated over true error.
+    rows_excess: Vec<f64>,
+    /// Of every band the mean stated over the mean true error.
+    bands_excess: Vec<f64>,
+    seconds: f64,
+}
+
+impl Line {
+    fn add(&mut self, verdict: &Verdict) {
+        self.bands += 1;
+        self.missed += usize::from(verdict.is_missed());
+        self.rows += verdict.rows;
+        self.flagged += verdict.flagged;
+        self.misses += verdict.misses.len();
+        self.rows_excess.extend(&verdict.ratios);
+        if verdict.off > 0.0 && verdict.stated.is_finite() && !verdict.ratios.is_empty() {
+            self.bands_excess.push(verdict.stated / verdict.off);
+        }
+        self.seconds += verdict.seconds;
+    }
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Bands, and draws that have none.
+#[derive(Default)]
+pub struct Table {
+    lines: BTreeMap<(&'static str, &'static str), Line>,
+    /// Of every family: draws, refused, panicked, out of time, seconds, the longest.
+    draws: BTreeMap<&'static str, [f64; 6]>,
+}
+
+impl Table {
+    pub fn add(&mut self, family: &'static str, verdicts: &[Verdict], seconds: f64) {
+        for verdict in verdicts {
+            self.lines.entry((family, verdict.method.name())).or_default().add(verdict);
+        }
+        let draws = self.draws.entry(family).or_default();
+        (draws[0], draws[4]) = (draws[0] + 1.0, draws[4] + seconds);
+        draws[5] = draws[5].max(seconds);
+    }
+
+    pub fn add_failure(&mut self, family: &'static str, failure: &Failure) {
+        let kind = match failure {
+            Failure::Refused(_) => 1,
+            Failure::Panicked => 2,
+            Failure::OutOfTime => 3,
+        };
+        let draws = self.draws.entry(family).or_default();
+        (draws[0], draws[kind]) = (draws[0] + 1.0, draws[kind] + 1.0);
+    }
+
+    /// Bands of a family that are missed.
+    pub fn missed(&self, family: &str) -> usize {
+        self.lines.iter().filter(|((of, _), _)| *of == family).map(|(_, line)| line.missed).sum()
+    }
+
+    /// Draws without bands.
+    pub fn failures(&self) -> usize {
+        self.draws.values().map(|draws| (draws[1] + draws[2] + draws[3]) as usize).sum()
+    }
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        writeln!(
+            f,
+            "| family | method | bands | missed | rows covered | flagged | excess, median row | median band | mean band |"
+        )?;
+        writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
+        let mut total = Line::default();
+        for ((family, method), line) in &self.lines {
+            write_line(f, family, method, line)?;
+            total.bands += line.bands;
+            total.missed += line.missed;
+            total.rows += line.rows;
+            total.flagged += line.flagged;
+            total.misses += line.misses;
+            total.rows_excess.extend(&line.rows_excess);
+            total.bands_excess.extend(&line.bands_excess);
+        }
+        write_line(f, "all", "", &total)?;
+        writeln!(f, "\n| family | draws | refused | panicked | out of time | s a draw | at most |")?;
+        writeln!(f, "|---|--:|--:|--:|--:|--:|--:|")?;
+        for (family, [draws, refused, panicked, late, seconds, longest]) in &self.draws {
+            writeln!(
+                f,
+                "| {family} | {draws} | {refused} | {panicked} | {late} | {:.2} | {longest:.1} |",
+                seconds / draws
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn write_line(f: &mut Formatter, family: &str, method: &str, line: &Line) -> fmt::Result {
+    let Line { bands, missed, rows, flagged, misses, rows_excess, bands_excess, .. } = line;
+    let open = rows - flagged;
+    let covered = 100.0 * (1.0 - *misses as f64 / open.max(1) as f64);
+    let share = 100.0 * *flagged as f64 / (*rows).max(1) as f64;
+    let mean = bands_excess.iter().map(|excess| excess.ln()).sum::<f64>() / bands_excess.len() as f64;
+    writeln!(
+        f,
+        "| {family} | {method} | {bands} | {missed} | {covered:.2} % | {share:.1} % | {:.1} | {:.1} | {:.1} |",
+        median(rows_excess),
+        median(bands_excess),
+        mean.exp()
+    )
+}

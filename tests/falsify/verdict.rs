@@ -1,0 +1,164 @@
+//! A draw is run, and every band compared with the truth.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use mbint::{Band, Method, Model, StudyResult};
+
+use crate::draw::Draw;
+use crate::truth::{self, Range};
+
+/// Longer than any draw should take.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Rounding, relative to the size of the coordinates and to the output's own.
+const ROUNDING: f64 = 1e-11;
+
+/// Rows that are not flagged may be missed in this share of a band.
+const MISSES: f64 = 0.01;
+
+/// What came of a draw.
+pub enum Outcome {
+    /// Every band, and the seconds of the run.
+    Judged(Vec<Verdict>, f64),
+    Failed(Failure),
+}
+
+/// Why a draw has no bands.
+#[derive(thiserror::Error, Debug)]
+pub enum Failure {
+    /// The model was not accepted, or could not be run.
+    #[error("refused: {0}")]
+    Refused(String),
+    #[error("panicked")]
+    Panicked,
+    #[error("took too long")]
+    OutOfTime,
+}
+
+/// A row in which an end is farther off than stated.
+#[derive(Clone, Copy, Debug)]
+pub struct Miss {
+    pub row: usize,
+    pub time: f64,
+    pub truth: Range,
+    pub found: Range,
+    pub stated: f64,
+    pub off: f64,
+    /// Whether the band leaves out what does occur; otherwise it has what does not.
+    pub inside: bool,
+}
+
+/// A band against the truth.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    pub output: usize,
+    pub method: Method,
+    pub rows: usize,
+    pub flagged: usize,
+    /// Rows without a flag.
+    pub misses: Vec<Miss>,
+    /// Over the rows without a flag: the sum of stated and of true errors, and each row's ratio.
+    pub stated: f64,
+    pub off: f64,
+    pub ratios: Vec<f64>,
+    /// Largest true width.
+    pub width: f64,
+    pub seconds: f64,
+}
+
+impl Verdict {
+    pub fn is_missed(&self) -> bool {
+        self.misses.len() as f64 > MISSES * (self.rows - self.flagged) as f64
+    }
+
+    pub fn worst(&self) -> Option<&Miss> {
+        self.misses.iter().max_by(|a, b| (a.off / a.stated).total_cmp(&(b.off / b.stated)))
+    }
+}
+
+/// Runs a draw and compares. A band that seems to be missed is compared with the truth of a denser search.
+pub fn examine(draw: &Draw) -> Outcome {
+    let begun = Instant::now();
+    let result = match catch_unwind(AssertUnwindSafe(|| run(draw, begun))) {
+        Err(_) => return Outcome::Failed(Failure::Panicked),
+        Ok(Err(error)) => return Outcome::Failed(Failure::Refused(error.to_string())),
+        Ok(Ok(result)) => result,
+    };
+    let seconds = begun.elapsed().as_secs_f64();
+    if begun.elapsed() > PATIENCE {
+        return Outcome::Failed(Failure::OutOfTime);
+    }
+    let truth = truth::ranges(draw, result.times(), 0);
+    let none = vec![vec![0.0; result.times().len()]; draw.outputs.len()];
+    let mut verdicts = judge(draw, &result, &truth, &none);
+    if verdicts.iter().any(Verdict::is_missed) {
+        let dense = truth::ranges(draw, result.times(), 1);
+        let apart = |a: &Range, b: &Range| (a.lower - b.lower).abs().max((a.upper - b.upper).abs());
+        let unsure: Vec<Vec<f64>> =
+            truth.iter().zip(&dense).map(|(a, b)| a.iter().zip(b).map(|(a, b)| apart(a, b)).collect()).collect();
+        verdicts = judge(draw, &result, &dense, &unsure);
+    }
+    Outcome::Judged(verdicts, seconds)
+}
+
+fn run(draw: &Draw, begun: Instant) -> Result<StudyResult, mbint::Error> {
+    let model = Model::from_yaml_str("draw", &draw.yaml())?;
+    let late = move || begun.elapsed() > PATIENCE;
+    model.study().threads(1).interrupted(&late).run()
+}
+
+fn judge(draw: &Draw, result: &StudyResult, truth: &[Vec<Range>], unsure: &[Vec<f64>]) -> Vec<Verdict> {
+    let mut verdicts = Vec::new();
+    for (place, output) in result.outputs().enumerate() {
+        let inputs = draw.outputs[place].inputs.iter();
+        let coordinates: f64 = inputs.map(|&(term, _)| draw.terms[term].size).sum();
+        for band in output.bands() {
+            let seconds = result.summary().methods.iter().find(|taken| taken.method == band.method().name());
+            let seconds = seconds.and_then(|taken| taken.seconds).unwrap_or(0.0);
+            let size = truth[place].iter().fold(coordinates, |size, range| size.max(range.upper.abs()));
+            let slack: Vec<f64> = unsure[place].iter().map(|unsure| unsure + ROUNDING * size).collect();
+            let ends = result.failure().is_some();
+            let verdict = compare(band, result.times(), &truth[place], &slack, ends);
+            verdicts.push(Verdict { output: place, seconds, ..verdict });
+        }
+    }
+    verdicts
+}
+
+/// A band row by row. Where a run says that it ended early, rows without a value are as good as flagged.
+fn compare(band: Band, times: &[f64], truth: &[Range], slack: &[f64], ended: bool) -> Verdict {
+    let mut verdict = Verdict {
+        output: 0,
+        method: band.method(),
+        rows: times.len(),
+        flagged: 0,
+        misses: Vec::new(),
+        stated: 0.0,
+        off: 0.0,
+        ratios: Vec::new(),
+        width: truth.iter().fold(0.0, |width, range| width.max(range.upper - range.lower)),
+        seconds: 0.0,
+    };
+    for (row, &truth) in truth.iter().enumerate() {
+        let found = Range { lower: band.lower()[row], upper: band.upper()[row] };
+        if !band.is_reliable(row) || (ended && found.lower.is_nan()) {
+            verdict.flagged += 1;
+            continue;
+        }
+        let stated = band.errors()[row];
+        let [below, above] = [found.lower - truth.lower, truth.upper - found.upper];
+        let off = below.abs().max(above.abs());
+        let inside = below.max(above) >= off;
+        let is_covered = off <= stated + slack[row];
+        if !is_covered {
+            verdict.misses.push(Miss { row, time: times[row], truth, found, stated, off, inside });
+        }
+        verdict.stated += stated;
+        verdict.off += off;
+        if off > slack[row] {
+            verdict.ratios.push(stated / off);
+        }
+    }
+    verdict
+}
