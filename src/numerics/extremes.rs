@@ -17,7 +17,7 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 /// An end is found when a step changes less than this share of the range's width.
 const SETTLED: f64 = 1e-10;
 /// Most steps of the search for an end.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 16;
 /// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside it tell: fewer
 /// than eight points to a wave.
 const COARSE: f64 = 0.03;
@@ -268,8 +268,9 @@ impl End {
         let gain = self.sign * (values[best] - self.best);
         // NaN beside the lattice's points changes nothing.
         if gain > 0.0 {
+            // Once may be by chance. (At first nothing is known, and NaN is not settled.)
+            self.found = gain.max(self.gap) <= SETTLED * self.width && !self.gap.is_nan();
             self.gap = gain;
-            self.found = gain <= SETTLED * self.width;
             self.best = values[best];
             self.best_xi.clone_from(&points[best]);
             self.xi = self.around.vertex(&values[..values.len() - 1], self.sign);

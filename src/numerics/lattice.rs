@@ -130,7 +130,7 @@ mod tests {
         let residuals = lattice.residuals(&values);
         assert!(residuals[0] < 0.03 && residuals[0] > 1e-3 && residuals[1] < 1e-3, "{residuals:?}");
         let peaks: Vec<Vec<f64>> = lattice.peaks(&values, 1.0).iter().map(|peak| lattice.point(peak.0)).collect();
-        assert_eq!(peaks, [[0.0, 1.0]]);
+        assert_eq!(peaks, [[-1.0, 1.0], [0.0, 1.0], [1.0, 1.0]]);
         assert_eq!(lattice.peaks(&values, -1.0).len(), 2);
     }
 }

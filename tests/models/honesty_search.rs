@@ -5,8 +5,8 @@
 
 use std::f64::consts::PI;
 
-use mbint::model::Description;
-use mbint::results::{Bounds, Method};
+use mbint::inner::model::Description;
+use mbint::inner::results::{Bounds, Method};
 
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, output, read, run};
@@ -83,7 +83,7 @@ fn sum(parts: &[(f64, f64, f64)], t: f64) -> (f64, f64) {
 #[test]
 fn sums_of_independent_oscillators_are_covered() {
     let parts = [(0.12, 1.1, 17.0), (0.05, 2.0, 14.0), (0.08, 0.7, 18.0), (0.03, 1.5, 12.0)];
-    let settings = "simulation: { duration: 30, step: 0.02, output_step: 0.5 }\nbounds: { chebyshev: { order: 6 } }\n";
+    let settings = "simulation: { duration: 30, step: 0.01, output_step: 0.5 }\nbounds: { chebyshev: { order: 6 } }\n";
     let description = oscillators(&parts, "{ x: b0.x + b1.x + b2.x + b3.x }", 0.0, settings);
     assert!(assert_honest(&run(&description), "x", Method::Chebyshev, |t| sum(&parts, t)) > 50);
     let (parts, outputs) = (&parts[..3], "{ x: b0.x + b1.x + b2.x, y: 3*b0.x - b2.x }");
