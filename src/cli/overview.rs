@@ -189,6 +189,7 @@ mod tests {
             rank_revealing_solves,
             order: None,
             boxes: None,
+            expanded_outputs: Vec::new(),
             seconds,
         };
         let summary = Summary {

@@ -178,13 +178,17 @@ impl Ensemble for Motions<'_> {
     fn rounding(&self, output: usize) -> f64 {
         let length = self.simulator.system.length;
         let duration = self.schedule.output_step * self.schedule.rows as f64;
-        // What has no size of its own, as a force, has no rounding that could be told.
+        // Accelerations are second differences over steps. What has no size of its own, as a force, has no rounding that could be
+        // told.
+        let step = self.schedule.first_step();
         AT_REST
             * match self.simulator.system.outputs[output].unit.as_str() {
                 "rad" => 1.0,
                 "m" => length,
                 "rad/s" => 1.0 / duration,
                 "m/s" => length / duration,
+                "rad/s^2" => 1.0 / (duration * step),
+                "m/s^2" => length / (duration * step),
                 _ => 0.0,
             }
     }

@@ -98,7 +98,8 @@ impl<'a> Study<'a> {
                 let halved = schedule.refined(2);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let [direct, halved] = [&schedule, &halved].map(|schedule| self.motions(schedule, None, &progress));
-                let validation = Validation::run(&direct, &halved, Observed::Outputs).map_err(simulation_error)?;
+                let validation = Validation::run(&direct, &halved, Observed::Outputs, self.request.degree())
+                    .map_err(simulation_error)?;
                 let Validation { points, simulated, .. } = validation;
                 Ok(Tried {
                     reached: simulated.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
@@ -222,7 +223,8 @@ impl<'a> Study<'a> {
             let halved = schedule.refined(2);
             let direct = self.motions(&schedule, tolerance, progress);
             let halved = self.motions(&halved, None, progress);
-            let validation = Validation::run(&direct, &halved, observed).map_err(simulation_error)?;
+            let validation =
+                Validation::run(&direct, &halved, observed, self.request.degree()).map_err(simulation_error)?;
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
             let summary = validation_summary(&schedule, &validation, stop, begun);
             let enough = match self.request.tolerance {
@@ -306,7 +308,8 @@ impl<'a> Study<'a> {
         let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
         let methods: usize = self.request.methods().iter().map(work).sum();
         let k = self.domain.dimension();
-        let held_out = if self.request.is_empty() { 0 } else { probes(k).len() + validation(k).len() };
+        let held_out =
+            if self.request.is_empty() { 0 } else { probes(k).len() + validation(k, self.request.degree()).len() };
         (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }
@@ -334,6 +337,7 @@ pub(super) fn timed<T>(
         rank_revealing_solves: simulated.effort.rank_revealing,
         order: result.order.clone(),
         boxes: result.boxes,
+        expanded_outputs: Vec::new(),
         seconds: Some(begun.elapsed().as_secs_f64()),
     };
     Ok((Outcome { result, summary }, other))
@@ -354,6 +358,7 @@ pub(super) fn validation_summary(
         rank_revealing_solves: validation.effort.rank_revealing,
         order: None,
         boxes: None,
+        expanded_outputs: Vec::new(),
         seconds: Some(begun.elapsed().as_secs_f64()),
     }
 }

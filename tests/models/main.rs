@@ -22,6 +22,7 @@ mod far;
 mod formulations;
 mod hard_cases;
 mod honesty;
+mod honesty_search;
 mod invariants;
 mod linkages;
 mod pruning;
