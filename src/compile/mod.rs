@@ -5,6 +5,7 @@
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
 //! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start; `equation_tapes`: the equations alone;
+//! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 
 mod elimination;
@@ -17,6 +18,7 @@ mod scheme;
 mod sparse_lu;
 mod start;
 mod step;
+mod switches;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use layout::Layout;
@@ -25,3 +27,4 @@ pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
 pub use step::compile;
+pub use switches::{SwitchProgram, compile_switches};

@@ -8,6 +8,8 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
+//!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
 //! A massless coordinate has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
@@ -56,6 +58,7 @@ const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
 const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
+const PROJECTION: usize = 7;
 
 impl StartProgram {
     /// Number of registers of a tile.
@@ -98,6 +101,12 @@ impl StartProgram {
         &self.lowered.kernels[ACCELERATION]
     }
 
+    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
+    /// consistent.
+    pub fn projection(&self) -> &Tape {
+        &self.lowered.kernels[PROJECTION]
+    }
+
     /// Outputs of the state.
     pub fn observe(&self) -> &Tape {
         &self.lowered.kernels[OBSERVE]
@@ -124,7 +133,7 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
     let mut graph = system.graph.clone();
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations)?;
+    let [position, velocity, acceleration, projection] = builder.corrections(&equations)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -145,6 +154,7 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
         with(&acceleration, &[]),
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
+        with(&projection[..n], &[]),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
@@ -243,8 +253,8 @@ struct Builder<'s> {
 }
 
 impl Builder<'_> {
-    /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors> {
+    /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
+    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 4], NoFactors> {
         let system = self.system;
         let n = system.q.len();
         let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
@@ -265,7 +275,10 @@ impl Builder<'_> {
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate);
         let free = vec![false; n];
         let acceleration = self.correction(&mass, &by_multiplier, jacobian, &free, &motion, rate_of_rate)?;
-        Ok([position, velocity, acceleration])
+        let rate = &closure_rate[..system.lambda.len()];
+        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate);
+        let projection = self.correction(&mass, &none, jacobian, &free, &motion, rate)?;
+        Ok([position, velocity, acceleration, projection])
     }
 
     /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have

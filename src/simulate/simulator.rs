@@ -1,12 +1,16 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
+use std::sync::OnceLock;
+
 use symdiff::{Tile, WIDTHS};
 
 use super::diagnostics::undetermined_outputs;
 use super::error::{SimulationError, assembly_error, equation_names, no_factors};
 use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
 use crate::assemble::System;
-use crate::compile::{Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
+use crate::compile::{
+    Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_start, compile_switches,
+};
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
@@ -29,6 +33,8 @@ pub struct Simulator {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<usize>,
+    /// Compiled where steps are controlled.
+    switches: OnceLock<Option<SwitchProgram>>,
 }
 
 impl Simulator {
@@ -72,7 +78,7 @@ impl Simulator {
         let samples = pivot_samples(&system, &layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples).map_err(singular)?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined })
+        Ok(Self { system, start, program, nominal, mobility, undetermined, switches: OnceLock::new() })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -146,6 +152,16 @@ impl Simulator {
     /// those of the steps.
     pub(super) fn solves_row_accelerations(&self) -> bool {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
+    }
+
+    /// Whether rows of output make their velocities consistent where steps are controlled.
+    pub(super) fn projects_row_velocities(&self) -> bool {
+        !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// Where the equations switch, if they do.
+    pub(super) fn switches(&self) -> Option<&SwitchProgram> {
+        self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
     }
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.

@@ -7,6 +7,7 @@
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to.
 
 mod conclude;
+mod controlled;
 mod cost;
 mod decisions;
 mod deterministic;

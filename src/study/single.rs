@@ -8,15 +8,9 @@ use crate::methods::{
     can_compose,
 };
 use crate::model::{Description, Stepping};
-use crate::numerics::{ParameterBox, corners, probes, validation};
+use crate::numerics::{ParameterBox, probes, validation};
 use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{Schedule, SimulationError, Simulator, SingularPass, ToleranceSchedule, schedule_for_tolerance};
-
-/// Corners of the box that join the nominal sample as controlling samples of the step size.
-const CONTROLLING_CORNERS: usize = 16;
-
-/// How often samples that turn out to need smaller steps may be added to the controlling samples.
-const CONTROL_ROUNDS: usize = 8;
+use crate::simulate::{Controller, Schedule, SimulationError, Simulator, SingularPass, schedule_for_tolerance};
 
 /// A compiled subsystem, and what is asked of it.
 pub(super) struct Study<'a> {
@@ -68,12 +62,12 @@ impl Results {
         stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
     }
 
-    /// The sample with the largest error ratio, where that is more than 1.
-    fn beyond_tolerance(&self) -> Option<(Vec<f64>, f64)> {
+    /// The largest error ratio of a sample, where that is more than 1.
+    pub fn beyond_tolerance(&self) -> Option<f64> {
         let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
         let ratios =
             self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
-        ratios.filter(|(_, ratio)| *ratio > 1.0).max_by(|a, b| a.1.total_cmp(&b.1)).cloned()
+        ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
     }
 }
 
@@ -144,7 +138,7 @@ impl<'a> Study<'a> {
     pub(super) fn motions<'s>(
         &'s self,
         schedule: &'s Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
@@ -196,44 +190,13 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The schedule of the controlling samples is tried on all samples; one that needs smaller steps becomes a controlling sample,
-    /// and all run again.
-    fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
-        let simulation = &self.description.simulation;
-        let mut samples = self.controlling_samples();
-        let mut round = 1;
-        loop {
-            let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let ToleranceSchedule { schedule, failure, .. } =
-                schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
-            let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
-            let results = self.methods(&schedule, Some(tolerance))?;
-            match results.beyond_tolerance() {
-                None => return Ok(self.conclude(results, failure)),
-                Some((_, ratio)) if round == CONTROL_ROUNDS => {
-                    let note = format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance");
-                    return Ok(self.conclude(results, Some(note)));
-                }
-                Some((sample, _)) => samples.push(sample),
-            }
-            round += 1;
-        }
-    }
-
-    /// The nominal sample and corners of the box.
-    fn controlling_samples(&self) -> Vec<Vec<f64>> {
-        let mut samples = vec![self.domain.nominal.clone()];
-        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.point(xi)) {
-            if !samples.contains(&corner) {
-                samples.push(corner);
-            }
-        }
-        samples
-    }
-
     /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
     /// validation samples decide how the schedule's steps are divided or joined.
-    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+    pub(super) fn methods(
+        &self,
+        schedule: &Schedule,
+        mut tolerance: Option<Controller>,
+    ) -> Result<Results, SimulationError> {
         if self.domain.dimension() == 0 {
             return self.deterministic(schedule, tolerance);
         }
@@ -241,7 +204,8 @@ impl<'a> Study<'a> {
         let (schedule, validation) = if self.request.is_empty() {
             (schedule.clone(), None)
         } else {
-            let (schedule, validation) = self.balance(schedule, tolerance, &progress)?;
+            let (schedule, divided, validation) = self.balance(schedule, tolerance, &progress)?;
+            tolerance = divided;
             (schedule, Some(validation))
         };
         let motions = self.motions(&schedule, tolerance, &progress);
@@ -251,7 +215,8 @@ impl<'a> Study<'a> {
             methods = self.bound(&motions, &schedule, validation, |_| true)?;
             if self.certify_time && !(self.interrupted)() {
                 let schedule = schedule.refined(2);
-                let motions = self.motions(&schedule, None, &progress);
+                let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
+                let motions = self.motions(&schedule, halved_tolerance, &progress);
                 halved = self.bound(&motions, &schedule, validation, |method| method.about().is_sampled)?;
             }
         }
@@ -263,9 +228,9 @@ impl<'a> Study<'a> {
     fn balance(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &Progress,
-    ) -> Result<(Schedule, (Validation, MethodSummary)), SimulationError> {
+    ) -> Result<(Schedule, Option<Controller>, (Validation, MethodSummary)), SimulationError> {
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
@@ -275,8 +240,9 @@ impl<'a> Study<'a> {
             let begun = std::time::Instant::now();
             let schedule = steps.schedule();
             let halved = schedule.refined(2);
+            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
             let direct = self.motions(&schedule, tolerance, progress);
-            let halved = self.motions(&halved, None, progress);
+            let halved = self.motions(&halved, tolerance.map(|tolerance| tolerance.for_parts(2)), progress);
             let validation = Validation::run(&direct, &halved, observed).map_err(simulation_error)?;
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
             let summary = validation_summary(&schedule, &validation, stop, begun);
@@ -286,7 +252,7 @@ impl<'a> Study<'a> {
             };
             drop((direct, halved));
             if enough {
-                return Ok((schedule, (validation, summary)));
+                return Ok((schedule, tolerance, (validation, summary)));
             }
         }
     }
