@@ -160,7 +160,7 @@ mod tests {
         let explanation = Explanation {
             model: "slider_crank".into(),
             space: "planar: nothing leaves the plane".into(),
-            formulation: "absolute coordinates: no joint can carry a body".into(),
+            formulation: "absolute coordinates: no joint can give a body its position".into(),
             coordinates: names("crank.x crank.y crank.angle rod.x rod.y rod.angle slider.x"),
             constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),
             degrees_of_freedom: 1,
@@ -204,7 +204,7 @@ mod tests {
         insta::assert_snapshot!(plain, @r"
         slider_crank
         planar: nothing leaves the plane
-        absolute coordinates: no joint can carry a body
+        absolute coordinates: no joint can give a body its position
 
         7 coordinates
           crank.x, crank.y, crank.angle, rod.x, rod.y, rod.angle, slider.x
