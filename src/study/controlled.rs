@@ -19,7 +19,7 @@ const AIM: f64 = 0.6;
 const ROUNDS: usize = 4;
 
 /// Most that shorter steps may grow in number: so many times, and up to so many (times coordinates) in any case.
-const MOST_GROWTH: f64 = 30.0;
+const MOST_GROWTH: f64 = 6.0;
 const FEW_STEPS: f64 = 400_000.0;
 
 /// An output that moves less than this, relative to the largest value of its unit, is constant.

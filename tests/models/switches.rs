@@ -9,13 +9,13 @@ use crate::common::{Vary, band, curve, largest, nominal, output, read, run};
 
 /// A ball that falls on a stiff ground.
 const BALL: &str = "
-parameters: { m: 2 kg, K: 3e8 N/m, h0: { value: 0.7, unit: m, tolerance: 1% } }
+parameters: { m: 2 kg, g: 9.81 m/s^2, K: 3e8 N/m, h0: { value: 0.7, unit: m, tolerance: 1% } }
 bodies: { ball: { mass: m, coordinates: [y] } }
 effects:
   weight: { gravity: { acceleration: [0, -9.81] } }
   ground: { force: { on: ball, value: [0, \"K*max(-ball.y, 0)\"] } }
 initial: { ball.y: h0, ball.vy: 0 }
-outputs: { y: ball.y, energy: \"m*ball.vy^2/2 + m*9.81*ball.y + K*max(-ball.y, 0)^2/2\" }
+outputs: { y: ball.y, energy: \"m*ball.vy^2/2 + m*g*ball.y + K*max(-ball.y, 0)^2/2\" }
 simulation: { duration: 1.5, tolerance: 1e-6, output_step: 0.03 }
 bounds: { scan: { points: 17 } }
 ";

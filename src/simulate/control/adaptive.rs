@@ -93,10 +93,10 @@ impl<'s> Adaptive<'s> {
         let next = step * if accepted { factor } else { factor.min(0.9) };
         let missed =
             crossings.iter().zip(&ratios).filter(|(_, ratio)| **ratio > 1.0).filter_map(|(crossing, _)| *crossing);
-        let first = missed.map(|crossing| crossing.share).reduce(f64::min);
+        let first = missed.map(|crossing| crossing.share).reduce(f64::min).filter(|_| step > self.controller.event());
         let crosses = crossings.iter().any(Option::is_some);
         self.h = match first {
-            Some(share) => (step * share * (1.0 + BEYOND)).max(4.0 * self.controller.least()).min(0.9 * step),
+            Some(share) => (step * share * (1.0 + BEYOND)).max(self.controller.event()).min(0.9 * step),
             // A step cut short at a goal is no reason against the longer one.
             None if accepted && step < self.h && !crosses => self.h.max(next),
             None => next,
@@ -124,7 +124,7 @@ impl<'s> Adaptive<'s> {
             let ratio = self.controller.error_ratio(size, step);
             // A switch right after another is no new event: equations may switch in every step, as with dry friction at rest.
             let event = crossings[lane].filter(|_| !self.switched[lane]);
-            let early = event.is_some_and(|crossing| !crossing.is_at_the_end());
+            let early = event.is_some_and(|crossing| !crossing.is_at_the_end()) && step > self.controller.event();
             match () {
                 () if !self.stepper.alive()[lane] => 0.0,
                 () if converged[lane] && !ratio.is_nan() && !early => ratio,

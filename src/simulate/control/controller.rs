@@ -18,8 +18,16 @@ impl Controller {
     /// Smallest step, as a share of the duration; below it the control gives up.
     pub const SMALLEST: f64 = 1e-13;
 
+    /// See [`event`](Self::event), as a share of the duration.
+    const EVENT: f64 = 1e-7;
+
     /// Local errors below this are round-off and are not controlled: positions carry an error of ε, and so does δ.
     const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+    /// A switch is located to this, s: shorter steps are left to the errors that they make.
+    pub fn event(self) -> f64 {
+        Self::EVENT * self.duration
+    }
 
     /// Smallest step, s.
     pub fn least(self) -> f64 {
