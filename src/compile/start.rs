@@ -8,6 +8,8 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
+//!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
 //! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it cannot vanish (the
@@ -63,6 +65,7 @@ const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
 const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
+const PROJECTION: usize = 7;
 
 impl StartProgram {
     /// Number of registers of a tile.
@@ -103,6 +106,12 @@ impl StartProgram {
     /// Correction of accelerations and multipliers.
     pub fn acceleration(&self) -> &Tape {
         &self.lowered.kernels[ACCELERATION]
+    }
+
+    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
+    /// consistent.
+    pub fn projection(&self) -> &Tape {
+        &self.lowered.kernels[PROJECTION]
     }
 
     /// Outputs of the state.
@@ -150,7 +159,7 @@ pub fn compile_nearest_start(
     };
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations, open)?;
+    let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -171,6 +180,7 @@ pub fn compile_nearest_start(
         with(&acceleration, &[]),
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
+        with(&projection[..n], &[]),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
@@ -209,12 +219,12 @@ struct Builder<'s> {
 }
 
 impl Builder<'_> {
-    /// The corrections of positions, of velocities, and of accelerations with multipliers.
+    /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
     fn corrections(
         &mut self,
         equations: &Equations,
         open: OpenStart,
-    ) -> Result<[Vec<Expr>; 3], NoFactors<Equation>> {
+    ) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
         let smallest = LeastSquares::smallest_change(system, &mut self.graph);
@@ -249,10 +259,16 @@ impl Builder<'_> {
         let pairs = self.pairs(jacobian);
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
+        let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
         let acceleration = self
             .correction(&mass, &by_multiplier, jacobian, (&free, &pairs), &motion, rate_of_rate)
-            .map_err(|none| none.named(|row| Equation::of_row(row, n)))?;
-        Ok([position, velocity, acceleration])
+            .map_err(of_motion)?;
+        let rate = &closure_rate[..system.lambda.len()];
+        let zero = vec![self.graph.constant(0.0); n];
+        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
+        let projection =
+            self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
+        Ok([position, velocity, acceleration, projection])
     }
 
     /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have

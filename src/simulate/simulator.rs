@@ -1,5 +1,7 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
+use std::sync::OnceLock;
+
 use symdiff::{Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, undetermined_outputs};
@@ -9,7 +11,8 @@ use super::start::{
 };
 use crate::assemble::System;
 use crate::compile::{
-    Equation, Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_nearest_start, compile_start,
+    Equation, Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
+    compile_start, compile_switches,
 };
 
 /// Samples that are assembled together where nothing else is asked.
@@ -106,6 +109,8 @@ pub struct Simulator {
     pub undetermined: Vec<usize>,
     /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
+    /// Compiled where steps are controlled.
+    switches: OnceLock<Option<SwitchProgram>>,
 }
 
 impl Simulator {
@@ -128,7 +133,7 @@ impl Simulator {
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined, shared })
+        Ok(Self { system, start, program, nominal, mobility, undetermined, shared, switches: OnceLock::new() })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -202,6 +207,16 @@ impl Simulator {
     /// those of the steps.
     pub(super) fn solves_row_accelerations(&self) -> bool {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
+    }
+
+    /// Whether rows of output make their velocities consistent where steps are controlled.
+    pub(super) fn projects_row_velocities(&self) -> bool {
+        !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// Where the equations switch, if they do.
+    pub(super) fn switches(&self) -> Option<&SwitchProgram> {
+        self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
     }
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.

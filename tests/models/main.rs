@@ -36,6 +36,7 @@ mod slider_crank;
 mod snapshots;
 mod spatial_linkages;
 mod step_control;
+mod switches;
 mod tables;
 mod tolerance;
 mod urdf;

@@ -215,6 +215,11 @@ impl<'p> Assembly<'p> {
         open
     }
 
+    /// Corrects the velocities of a motion at the tile's positions and time. Returns which lanes have settled.
+    pub fn project_velocities(&mut self) -> Vec<bool> {
+        self.correct_until_settled(self.program.projection(), self.program.layout.v.start)
+    }
+
     /// Accelerations and multipliers at the tile's positions, velocities and time. Returns which lanes have settled.
     pub fn accelerate(&mut self) -> Vec<bool> {
         self.correct_until_settled(self.program.acceleration(), self.program.layout.w.start)
