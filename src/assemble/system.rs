@@ -187,6 +187,13 @@ impl System {
         (0..self.parameters.len()).filter(unused).collect()
     }
 
+    /// Whether an output depends on accelerations or multipliers.
+    pub fn observes_accelerations(&self) -> bool {
+        let outputs: Vec<Expr> = self.outputs.iter().map(|output| output.expr).collect();
+        let used = self.graph.symbols_of(&outputs);
+        self.w.iter().chain(&self.lambda).any(|symbol| used.binary_search(symbol).is_ok())
+    }
+
     /// They are noted as left out.
     pub(super) fn note_unused_parameters(&mut self) {
         for number in self.unused_parameters() {

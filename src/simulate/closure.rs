@@ -81,9 +81,9 @@ impl<'s> Closure<'s> {
             .map_err(|none| no_factors(&simulator.system, &none))?;
         let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();
         let used = system.graph.symbols_of(&outputs);
-        let uses = |symbols: &[symdiff::Expr]| symbols.iter().any(|symbol| used.binary_search(symbol).is_ok());
-        let forces = uses(&system.w) || uses(&system.lambda);
-        let needs = (forces || uses(&system.v), forces);
+        let velocities = system.v.iter().any(|symbol| used.binary_search(symbol).is_ok());
+        let accelerations = system.observes_accelerations();
+        let needs = (accelerations || velocities, accelerations);
         Ok(Self { simulator, independent, program, needs })
     }
 

@@ -142,6 +142,12 @@ impl Simulator {
         (assembly, open)
     }
 
+    /// Whether rows of output solve for their accelerations and multipliers: outputs depend on them, and constraints disturb
+    /// those of the steps.
+    pub(super) fn solves_row_accelerations(&self) -> bool {
+        !self.system.lambda.is_empty() && self.system.observes_accelerations()
+    }
+
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
     pub fn equation_name(&self, equation: usize) -> String {
         equation_names(&self.system, &[equation]).remove(0)

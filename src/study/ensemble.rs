@@ -235,7 +235,9 @@ impl Ensemble for Motions<'_> {
             if let Err((time, why)) = enclosure.advance(self.schedule, next) {
                 return lost(time, why);
             }
-            enclosure.observe(&mut models);
+            if let Err(why) = enclosure.observe(&mut models) {
+                return lost(self.schedule.time(next), why);
+            }
             row(&models);
         }
         None

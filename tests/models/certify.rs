@@ -54,6 +54,16 @@ fn every_sample_of_the_pendulum_is_held() {
     }
 }
 
+/// Accelerations and reactions of a row solve equations of their own.
+#[test]
+fn every_sample_of_a_reaction_is_held() {
+    let (bounds, failure) = certify(model("pendulum").duration(1.0).scan(51).observing(&["bob.ax", "bob.ay"]));
+    assert_eq!(failure, None);
+    for (found, name) in overestimation(&bounds, 0.2).into_iter().zip(["bob.ax", "bob.ay"]) {
+        assert!(found < 1e-2, "{name}: {found:e}");
+    }
+}
+
 #[test]
 fn every_sample_of_the_slider_crank_is_held() {
     let (bounds, failure) = certify(model("slider_crank_one").duration(0.4).scan(101));

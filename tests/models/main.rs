@@ -8,6 +8,7 @@
 #[allow(dead_code, reason = "shared with the tests of elements")]
 mod common;
 
+mod accelerations;
 mod assembly;
 mod bounds_laws;
 mod car_axis;

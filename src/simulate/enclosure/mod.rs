@@ -108,6 +108,8 @@ impl Gains {
 pub struct Enclosure<'s> {
     space: &'s ModelSpace,
     program: &'s EquationsProgram,
+    /// Whether rows of output solve for their accelerations and multipliers.
+    solves_accelerations: bool,
     memory: ModelMemory<'s>,
     gains: Gains,
     /// q̂, v̂, w in that order, 3n: polynomials only.
@@ -158,6 +160,7 @@ impl<'s> Enclosure<'s> {
         let mut enclosure = Self {
             space,
             program,
+            solves_accelerations: simulator.solves_row_accelerations(),
             memory,
             gains,
             state: Models::zero(space, 3 * n, 1),
@@ -173,10 +176,17 @@ impl<'s> Enclosure<'s> {
     }
 
     /// Outputs over the box now, a model each.
-    pub fn observe(&mut self, into: &mut Vec<f64>) {
+    ///
+    /// # Errors
+    /// Where outputs depend on accelerations that cannot be proven to exist.
+    pub fn observe(&mut self, into: &mut Vec<f64>) -> Result<(), EnclosureError> {
+        if self.solves_accelerations {
+            start::accelerations(self.program).solve(self.space, &mut self.memory)?;
+        }
         self.memory.run(self.program.observe());
         into.clear();
         self.program.outputs.iter().for_each(|&register| into.extend_from_slice(self.memory.model(register)));
+        Ok(())
     }
 
     /// Steps up to a row of output, which follows the one before.

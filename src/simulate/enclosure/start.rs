@@ -11,7 +11,7 @@ use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
 
 /// A square system of equations among a program's registers.
-struct Equations<'p> {
+pub(super) struct Equations<'p> {
     /// Registers of the unknowns.
     unknowns: Vec<usize>,
     /// Registers of the residuals, after `residual`.
@@ -137,7 +137,7 @@ fn set_time(space: &ModelSpace, memory: &mut ModelMemory, register: usize, time:
 }
 
 /// M w + Φ_qᵀ λ − Q = 0 and Φ̈ = 0, whose derivative by w is Φ_q.
-fn accelerations(program: &EquationsProgram) -> Equations<'_> {
+pub(super) fn accelerations(program: &EquationsProgram) -> Equations<'_> {
     let layout = &program.layout;
     let n = layout.q.len();
     let [_, _, by_w, by_lambda] = &program.motion_by;
@@ -155,7 +155,7 @@ fn accelerations(program: &EquationsProgram) -> Equations<'_> {
 
 impl Equations<'_> {
     /// Encloses the unknowns, from the approximation in the memory.
-    fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), EnclosureError> {
+    pub(super) fn solve(&self, space: &ModelSpace, memory: &mut ModelMemory) -> Result<(), EnclosureError> {
         if self.unknowns.len() != self.residuals.len() {
             return Err(EnclosureError::Undetermined);
         }

@@ -20,6 +20,8 @@ pub struct JetRun<'s> {
     /// The box's centre.
     center: Stepper<'s>,
     memory: JetMemory<'s>,
+    /// The start's, which solves for the accelerations of rows; `None` where outputs do not need them.
+    accelerations: Option<JetMemory<'s>>,
     step_size: f64,
 }
 
@@ -56,7 +58,9 @@ impl<'s> JetRun<'s> {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         memory.run(program.sample());
-        Ok(Self { simulator, order, center: Stepper::new(program, &assembled), memory, step_size: f64::NAN })
+        let accelerations = simulator.solves_row_accelerations().then_some(start);
+        let center = Stepper::new(program, &assembled);
+        Ok(Self { simulator, order, center, memory, accelerations, step_size: f64::NAN })
     }
 
     /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
@@ -70,12 +74,40 @@ impl<'s> JetRun<'s> {
                     return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
                 }
             }
-            self.memory.run(self.simulator.program.observe());
-            for &register in &self.simulator.program.outputs {
-                into.extend_from_slice(self.memory.jet(register));
-            }
+            self.observe(into);
         }
         None
+    }
+
+    /// Appends the outputs. Their accelerations are those of [`super::row_accelerations`]; where these have no jet, those of
+    /// the steps.
+    fn observe(&mut self, into: &mut Vec<f64>) {
+        let layout = &self.simulator.program.layout;
+        let unknowns = layout.w.start..layout.lambda.end;
+        let own: Vec<Vec<f64>> = match &mut self.accelerations {
+            None => Vec::new(),
+            Some(start) => {
+                for register in layout.state().chain([layout.time]) {
+                    start.jet_mut(register).copy_from_slice(self.memory.jet(register));
+                }
+                accelerate(self.simulator, start, self.order);
+                let finite = |register: usize| start.jet(register).iter().all(|coefficient| coefficient.is_finite());
+                let solved = unknowns.clone().all(finite);
+                let own =
+                    unknowns.clone().filter(|_| solved).map(|register| self.memory.jet(register).to_vec()).collect();
+                for register in unknowns.clone().filter(|_| solved) {
+                    self.memory.jet_mut(register).copy_from_slice(start.jet(register));
+                }
+                own
+            }
+        };
+        self.memory.run(self.simulator.program.observe());
+        for &register in &self.simulator.program.outputs {
+            into.extend_from_slice(self.memory.jet(register));
+        }
+        for (register, own) in unknowns.zip(&own) {
+            self.memory.jet_mut(register).copy_from_slice(own);
+        }
     }
 
     /// Newton iterations of the centre so far.
@@ -160,7 +192,7 @@ fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>,
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;
-    let corrections = (order + 1).ilog2() as usize + 2;
+    let corrections = corrections(order);
     memory.run(start.sample());
     memory.run(start.given());
     for _ in 0..corrections {
@@ -173,13 +205,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         memory.run(start.velocity());
         add_correction(memory, layout.v.clone(), layout.correction.start);
     }
-    let accelerate = |memory: &mut JetMemory| {
-        for _ in 0..corrections {
-            memory.run(start.acceleration());
-            add_correction(memory, layout.w.clone().chain(layout.lambda.clone()), layout.correction.start);
-        }
-    };
-    accelerate(memory);
+    accelerate(simulator, memory, order);
     // a = w(t + Δh), as for tiles.
     let shift = simulator.program.coefficients.shift() * first_step;
     let saved: Vec<Vec<f64>> = layout.state().map(|register| memory.jet(register).to_vec()).collect();
@@ -191,7 +217,7 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         }
     }
     memory.set_constant(layout.time, shift);
-    accelerate(memory);
+    accelerate(simulator, memory, order);
     let shifted: Vec<Vec<f64>> = layout.w.clone().map(|register| memory.jet(register).to_vec()).collect();
     for (register, saved) in layout.state().zip(&saved) {
         memory.jet_mut(register).copy_from_slice(saved);
@@ -200,4 +226,18 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
         memory.jet_mut(register).copy_from_slice(shifted);
     }
     memory.set_constant(layout.time, 0.0);
+}
+
+/// Newton corrections that make a jet of this order consistent.
+fn corrections(order: usize) -> usize {
+    (order + 1).ilog2() as usize + 2
+}
+
+/// Accelerations and multipliers of the start's memory at its positions, velocities and time.
+fn accelerate(simulator: &Simulator, memory: &mut JetMemory, order: usize) {
+    let layout = &simulator.start.layout;
+    for _ in 0..corrections(order) {
+        memory.run(simulator.start.acceleration());
+        add_correction(memory, layout.w.clone().chain(layout.lambda.clone()), layout.correction.start);
+    }
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use symdiff::WIDTHS;
 
+use super::row_accelerations::RowAccelerations;
 use crate::simulate::control::Schedule;
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch};
 use crate::simulate::error::SimulationError;
@@ -30,6 +31,9 @@ pub struct EnsembleRun<'s> {
 #[derive(Debug)]
 struct TileRun<'s> {
     stepper: Stepper<'s>,
+    observes_accelerations: bool,
+    /// Where constraints disturb those of the steps.
+    accelerations: Option<RowAccelerations<'s>>,
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
@@ -99,6 +103,7 @@ impl<'s> EnsembleRun<'s> {
     /// # Errors
     /// The first sample that cannot be assembled.
     pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
+        let observes_accelerations = simulator.system.observes_accelerations();
         let tiles = tiles(samples.len(), simulator.program.registers(), rayon::current_num_threads());
         let assembled: Vec<Result<TileRun<'s>, SimulationError>> = tiles
             .into_par_iter()
@@ -108,7 +113,16 @@ impl<'s> EnsembleRun<'s> {
                 let start = simulator.assemble(width, first_step, sample)?;
                 let mut stepper = Stepper::new(&simulator.program, &start);
                 stepper.retire(count..width);
-                Ok(TileRun { stepper, first, count, error_ratio: vec![0.0; width], stopped: None, watch: None })
+                Ok(TileRun {
+                    stepper,
+                    observes_accelerations,
+                    accelerations: RowAccelerations::new(simulator, &start),
+                    first,
+                    count,
+                    error_ratio: vec![0.0; width],
+                    stopped: None,
+                    watch: None,
+                })
             })
             .collect();
         let tiles = assembled.into_iter().collect::<Result<Vec<_>, _>>()?;
@@ -204,11 +218,13 @@ impl TileRun<'_> {
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
         for (place, row) in rows.enumerate() {
-            for (h, end) in schedule.steps_to(row) {
+            let mut steps = schedule.steps_to(row).peekable();
+            while let Some((h, end)) = steps.next() {
                 if !self.stepper.alive().contains(&true) {
                     break;
                 }
                 self.stepper.set_step_size(h);
+                self.stepper.refine(self.observes_accelerations && steps.peek().is_none());
                 let failures = self.stepper.step(h, end);
                 if let (Some(first), None) = (failures.first(), &self.stopped) {
                     self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
@@ -234,15 +250,22 @@ impl TileRun<'_> {
             }
             let values = &mut values[place * outputs * width..][..outputs * width];
             match observed {
-                Observed::Outputs => self.stepper.observe(values),
+                Observed::Outputs => self.observe(values),
                 Observed::Motion => {
                     let (motion, outputs) = values.split_at_mut(2 * self.stepper.coordinates() * width);
                     self.stepper.copy_motion(motion);
-                    self.stepper.observe(outputs);
+                    self.observe(outputs);
                 }
             }
         }
         (values, stops)
+    }
+
+    fn observe(&mut self, into: &mut [f64]) {
+        match &mut self.accelerations {
+            Some(accelerations) => accelerations.observe(&mut self.stepper, into),
+            None => self.stepper.observe(into),
+        }
     }
 }
 

@@ -191,9 +191,9 @@ impl<'p> Assembly<'p> {
         open
     }
 
-    /// Accelerations and multipliers at the tile's positions, velocities and time.
-    fn accelerate(&mut self) {
-        self.correct_until_settled(self.program.acceleration(), self.program.layout.w.start);
+    /// Accelerations and multipliers at the tile's positions, velocities and time. Returns which lanes have settled.
+    pub fn accelerate(&mut self) -> Vec<bool> {
+        self.correct_until_settled(self.program.acceleration(), self.program.layout.w.start)
     }
 
     /// a = w(t + shift) to first order: the accelerations of the state moved there.
@@ -258,7 +258,8 @@ impl<'p> Assembly<'p> {
     }
 
     /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are used up.
-    pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) {
+    /// Returns which lanes have settled.
+    pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) -> Vec<bool> {
         let layout = &self.program.layout;
         let width = self.tile.width();
         let count = if start == layout.w.start { layout.correction.len() } else { self.scale.len() };
@@ -282,9 +283,10 @@ impl<'p> Assembly<'p> {
             }
             last = size;
             if !pending.contains(&true) {
-                return;
+                break;
             }
         }
+        pending.into_iter().map(|pending| !pending).collect()
     }
 
     /// The largest residual of each lane with a constraint that does not hold.

@@ -92,8 +92,9 @@ impl Newton {
     }
 
     /// Solves the step whose `time` and h stand in the tile, for the lanes in `alive`; on return `alive` holds only those
-    /// that converged. The step's tape must have run.
-    pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, alive: &mut [bool]) {
+    /// that converged. The step's tape must have run. With `refine`, lanes that have converged are corrected once more: what
+    /// Newton's tolerance leaves in positions is 1/(βh²) times as large in accelerations.
+    pub fn solve(&mut self, program: &Program, tile: &mut Tile, h: f64, refine: bool, alive: &mut [bool]) {
         self.pending.copy_from_slice(alive);
         let width = tile.width();
         self.start.clear();
@@ -116,6 +117,9 @@ impl Newton {
         }
         if alive.iter().zip(&self.singular).any(|(alive, singular)| *alive && *singular) {
             self.reject_open_constraints(program, tile, h);
+        }
+        if refine {
+            self.correct_converged(program, tile, h, alive);
         }
         if self.pending.contains(&true) {
             self.restore_multipliers(program, tile);
@@ -185,6 +189,16 @@ impl Newton {
                 return;
             }
         }
+    }
+
+    /// One more correction of the lanes that have converged with factors of their own.
+    fn correct_converged(&mut self, program: &Program, tile: &mut Tile, h: f64, alive: &[bool]) {
+        let lanes = alive.iter().zip(&self.pending).zip(&self.singular);
+        let converged: Vec<bool> = lanes.map(|((alive, pending), singular)| *alive && !pending && !singular).collect();
+        let gain = program.coefficients.position_gain(h);
+        tile.run(program.correct());
+        vectorised(Apply { program, tile, gain, pending: &converged, norm: &mut self.norm });
+        self.counters.iterations += converged.iter().map(|&converged| u64::from(converged)).sum::<u64>();
     }
 
     /// Corrections by the rank-revealing solve, for singular lanes. After the first few corrections, a constraint that holds

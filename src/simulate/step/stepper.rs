@@ -42,6 +42,8 @@ pub struct Stepper<'p> {
     prepared_size: f64,
     /// Whether a lane still runs.
     alive: Vec<bool>,
+    /// Whether steps end with accelerations that are as accurate as positions.
+    refines: bool,
     /// Local errors, if they are estimated.
     errors: Option<Vec<LocalError>>,
 }
@@ -61,6 +63,7 @@ impl<'p> Stepper<'p> {
             step_size: f64::NAN,
             prepared_size: f64::NAN,
             alive: vec![true; width],
+            refines: false,
             errors: None,
         }
     }
@@ -117,6 +120,11 @@ impl<'p> Stepper<'p> {
         self.step_size = h;
     }
 
+    /// Whether steps from now on take one more correction, after which accelerations are as accurate as positions.
+    pub(in crate::simulate) fn refine(&mut self, refines: bool) {
+        self.refines = refines;
+    }
+
     /// Newton iterations and rank-revealing solves so far.
     pub fn counters(&self) -> Counters {
         self.newton.counters
@@ -159,7 +167,7 @@ impl<'p> Stepper<'p> {
         self.tile.lane_mut(self.program.layout.time).fill(end);
         self.tile.run(self.program.step());
         let mut converged = self.alive.clone();
-        self.newton.solve(self.program, &mut self.tile, h, &mut converged);
+        self.newton.solve(self.program, &mut self.tile, h, self.refines, &mut converged);
         converged
     }
 
@@ -217,6 +225,7 @@ impl<'p> Stepper<'p> {
         }
         let mut single = Stepper::new(self.program, &alone);
         let start = single.save();
+        single.refines = self.refines;
         single.errors = self.errors.as_ref().map(|_| vec![LocalError::default()]);
         for halvings in 1..=MAX_HALVINGS {
             let parts = 1_u32 << halvings;

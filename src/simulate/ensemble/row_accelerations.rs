@@ -1,0 +1,63 @@
+//! Accelerations and multipliers of rows of output, from the positions and velocities there.
+//!
+//! A step's own w₊ and λ₊ fulfil Φ(q₊) = 0 through b w₊, b ∼ h²: rounding and Newton's tolerance are in them as ε/h², and a
+//! change of h disturbs them by as much as it changes. Positions and velocities do not suffer. So where outputs depend on w
+//! or λ, a row takes those that solve M w + Φ_qᵀ λ = Q and Φ̈ = 0 at its q and v. The steps go on with their own.
+
+use symdiff::Tile;
+
+use crate::compile::Layout;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::start::Assembly;
+use crate::simulate::step::Stepper;
+
+/// Solves for the accelerations of a tile's rows.
+#[derive(Debug)]
+pub(super) struct RowAccelerations<'s> {
+    layout: &'s Layout,
+    assembly: Assembly<'s>,
+    /// w and λ of the steps.
+    own: Vec<f64>,
+}
+
+impl<'s> RowAccelerations<'s> {
+    /// For the samples of an assembled tile; `None` where outputs do not depend on accelerations, or no constraint disturbs
+    /// them.
+    pub fn new(simulator: &'s Simulator, start: &Tile) -> Option<Self> {
+        if !simulator.solves_row_accelerations() {
+            return None;
+        }
+        let parameters = simulator.start.layout.parameters.clone();
+        let parameter = |parameter: usize, lane: usize| start.lane(parameters.start + parameter)[lane];
+        let assembly = Assembly::new(&simulator.start, &simulator.system, start.width(), parameter);
+        Some(Self { layout: &simulator.start.layout, assembly, own: Vec::new() })
+    }
+
+    /// The outputs of the state, as [`Stepper::observe`] gives them, with these accelerations. A lane in which they are not
+    /// determined, as in a singular configuration, keeps those of its step.
+    pub fn observe(&mut self, stepper: &mut Stepper, into: &mut [f64]) {
+        let (layout, width) = (self.layout, stepper.tile().width());
+        let block = |registers: std::ops::Range<usize>| registers.start * width..registers.end * width;
+        let (state, time) = (block(layout.q.start..layout.lambda.end), layout.time);
+        let unknowns = layout.w.start..layout.lambda.end;
+        let tile = self.assembly.tile_mut();
+        tile.values_mut()[state.clone()].copy_from_slice(&stepper.tile().values()[state]);
+        tile.lane_mut(time).copy_from_slice(stepper.tile().lane(time));
+        self.own.clear();
+        self.own.extend_from_slice(&stepper.tile().values()[block(unknowns.clone())]);
+        let mut settled = self.assembly.accelerate();
+        for register in unknowns.clone() {
+            for (settled, value) in settled.iter_mut().zip(self.assembly.tile().lane(register)) {
+                *settled &= value.is_finite();
+            }
+        }
+        for register in unknowns.clone() {
+            let found = self.assembly.tile().lane(register);
+            for lane in (0..width).filter(|&lane| settled[lane]) {
+                stepper.tile_mut().lane_mut(register)[lane] = found[lane];
+            }
+        }
+        stepper.observe(into);
+        stepper.tile_mut().values_mut()[block(unknowns)].copy_from_slice(&self.own);
+    }
+}
