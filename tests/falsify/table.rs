@@ -5,6 +5,9 @@ use std::fmt::{self, Display, Formatter};
 
 use crate::verdict::{Failure, Verdict};
 
+/// In place of a family's or a method's name.
+const ALL: &str = "all";
+
 /// Bands of a family by a method.
 #[derive(Default)]
 struct Line {
@@ -53,7 +56,9 @@ pub struct Table {
 impl Table {
     pub fn add(&mut self, family: &'static str, verdicts: &[Verdict], seconds: f64) {
         for verdict in verdicts {
-            self.lines.entry((family, verdict.method.name())).or_default().add(verdict);
+            for line in [(family, verdict.method.name()), (family, ALL), (ALL, verdict.method.name()), (ALL, ALL)] {
+                self.lines.entry(line).or_default().add(verdict);
+            }
         }
         let draws = self.draws.entry(family).or_default();
         (draws[0], draws[4]) = (draws[0] + 1.0, draws[4] + seconds);
@@ -71,8 +76,8 @@ impl Table {
     }
 
     /// Bands of a family that are missed.
-    pub fn missed(&self, family: &str) -> usize {
-        self.lines.iter().filter(|((of, _), _)| *of == family).map(|(_, line)| line.missed).sum()
+    pub fn missed(&self, family: &'static str) -> usize {
+        self.lines.get(&(family, ALL)).map_or(0, |line| line.missed)
     }
 
     /// Draws that were refused or panicked. (How many are out of time hangs on the machine.)
@@ -88,18 +93,12 @@ impl Display for Table {
             "| family | method | bands | missed | rows covered | flagged | excess, median row | median band | mean band |"
         )?;
         writeln!(f, "|---|---|--:|--:|--:|--:|--:|--:|--:|")?;
-        let mut total = Line::default();
-        for ((family, method), line) in &self.lines {
-            write_line(f, family, method, line)?;
-            total.bands += line.bands;
-            total.missed += line.missed;
-            total.rows += line.rows;
-            total.flagged += line.flagged;
-            total.misses += line.misses;
-            total.rows_excess.extend(&line.rows_excess);
-            total.bands_excess.extend(&line.bands_excess);
+        // The families' sums come last.
+        for sums in [false, true] {
+            for ((family, method), line) in self.lines.iter().filter(|((_, method), _)| (*method == ALL) == sums) {
+                write_line(f, family, method, line)?;
+            }
         }
-        write_line(f, "all", "", &total)?;
         writeln!(f, "\n| family | draws | refused | panicked | out of time | s a draw | at most |")?;
         writeln!(f, "|---|--:|--:|--:|--:|--:|--:|")?;
         for (family, [draws, refused, panicked, late, seconds, longest]) in &self.draws {
