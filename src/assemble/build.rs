@@ -19,11 +19,13 @@ use crate::multibody::BuildError;
 /// sides prescribed) are left out. The work is linear in the number of bodies, joints and effects.
 ///
 /// # Errors
-/// A constraint that nothing can fulfil, joint coordinates that are asked for where they do not do, and (for descriptions
+/// A constraint that nothing can fulfil, joint coordinates that are asked for where they are not possible, and (for descriptions
 /// that were not checked) a name out of place.
 pub fn build(description: &Description) -> Result<System, BuildError> {
     match description.simulation.formulation {
-        Formulation::Joint => in_joint_coordinates(description, None)?.map_err(|why| BuildError::NotCarried { why }),
+        Formulation::Joint => {
+            in_joint_coordinates(description, None)?.map_err(|why| BuildError::NoJointCoordinates { why })
+        }
         Formulation::Absolute | Formulation::Auto => in_absolute_coordinates(description),
     }
 }
@@ -38,7 +40,7 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
     Ok(system(builder.finish()))
 }
 
-/// As many bodies as can be are children, without coordinates of their own; or why that does not do here. With `deepest`, not
+/// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
 /// where joints close loops, nor where a body is more joints than that from its root on average.
 ///
 /// # Errors
@@ -76,10 +78,10 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let [lambda, constraint] = [&constraints.lambda, &constraints.values].map(|list| Scalar::exprs(list));
-    let [inertia, force, sometimes] =
-        [&balance.inertia, &balance.force, &balance.sometimes].map(|list| Scalar::exprs(list));
+    let [inertia, force, conditional] =
+        [&balance.inertia, &balance.force, &balance.conditional].map(|list| Scalar::exprs(list));
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
-    let (touching, constraints) = (balance.touching.map(Scalar::expr), constraints.infos);
+    let (active_condition, constraints) = (balance.active_condition.map(Scalar::expr), constraints.infos);
     Ok(move |graph| {
         let mut system = System {
             graph,
@@ -94,8 +96,8 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             mass,
             inertia,
             force,
-            touching,
-            sometimes,
+            active_condition,
+            conditional,
             constraint,
             outputs,
             length,
@@ -146,9 +148,9 @@ struct Balance<'g> {
     /// Q
     force: Vec<Scalar<'g>>,
     /// Where it is not positive, nothing acts that acts under conditions.
-    touching: Option<Scalar<'g>>,
+    active_condition: Option<Scalar<'g>>,
     /// What acts under conditions.
-    sometimes: Vec<Scalar<'g>>,
+    conditional: Vec<Scalar<'g>>,
 }
 
 impl<'g> Balance<'g> {
@@ -158,14 +160,14 @@ impl<'g> Balance<'g> {
         let mut mass = Vec::new();
         let mut force = applied.generalised(m);
         // What acts only under conditions is summed apart, so that nothing of it is computed where nothing acts.
-        let touching = applied.conditions().into_iter().reduce(Scalar::max);
-        let mut sometimes = vec![g.number(0.0); force.len()];
-        if let Some(touching) = touching {
+        let active_condition = applied.conditions().into_iter().reduce(Scalar::max);
+        let mut conditional = vec![g.number(0.0); force.len()];
+        if let Some(active_condition) = active_condition {
             let guarded = Scalar::exprs(&applied.guarded().generalised(m));
-            let assumed = g.with(|graph| graph.assume(&guarded, touching.expr(), true));
-            sometimes = assumed.into_iter().map(|expr| g.scalar(expr)).collect();
-            for (total, &part) in force.iter_mut().zip(&sometimes) {
-                *total += part.only_where(touching);
+            let assumed = g.with(|graph| graph.assume(&guarded, active_condition.expr(), true));
+            conditional = assumed.into_iter().map(|expr| g.scalar(expr)).collect();
+            for (total, &part) in force.iter_mut().zip(&conditional) {
+                *total += part.only_where(active_condition);
             }
         }
         for body in &m.bodies {
@@ -188,7 +190,7 @@ impl<'g> Balance<'g> {
         }
         m.potentials = applied.potentials;
         mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
-        Ok(Self { mass, inertia, force, touching, sometimes })
+        Ok(Self { mass, inertia, force, active_condition, conditional })
     }
 }
 

@@ -109,7 +109,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             frames: Vec::with_capacity(body.points.len()),
         };
         if rotation_coordinates == RotationCoordinates::Euler {
-            let prescribed = match &body.held_orientation {
+            let prescribed = match &body.prescribed_orientation {
                 Some(rotation) => self.rotation(rotation)?,
                 None => Quaternion::identity(self.g),
             };
@@ -124,7 +124,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             built.velocity[dof] = self.v[index];
             built.acceleration[dof] = self.w[index];
         }
-        for (coordinate, value) in &body.held {
+        for (coordinate, value) in &body.prescribed {
             let dof = dof(*coordinate);
             let value = self.formula(value, Context::Time)?;
             built.position[dof] = value;

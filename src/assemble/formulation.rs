@@ -11,7 +11,7 @@ impl Mechanism<'_, '_> {
     /// What prevents joint coordinates; `None` where nothing does.
     pub fn obstacle(&self, description: &Description) -> Option<String> {
         if self.tree.is_absolute() {
-            return Some("no joint can carry a body".to_owned());
+            return Some("no joint can give a body its position".to_owned());
         }
         if let Some(beam) = self.flexible() {
             return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
@@ -27,7 +27,10 @@ impl Mechanism<'_, '_> {
             let factor = self.formula(factor, Context::Motion);
             (!factor.is_ok_and(|factor| factor.is_zero())).then_some(joint)
         })?;
-        Some(format!("friction grows with the reaction of joint `{}`, which carries a body", d.joints[joint].name))
+        Some(format!(
+            "friction grows with the reaction of joint `{}`, which has no multiplier in joint coordinates",
+            d.joints[joint].name
+        ))
     }
 
     /// A value at the start of a coordinate that there is not.
@@ -56,7 +59,9 @@ impl Mechanism<'_, '_> {
             })
         };
         if let Some(joint) = reaction(formulas_of_motion(d)) {
-            return Some(format!("a force depends on the reaction of joint `{joint}`, which carries a body"));
+            return Some(format!(
+                "a force depends on the reaction of joint `{joint}`, which has no multiplier in joint coordinates"
+            ));
         }
         // What acts on coordinates of joints alone is no part of a joint's reaction.
         let of_joints = |formula: &Formula| {
@@ -74,7 +79,7 @@ impl Mechanism<'_, '_> {
         let coupling = d.joints.iter().find(|joint| acts_on_bodies(&joint.kind))?;
         let joint = reaction(d.outputs.iter().map(|output| &output.formula).collect())?;
         Some(format!(
-            "an output is the reaction of joint `{joint}`, which carries a body, and what `{}` adds to it is not known",
+            "an output is the reaction of joint `{joint}`, which has no multiplier in joint coordinates, and what `{}` adds to it is not known",
             coupling.name
         ))
     }

@@ -52,8 +52,8 @@ impl Link {
     /// Seen from the other body.
     fn reversed(self, body: usize) -> Self {
         let kind = match self.kind {
-            LinkKind::Weld(turn) => LinkKind::Weld(-turn),
-            LinkKind::Slide(turn) => LinkKind::Slide(-turn),
+            LinkKind::Weld(angle) => LinkKind::Weld(-angle),
+            LinkKind::Slide(angle) => LinkKind::Slide(-angle),
             kind => kind,
         };
         Self { here: self.there, there: self.here, other: body, kind }
@@ -160,12 +160,12 @@ impl PlanarPoses {
 
     /// The angle of `link.other`, one of whose points is to be at `anchor`.
     fn angle(&self, body: usize, link: Link, anchor: [f64; 2]) -> Option<f64> {
-        if let LinkKind::Weld(turn) | LinkKind::Slide(turn) = link.kind {
-            return Some(self.pose(body)[ANGLE] + turn);
+        if let LinkKind::Weld(angle) | LinkKind::Slide(angle) = link.kind {
+            return Some(self.pose(body)[ANGLE] + angle);
         }
         let onward = &self.links[link.other];
         let slid = onward.iter().find_map(|next| match (next.kind, self.poses[next.other]) {
-            (LinkKind::Weld(turn) | LinkKind::Slide(turn), Some(pose)) => Some(pose[ANGLE] - turn),
+            (LinkKind::Weld(angle) | LinkKind::Slide(angle), Some(pose)) => Some(pose[ANGLE] - angle),
             _ => None,
         });
         if slid.is_some() || !matches!(link.kind, LinkKind::Pin) {

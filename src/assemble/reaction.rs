@@ -19,8 +19,8 @@ pub struct Reaction<'g> {
 impl<'g> Reaction<'g> {
     /// Σ λᵢ (forceᵢ, torqueᵢ) over the rows that were kept, each with its multiplier.
     ///
-    /// A dropped row (both sides prescribed) has no multiplier: how much the ground carries there is not determined by the
-    /// motion, and it counts as zero.
+    /// A dropped row (both sides prescribed) has no multiplier: how much the ground takes up there is not determined by
+    /// the motion, and it counts as zero.
     pub fn of(g: &'g Builder, joint: &dyn Joint, kept: &[(Row<'g>, Scalar<'g>)]) -> Self {
         let (mut force, mut torque) = (Vector::zero(g), Vector::zero(g));
         let mut along = Vec::new();

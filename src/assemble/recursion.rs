@@ -17,7 +17,7 @@
 //!
 //! A uniform field of acceleration g enters as −g on the roots, so that weights need no terms of their own. (Luh, Walker &
 //! Paul, J. Dyn. Syst. Meas. Control 102 (1980) 69; with U, Khalil & Dombre, *Modeling, Identification and Control of
-//! Robots*, ch. 9.) The generalised forces are linear in w; their slopes are the mass matrix.
+//! Robots*, ch. 9.) The generalised forces are linear in w; their Jacobian is the mass matrix.
 
 use symdiff::Scalar;
 

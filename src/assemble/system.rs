@@ -33,10 +33,10 @@ pub struct System {
     pub inertia: Vec<Expr>,
     /// Q(t, q, v, λ), n, with what velocity-dependent inertial forces and weights are not in `inertia`.
     pub force: Vec<Expr>,
-    /// Where it is not positive, no effect acts that acts only sometimes (a contact, a stop).
-    pub touching: Option<Expr>,
-    /// What these add to Q where it is positive, n; it is in `force`, under that condition.
-    pub sometimes: Vec<Expr>,
+    /// Where it is not positive, no conditional effect (a contact, a stop) acts.
+    pub active_condition: Option<Expr>,
+    /// What conditional effects add to Q where it is positive, n; it is in `force`, under that condition.
+    pub conditional: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
     /// What is observed, over t, q, v, w, λ and the parameters.
@@ -58,7 +58,7 @@ pub struct System {
 /// By which coordinates a motion is described.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulationInfo {
-    /// Whether joints carry bodies.
+    /// Whether by those of joints, as far as that goes.
     pub joint: bool,
     /// For people.
     pub why: String,

@@ -8,8 +8,8 @@ use crate::assemble::System;
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();
     // Conditional forces come last: without them the rows are those of a system that has none.
-    let force = match system.touching {
-        Some(touching) => graph.assume(&system.force, touching, false),
+    let force = match system.active_condition {
+        Some(condition) => graph.assume(&system.force, condition, false),
         None => system.force.clone(),
     };
     let mut rows: Vec<Expr> = force.into_iter().map(|force| graph.neg(force)).collect();
@@ -22,10 +22,10 @@ pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, Sp
     for (row, &inertia) in rows.iter_mut().zip(&system.inertia) {
         *row = graph.add(*row, inertia);
     }
-    if let Some(touching) = system.touching {
-        for (row, &part) in rows.iter_mut().zip(&system.sometimes) {
+    if let Some(condition) = system.active_condition {
+        for (row, &part) in rows.iter_mut().zip(&system.conditional) {
             let all = graph.sub(*row, part);
-            *row = graph.select(touching, all, *row);
+            *row = graph.select(condition, all, *row);
         }
     }
     (rows, jacobian)

@@ -143,7 +143,7 @@ pub fn newton_system(
     for entry in matrix.rows.iter_mut().flatten() {
         entry.1 = values.next().expect("one value an entry");
     }
-    let active_condition = system.touching.map(|condition| graph.substitute(&[condition], &at_end)[0]);
+    let active_condition = system.active_condition.map(|condition| graph.substitute(&[condition], &at_end)[0]);
     let inputs = symbols.inputs(layout, system);
     let NewState { position, velocity, algorithmic } = state;
     let acceleration = symbols.x;

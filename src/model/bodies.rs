@@ -23,7 +23,7 @@ const COORDINATES: [(&str, &[Coordinate]); 5] = [
     ("orientation", &Coordinate::ORIENTATION),
 ];
 
-/// Coordinates that can be held at a number.
+/// Coordinates that can be prescribed.
 const HELD: [(&str, Coordinate); 4] =
     [("x", Coordinate::X), ("y", Coordinate::Y), ("z", Coordinate::Z), ("angle", Coordinate::Angle)];
 
@@ -35,8 +35,8 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         inertia: None,
         center_of_mass: None,
         coordinates: Vec::new(),
-        held: Vec::new(),
-        held_orientation: None,
+        prescribed: Vec::new(),
+        prescribed_orientation: None,
         points: Vec::new(),
     };
     reader.model.bodies.push(empty(GROUND));
@@ -116,7 +116,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     };
     let center =
         fields.get("center_of_mass").and_then(|node| reader.components(node, Context::Constant, Dimension::LENGTH));
-    let (held, held_orientation) = held(reader, &fields, &coordinates);
+    let (prescribed, prescribed_orientation) = prescribed(reader, &fields, &coordinates);
     points(reader, &fields, index);
 
     let body = &mut reader.model.bodies[index];
@@ -124,8 +124,8 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     body.inertia = inertia;
     body.center_of_mass = center;
     body.coordinates = coordinates;
-    body.held = held;
-    body.held_orientation = held_orientation;
+    body.prescribed = prescribed;
+    body.prescribed_orientation = prescribed_orientation;
 }
 
 /// The coordinates of a body that says nothing of them.
@@ -198,8 +198,9 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
             None => found.push((named, item)),
         }
     }
-    let turning: Vec<&Node> = found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
-    if let [_, second] = turning.as_slice() {
+    let rotations: Vec<&Node> =
+        found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
+    if let [_, second] = rotations.as_slice() {
         reader.error(
             second.span.clone(),
             "a body turns by an `angle` about z or by an `orientation`, not by both",
@@ -209,7 +210,7 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
     found.into_iter().flat_map(|(named, _)| named).copied().collect()
 }
 
-fn held(
+fn prescribed(
     reader: &mut Reader,
     fields: &Fields,
     coordinates: &[Coordinate],

@@ -45,8 +45,8 @@ impl Body {
             let super::Inertia { xx, yy, zz, xy, xz, yz } = inertia;
             found.extend([xx, yy, zz, xy, xz, yz]);
         }
-        found.extend(self.held.iter().map(|(_, value)| value));
-        found.extend(self.held_orientation.iter().flat_map(Rotation::formulas));
+        found.extend(self.prescribed.iter().map(|(_, value)| value));
+        found.extend(self.prescribed_orientation.iter().flat_map(Rotation::formulas));
         for point in &self.points {
             found.extend(&point.position);
             found.extend(point.rotation.iter().flat_map(Rotation::formulas));

@@ -21,8 +21,8 @@ pub enum BuildError {
         at: Option<&'static str>,
     },
     /// Joint coordinates are asked for where they are not possible.
-    #[error("`formulation: joint` does not do here: {why}")]
-    NotCarried {
+    #[error("`formulation: joint` is not possible here: {why}")]
+    NoJointCoordinates {
         /// What is in the way.
         why: String,
     },

@@ -10,7 +10,7 @@
 //!
 //! ω in the ground's axes, ω' in the body's. A torque τ (τ' in the body's axes) has the generalised forces 2 Eᵀ τ = 2 Gᵀ τ'
 //! on p, since 2 E δp is the virtual rotation. (Nikravesh, *Computer-Aided Analysis of Mechanical Systems*, ch. 6.)
-//! A second rotation in the turned frame multiplies from the right: R(p) R(r) = R(p ∘ r).
+//! A second rotation in the rotated frame multiplies from the right: R(p) R(r) = R(p ∘ r).
 
 use std::ops::{Index, Mul};
 

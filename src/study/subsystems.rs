@@ -59,10 +59,10 @@ pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Re
     let mut reduction = Reduction::of(description, choices);
     let prepared = std::mem::take(&mut reduction.subsystems).into_iter().map(|subsystem| {
         // Joint coordinates that the model asks for may not exist in every subsystem.
-        let carried = description.simulation.formulation == Formulation::Joint;
-        let absolute = carried.then(|| subsystem.clone());
+        let by_joints = description.simulation.formulation == Formulation::Joint;
+        let absolute = by_joints.then(|| subsystem.clone());
         match (Prepared::new(subsystem), absolute) {
-            (Err(RunError::Build(BuildError::NotCarried { .. })), Some(mut subsystem))
+            (Err(RunError::Build(BuildError::NoJointCoordinates { .. })), Some(mut subsystem))
                 if assemble::build(description).is_ok() =>
             {
                 subsystem.description.simulation.formulation = Formulation::Absolute;

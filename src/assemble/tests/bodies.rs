@@ -1,7 +1,7 @@
 use super::model::Model;
 use super::numbers::{State, assert_all_close, assert_close, inertia_times, output, time_derivative};
 
-/// Bodies with an offset centre of mass: free, one with a held coordinate that moves, one that only turns.
+/// Bodies with an offset centre of mass: free, one with a prescribed coordinate that moves, one that only turns.
 fn assorted() -> Model {
     let mut m = Model::new();
     m.interval("s", [0.2, 0.3, 0.4]);

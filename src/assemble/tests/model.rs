@@ -72,8 +72,8 @@ impl Model {
             inertia: Some(Inertia::scalar(&formula(inertia))),
             center_of_mass: None,
             coordinates: letters.chars().flat_map(coordinates).collect(),
-            held: Vec::new(),
-            held_orientation: None,
+            prescribed: Vec::new(),
+            prescribed_orientation: None,
             points,
         });
     }
@@ -104,7 +104,7 @@ impl Model {
 
     /// A coordinate of the last body.
     pub fn hold(&mut self, letter: char, value: &str) {
-        self.0.bodies.last_mut().unwrap().held.push((coordinates(letter)[0], formula(value)));
+        self.0.bodies.last_mut().unwrap().prescribed.push((coordinates(letter)[0], formula(value)));
     }
 
     pub fn body_index(&self, name: &str) -> usize {

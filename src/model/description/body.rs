@@ -41,12 +41,12 @@ pub struct Body {
     pub inertia: Option<Inertia>,
     /// Centre of mass in the body's frame, m; by default the origin.
     pub center_of_mass: Option<[Formula; 3]>,
-    /// The coordinates that the body has; the others are held. Empty for the ground.
+    /// The coordinates that the body has; the others are prescribed. Empty for the ground.
     pub coordinates: Vec<Coordinate>,
     /// Values of coordinates that the body does not have (zero where not named).
-    pub held: Vec<(Coordinate, Formula)>,
+    pub prescribed: Vec<(Coordinate, Formula)>,
     /// Orientation of a body that does not turn, where it is more than an angle about z.
-    pub held_orientation: Option<Rotation>,
+    pub prescribed_orientation: Option<Rotation>,
     /// Named points in the body's frame, m.
     pub points: Vec<Point>,
 }
@@ -54,10 +54,10 @@ pub struct Body {
 impl Body {
     /// Whether its orientation is that of Euler parameters, and not an angle about z.
     pub fn has_orientation(&self) -> bool {
-        self.held_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
+        self.prescribed_orientation.is_some() || self.coordinates.contains(&Coordinate::Euler(0))
     }
 
-    /// Whether nothing of it is held, so that a joint alone may say where it is.
+    /// Whether nothing of it is prescribed, so that a joint alone may say where it is.
     pub fn is_free(&self, spatial: bool) -> bool {
         let has = |coordinate: &Coordinate| self.coordinates.contains(coordinate);
         let coordinates: &[Coordinate] = if spatial {
@@ -65,7 +65,7 @@ impl Body {
         } else {
             &[Coordinate::X, Coordinate::Y, Coordinate::Angle]
         };
-        coordinates.iter().all(has) && self.held.is_empty()
+        coordinates.iter().all(has) && self.prescribed.is_empty()
     }
 }
 

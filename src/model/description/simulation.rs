@@ -23,7 +23,7 @@ pub enum Formulation {
     Auto,
     /// Each body has its own, and joints constrain them.
     Absolute,
-    /// Those of the joints, of which each carries a body; joints that close loops constrain them.
+    /// Those of the joints, as far as joints give bodies their positions; those that close loops constrain them.
     Joint,
 }
 

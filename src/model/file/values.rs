@@ -31,7 +31,7 @@ schema_only! {
         Auto,
         /// Each body has coordinates of its own, and joints constrain them.
         Absolute,
-        /// The joints' angles and displacements, of which each carries a body; joints that close loops constrain them.
+        /// The joints' angles and displacements, as far as joints give bodies their positions; those that close loops constrain them.
         Joint,
     }
 

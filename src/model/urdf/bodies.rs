@@ -71,8 +71,8 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
         inertia: Some(inertia),
         center_of_mass: Some(formulas(reader, &center)),
         coordinates: coordinates.collect(),
-        held: Vec::new(),
-        held_orientation: None,
+        prescribed: Vec::new(),
+        prescribed_orientation: None,
         points: Vec::new(),
     }
 }
