@@ -34,11 +34,11 @@ pub(super) fn all() -> Result<Vec<EffectDocs>, Failure> {
 
 /// What an effect adds to the instructions of a step.
 pub(super) fn adds(cost: &EffectCost) -> String {
-    let EffectCost { acting, apart } = cost;
+    let EffectCost { active, inactive } = cost;
     let always =
-        format!("adds {} an iteration, {} a factorisation, {} a step", acting.iteration, acting.factor, acting.step);
-    match apart {
-        Some(apart) => format!("{always}; apart {}, {}, {}", apart.iteration, apart.factor, apart.step),
+        format!("adds {} an iteration, {} a factorisation, {} a step", active.iteration, active.factor, active.step);
+    match inactive {
+        Some(inactive) => format!("{always}; inactive {}, {}, {}", inactive.iteration, inactive.factor, inactive.step),
         None => always,
     }
 }
@@ -54,19 +54,20 @@ pub(super) fn text() -> Result<String, Failure> {
         ("an iteration", Align::Right),
         ("a factorisation", Align::Right),
         ("a step", Align::Right),
-        ("while apart", Align::Right),
+        ("while inactive", Align::Right),
     ]);
     for EffectDocs { docs, adds } in all()? {
         if !text.is_empty() {
             text.push('\n');
         }
         text += &element(&docs);
-        if let Some(EffectCost { acting, apart }) = adds {
+        if let Some(EffectCost { active, inactive }) = adds {
             let number = |number: i64| number.to_string();
-            let apart =
-                apart.map_or(String::new(), |apart| format!("{}, {}, {}", apart.iteration, apart.factor, apart.step));
-            let [iteration, factor, step] = [acting.iteration, acting.factor, acting.step].map(number);
-            costs.row([docs.keyword.to_owned(), iteration, factor, step, apart]);
+            let inactive = inactive.map_or(String::new(), |inactive| {
+                format!("{}, {}, {}", inactive.iteration, inactive.factor, inactive.step)
+            });
+            let [iteration, factor, step] = [active.iteration, active.factor, active.step].map(number);
+            costs.row([docs.keyword.to_owned(), iteration, factor, step, inactive]);
         }
     }
     text += "\nWhat one of each adds to a small mechanism of the plane in absolute coordinates. Apart: where no sample of a tile touches.\n";

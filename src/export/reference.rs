@@ -11,12 +11,13 @@ pub fn effects(costs: &[(&'static str, EffectCost)]) -> String {
     for docs in &docs {
         page += &element(docs);
     }
-    page += "\n## What they cost\n\nInstructions that one of each adds to a small mechanism of the plane in absolute coordinates; apart: while no sample \
-             of a tile touches.\n\n| effect | an iteration | a factorisation | a step | apart |\n|---|---|---|---|---|\n";
-    for (keyword, EffectCost { acting, apart }) in costs {
-        let apart =
-            apart.map_or(String::new(), |apart| format!("{}, {}, {}", apart.iteration, apart.factor, apart.step));
-        page += &format!("| `{keyword}` | {} | {} | {} | {apart} |\n", acting.iteration, acting.factor, acting.step);
+    page += "\n## What they cost\n\nInstructions that one of each adds to a small mechanism of the plane in absolute coordinates; \
+             inactive: while a conditional effect acts on no sample of a tile.\n\n| effect | an iteration | a factorisation | a step | inactive |\n|---|---|---|---|---|\n";
+    for (keyword, EffectCost { active, inactive }) in costs {
+        let inactive = inactive.map_or(String::new(), |inactive| {
+            format!("{}, {}, {}", inactive.iteration, inactive.factor, inactive.step)
+        });
+        page += &format!("| `{keyword}` | {} | {} | {} | {inactive} |\n", active.iteration, active.factor, active.step);
     }
     page
 }

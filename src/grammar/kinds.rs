@@ -150,8 +150,8 @@ vector! {
     Direction, schema values::Direction, leaves plane::points_out,
     read |reader, node, _| reader.direction(node);
     /// An axis about which something turns, of any length but zero.
-    Axis, schema values::Direction, leaves plane::turns_out,
-    read |reader, node, _| reader.turning_axis(node);
+    Axis, schema values::Direction, leaves plane::rotates_out,
+    read |reader, node, _| reader.rotation_axis(node);
     /// A number for each axis of a frame, or one for all.
     PerAxis, schema values::PerAxis, leaves nothing_leaves,
     read |reader, node, quantity| match node.value {
@@ -276,8 +276,8 @@ reference! {
         |points, found| found.extend(points.iter_mut().map(Reference::Point));
     [BodyRef; 2], two_names(), |reader, node| reader.between_bodies(node).map(|bodies| bodies.map(BodyRef)),
         |bodies, found| found.extend(bodies.iter_mut().map(|body| Reference::Body(&mut body.0)));
-    [Rotating; 2], two_names(), |reader, node| reader.turning(node),
-        |turnings, found| found.extend(turnings.iter_mut().map(|turning| match turning {
+    [Rotating; 2], two_names(), |reader, node| reader.two_rotating(node),
+        |pair, found| found.extend(pair.iter_mut().map(|rotating| match rotating {
             Rotating::Body(body) => Reference::Body(body),
             Rotating::Joint(joint) => Reference::Joint(joint),
         }));

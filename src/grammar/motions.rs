@@ -27,7 +27,7 @@ pub const MOTIONS: [Motion<Coordinate>; 16] = [
 ];
 
 /// Vectors of a body's rotation in space, in the ground's axes or in the body's.
-pub const TURNING: [Motion<bool>; 4] = [
+pub const ANGULAR_MOTIONS: [Motion<bool>; 4] = [
     ("omega", false, TimeOrder::Velocity),
     ("alpha", false, TimeOrder::Acceleration),
     ("omega_body", true, TimeOrder::Velocity),
@@ -56,7 +56,7 @@ pub const AXES: [&str; 3] = ["x", "y", "z"];
 /// Whether it is the name of a part of a body's motion, so that no point can be called so.
 pub fn is_motion(name: &str) -> bool {
     MOTIONS.iter().any(|(motion, ..)| *motion == name)
-        || TURNING.iter().any(|(vector, ..)| *vector == name)
+        || ANGULAR_MOTIONS.iter().any(|(vector, ..)| *vector == name)
         || ATTITUDE.contains(&name)
         || name == ORIENTATION
 }

@@ -3,7 +3,9 @@
 use std::ops::Range;
 
 use super::dimension::Kind;
-use super::motions::{ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, TURNING, joint_dimension, motion_dimension};
+use super::motions::{
+    ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, joint_dimension, motion_dimension,
+};
 use super::quantity::Dimension;
 use super::symbols::{Coordinate, EnergyKind, ReactionComponent, Symbol, SymbolTable, TimeOrder};
 
@@ -65,7 +67,7 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
             .or_else(|| reaction(table, owner, member, None))
             .or_else(|| measure(table, owner, member)),
         (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
-            .or_else(|| turning(table, owner, member, part))
+            .or_else(|| angular_motion(table, owner, member, part))
             .or_else(|| reaction(table, owner, member, Some(part)))
             .or_else(|| of_beam(table, name)),
         _ => None,
@@ -106,12 +108,12 @@ fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
 /// The parts of a body's motion.
 pub(super) fn motions(table: &impl SymbolTable, body: usize) -> impl Iterator<Item = &'static Motion<Coordinate>> {
     let spatial = table.is_spatial();
-    let turns_any_way = table.has_orientation(body);
+    let has_orientation = table.has_orientation(body);
     MOTIONS.iter().filter(move |(_, coordinate, _)| match coordinate {
         Coordinate::X | Coordinate::Y => true,
         Coordinate::Z => spatial,
-        Coordinate::Angle => !turns_any_way,
-        Coordinate::Euler(_) => turns_any_way,
+        Coordinate::Angle => !has_orientation,
+        Coordinate::Euler(_) => has_orientation,
     })
 }
 
@@ -137,9 +139,9 @@ fn attitude(table: &impl SymbolTable, body: &str, member: &str) -> Option<Symbol
     table.has_orientation(body).then_some(Symbol::RollPitchYaw { body, angle })
 }
 
-fn turning(table: &impl SymbolTable, body: &str, member: &str, part: &str) -> Option<Symbol> {
+fn angular_motion(table: &impl SymbolTable, body: &str, member: &str, part: &str) -> Option<Symbol> {
     let body = table.body(body)?;
-    let &(_, in_body, order) = TURNING.iter().find(|(vector, ..)| *vector == member)?;
+    let &(_, in_body, order) = ANGULAR_MOTIONS.iter().find(|(vector, ..)| *vector == member)?;
     let axis = AXES.iter().position(|axis| *axis == part)?;
     (body != 0 && table.is_spatial()).then_some(Symbol::AngularMotion { body, axis, order, in_body })
 }

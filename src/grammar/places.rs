@@ -138,7 +138,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// Two bodies by their angles, or two joints by theirs.
-    pub fn turning(&mut self, node: &Node) -> Option<[Rotating; 2]> {
+    pub fn two_rotating(&mut self, node: &Node) -> Option<[Rotating; 2]> {
         let pair = self.two(node, "a list of two bodies or joints")?;
         if !pair.iter().any(|node| self.names_joint(node)) {
             let bodies = self.between_bodies(node)?;

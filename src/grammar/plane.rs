@@ -21,8 +21,8 @@ pub fn points_out(direction: &Node) -> bool {
     is(direction, "z") || leaves_plane(direction)
 }
 
-/// Whether turning about the axis leaves the plane.
-pub fn turns_out(axis: &Node) -> bool {
+/// Whether a rotation about the axis leaves the plane.
+pub fn rotates_out(axis: &Node) -> bool {
     match &axis.value {
         Value::Sequence(items) => !items.iter().take(2).all(|item| is(item, "0")),
         _ => !is(axis, "z"),

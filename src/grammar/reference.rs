@@ -4,7 +4,7 @@
 use serde::Serialize;
 use symdiff::formula::FUNCTIONS;
 
-use super::motions::{ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, TURNING, joint_dimension, motion_dimension};
+use super::motions::{ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, joint_dimension, motion_dimension};
 use super::names::ENERGIES;
 use super::quantity::Dimension;
 use super::symbols::{Coordinate, EnergyKind, JointCoordinate, TimeOrder};
@@ -123,7 +123,7 @@ fn body_outputs() -> Vec<OutputDocs> {
         output("body", format!("BODY.{name}"), motion_dimension(coordinate, order).unit(), meaning)
     };
     let mut outputs: Vec<OutputDocs> = MOTIONS.iter().map(motion).collect();
-    for (name, in_body, order) in TURNING {
+    for (name, in_body, order) in ANGULAR_MOTIONS {
         let what = rate_of(order, "rotation", "angular velocity", "angular acceleration");
         let frame = if in_body { "the body's own" } else { "the ground's" };
         outputs.extend(AXES.map(|axis| {

@@ -320,7 +320,7 @@ pub enum Reference<'a> {
 /// Which motions of a joint friction resists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrictionMode {
-    /// Its turning: revolute joints.
+    /// Its rotation: revolute joints.
     Rotating,
     /// Its sliding: prismatic joints.
     Sliding,

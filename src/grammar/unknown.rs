@@ -1,6 +1,6 @@
 //! What to say of a name in a formula that stands for nothing.
 
-use super::motions::{JOINT_MOTIONS, MOTIONS, TURNING, is_motion};
+use super::motions::{ANGULAR_MOTIONS, JOINT_MOTIONS, MOTIONS, is_motion};
 use super::names::{Context, ENERGIES, NameError, motions};
 use super::quantity::Dimension;
 use super::symbols::{Sensor, SymbolTable};
@@ -68,62 +68,9 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
     if let Some((node, member)) = name.rsplit_once('.').filter(|(node, _)| *node != owner && known(node)) {
         return unknown_member(table, name, node, member, context);
     }
-    let body = table.body(owner);
-    let joint = table.joint(owner).is_some();
     let after = owner.len() + 1;
-    match (body, joint) {
-        (Some(body), joint) => {
-            let parts = motions(table, body).map(|(motion, ..)| *motion);
-            let points = table.points(body);
-            let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
-            let point = points.clone().any(|point| point == member);
-            if body == 0 && !point && MOTIONS.iter().any(|(motion, ..)| *motion == member) {
-                let message = format!("the ground does not move: `{}` is always 0", suggest::clip(name));
-                return NameError { message, part: 0..name.len(), help: None };
-            }
-            if point && part.is_empty() {
-                let message = format!("`{}` is a point, not a number", suggest::clip(name));
-                let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
-                return NameError { message, part: 0..name.len(), help };
-            }
-            let along_z = matches!(part, "z" | "vz" | "az");
-            if !table.is_spatial() && if point { along_z } else { is_motion(member) } {
-                let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
-                let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
-                return NameError { message, part: 0..name.len(), help: Some(help) };
-            }
-            if point {
-                let start = after + member.len() + 1;
-                let message = format!("a point has no `{}`", suggest::clip(part));
-                let lengths = motions(table, body).filter(|(_, coordinate, _)| coordinate.is_length());
-                let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
-                return NameError { message, part: start..name.len(), help };
-            }
-            if let Some((vector, ..)) = TURNING.iter().find(|(vector, ..)| *vector == member) {
-                let message = format!("`{vector}` is a vector: it has the parts x, y and z");
-                let help = Some(format!("e.g. `{owner}.{vector}.z`"));
-                return NameError { message, part: 0..name.len(), help };
-            }
-            if member == "angle" || member.starts_with("angular_") {
-                let message =
-                    format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
-                let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
-                let part = after..after + member.len();
-                return NameError { message, part, help: Some(help.to_owned()) };
-            }
-            let reactions: &[&str] = if joint { &["force", "torque"] } else { &[] };
-            let known: Vec<&str> = if part.is_empty() {
-                points.chain(reactions.iter().copied()).chain(parts).collect()
-            } else {
-                points.collect()
-            };
-            let what = if part.is_empty() { "has no" } else { "has no point" };
-            NameError {
-                message: format!("body `{}` {what} `{}`", suggest::clip(owner), suggest::clip(member)),
-                part: after..after + member.len(),
-                help: suggest::help(member, if part.is_empty() { "names in it" } else { "points of it" }, known),
-            }
-        }
+    match (table.body(owner), table.joint(owner).is_some()) {
+        (Some(body), _) => unknown_in_body(table, name, owner, body, rest),
         (None, true) => NameError {
             message: format!("joint `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
             part: after..name.len(),
@@ -156,6 +103,59 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
                 help: suggest::help(owner, kind, bodies.chain(joints.into_iter().flatten())),
             }
         }
+    }
+}
+
+/// Why a body, by name and index, has no such part.
+fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usize, rest: &str) -> NameError {
+    let after = owner.len() + 1;
+    let points = table.points(body);
+    let (member, part) = rest.split_once('.').unwrap_or((rest, ""));
+    let point = points.clone().any(|point| point == member);
+    if body == 0 && !point && MOTIONS.iter().any(|(motion, ..)| *motion == member) {
+        let message = format!("the ground does not move: `{}` is always 0", suggest::clip(name));
+        return NameError { message, part: 0..name.len(), help: None };
+    }
+    if point && part.is_empty() {
+        let message = format!("`{}` is a point, not a number", suggest::clip(name));
+        let help = Some(format!("say what of it: `{name}.x` or `{name}.y`"));
+        return NameError { message, part: 0..name.len(), help };
+    }
+    let along_z = matches!(part, "z" | "vz" | "az");
+    if !table.is_spatial() && if point { along_z } else { is_motion(member) } {
+        let message = format!("`{}` leaves the plane, but the model is planar", suggest::clip(name));
+        let help = "write `space: spatial` for a mechanism that moves in space".to_owned();
+        return NameError { message, part: 0..name.len(), help: Some(help) };
+    }
+    if point {
+        let start = after + member.len() + 1;
+        let message = format!("a point has no `{}`", suggest::clip(part));
+        let lengths = motions(table, body).filter(|(_, coordinate, _)| coordinate.is_length());
+        let help = suggest::help(part, "parts of its motion", lengths.map(|(motion, ..)| *motion));
+        return NameError { message, part: start..name.len(), help };
+    }
+    if let Some((vector, ..)) = ANGULAR_MOTIONS.iter().find(|(vector, ..)| *vector == member) {
+        let message = format!("`{vector}` is a vector: it has the parts x, y and z");
+        let help = Some(format!("e.g. `{owner}.{vector}.z`"));
+        return NameError { message, part: 0..name.len(), help };
+    }
+    if member == "angle" || member.starts_with("angular_") {
+        let message = format!("body `{}` turns about more than z, so it has no `{member}`", suggest::clip(owner));
+        let help = "the `angle` of a joint is one, and `omega.x`, `roll`, `pitch` and `yaw` are of the body";
+        let part = after..after + member.len();
+        return NameError { message, part, help: Some(help.to_owned()) };
+    }
+    let reactions: &[&str] = if table.joint(owner).is_some() { &["force", "torque"] } else { &[] };
+    let known: Vec<&str> = if part.is_empty() {
+        points.chain(reactions.iter().copied()).chain(motions(table, body).map(|(motion, ..)| *motion)).collect()
+    } else {
+        points.collect()
+    };
+    let what = if part.is_empty() { "has no" } else { "has no point" };
+    NameError {
+        message: format!("body `{}` {what} `{}`", suggest::clip(owner), suggest::clip(member)),
+        part: after..after + member.len(),
+        help: suggest::help(member, if part.is_empty() { "names in it" } else { "points of it" }, known),
     }
 }
 

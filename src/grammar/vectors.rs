@@ -70,8 +70,8 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// An axis about which something turns: z, where the mechanism is planar.
-    pub fn turning_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
-        if !self.model.is_spatial() && plane::turns_out(node) {
+    pub fn rotation_axis(&mut self, node: &Node) -> Option<[Formula; 3]> {
+        if !self.model.is_spatial() && plane::rotates_out(node) {
             self.leaves_the_plane(node);
         }
         self.axis(node)
@@ -129,7 +129,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         match *kind {
             "rpy" => Some(Rotation::RollPitchYaw(self.three(value, Context::Constant, Dimension::ANGLE)?)),
             "axis" => {
-                let axis = self.turning_axis(value);
+                let axis = self.rotation_axis(value);
                 let angle = self.required(&fields, "angle");
                 let angle = angle.and_then(|node| self.formula(node, Context::Constant, Dimension::ANGLE));
                 Some(Rotation::AxisAngle(axis?, angle?))

@@ -198,8 +198,9 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
             None => found.push((named, item)),
         }
     }
-    let turning: Vec<&Node> = found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
-    if let [_, second] = turning.as_slice() {
+    let rotations: Vec<&Node> =
+        found.iter().filter(|(named, _)| !named[0].is_length()).map(|(_, node)| *node).collect();
+    if let [_, second] = rotations.as_slice() {
         reader.error(
             second.span.clone(),
             "a body turns by an `angle` about z or by an `orientation`, not by both",

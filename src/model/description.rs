@@ -73,7 +73,7 @@ pub struct Space {
     pub why: String,
 }
 
-/// A named number: certain, or known to lie in an interval.
+/// A named number: deterministic, or known to lie in an interval.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Its name in formulas.

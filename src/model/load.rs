@@ -10,6 +10,8 @@ use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text};
 use super::urdf::{self, Urdf};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
+use crate::grammar::names::GROUND;
+use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
@@ -190,16 +192,7 @@ fn describe(
     let mut reader = blank(name, diagnostics);
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
-    if let Some(node) = fields.get("model") {
-        title(&mut reader, node);
-    }
-    if let Some(scene) = &variant.scene {
-        reader.model.name = format!("{}/{scene}", reader.model.name);
-    }
-    if let Some(node) = fields.get("description") {
-        let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
-        reader.model.description = text;
-    }
+    title(&mut reader, &fields, variant.scene.as_deref());
     let robot = match fields.get("urdf") {
         None => None,
         Some(node) => {
@@ -239,12 +232,7 @@ fn describe(
     let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
     match &robot {
         Some(robot) => robot.finish(&mut reader, &variant.robot, limits, output_entries.is_empty()),
-        None => {
-            if let Some((_, at)) = limits {
-                let message = "`limits` are those of a robot's joints, but the model names no `urdf`";
-                reader.error(at, message, "the effect `stop` limits a joint of the model's own".to_owned());
-            }
-        }
+        None => no_limits(&mut reader, limits),
     }
     if let Some(node) = reader.required(&fields, "simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
@@ -256,13 +244,8 @@ fn describe(
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
-    if robot.is_none() && body_entries.iter().all(|entry| entry.key == crate::grammar::names::GROUND) {
-        let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
-        reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
-    }
-    if robot.is_none() && output_entries.is_empty() {
-        let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
-        reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
+    if robot.is_none() {
+        not_empty(&mut reader, &fields, body_entries, output_entries);
     }
     let unused = parameters::unused(&reader, parameter_entries);
     let Reader { mut model, idle, .. } = reader;
@@ -274,11 +257,40 @@ fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [
     node.map_or(&[], |node| reader.entries(node, what))
 }
 
-/// The model's name, which is also that of its folder.
-fn title(reader: &mut Reader, node: &Node) {
-    let Some(scalar) = reader.scalar(node, "a name") else { return };
-    if reader.folder_name(&scalar.text, node.span.clone(), "a model") {
+/// The model's name, which is also that of its folder, and its description.
+fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
+    if let Some(node) = fields.get("model")
+        && let Some(scalar) = reader.scalar(node, "a name")
+        && reader.folder_name(&scalar.text, node.span.clone(), "a model")
+    {
         reader.model.name.clone_from(&scalar.text);
+    }
+    if let Some(scene) = scene {
+        reader.model.name = format!("{}/{scene}", reader.model.name);
+    }
+    if let Some(node) = fields.get("description") {
+        let text = reader.scalar(node, "a text").map(|scalar| scalar.text.clone());
+        reader.model.description = text;
+    }
+}
+
+/// Reports that a model without a robot has no body or no output.
+fn not_empty(reader: &mut Reader, fields: &Fields, bodies: &[Entry], outputs: &[Entry]) {
+    if bodies.iter().all(|entry| entry.key == GROUND) {
+        let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
+        reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
+    }
+    if outputs.is_empty() {
+        let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
+        reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
+    }
+}
+
+/// Reports limits that no robot has.
+fn no_limits(reader: &mut Reader, limits: Option<(&Node, Span)>) {
+    if let Some((_, at)) = limits {
+        let message = "`limits` are those of a robot's joints, but the model names no `urdf`";
+        reader.error(at, message, "the effect `stop` limits a joint of the model's own".to_owned());
     }
 }
 

@@ -4,10 +4,11 @@ use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::file;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
-use crate::grammar::motions::{ORIENTATION, TURNING, joint_dimension, motion_dimension, motion_name};
+use crate::grammar::motions::{ANGULAR_MOTIONS, ORIENTATION, joint_dimension, motion_dimension, motion_name};
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
+use crate::grammar::unknown;
 use crate::grammar::{Coordinate, ReactionComponent, Symbol, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -27,22 +28,10 @@ pub fn start_values(reader: &mut Reader, entries: &[Entry], velocities: bool) ->
 
 fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<StartValue> {
     let name = entry.key.as_str();
-    if let Some(value) = turning_value(reader, entry, velocities) {
+    if let Some(value) = rotation_value(reader, entry, velocities) {
         return value;
     }
-    let symbol = match reader
-        .model
-        .symbol(name)
-        .ok_or_else(|| crate::grammar::unknown::unknown(&reader.model, name, Context::Equation))
-    {
-        Ok(symbol) => symbol,
-        Err(error) => {
-            let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
-            let verbatim = entry.key_span.len() == name.len();
-            reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
-            return None;
-        }
-    };
+    let symbol = start_symbol(reader, entry)?;
     let (order, dimension) = match symbol {
         Symbol::Coordinate { body, coordinate, order } if !matches!(coordinate, Coordinate::Euler(_)) => {
             if !reader.model.bodies[body].coordinates.contains(&coordinate) {
@@ -87,10 +76,23 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
     }
 }
 
+/// What a start value is of; reports a name that stands for nothing.
+fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
+    let name = entry.key.as_str();
+    let found = reader.model.symbol(name);
+    if found.is_none() {
+        let error = unknown::unknown(&reader.model, name, Context::Equation);
+        let part = entry.key_span.start + error.part.start..entry.key_span.start + error.part.end;
+        let verbatim = entry.key_span.len() == name.len();
+        reader.error(if verbatim { part } else { entry.key_span.clone() }, error.message, error.help);
+    }
+    found
+}
+
 /// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
-fn turning_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
+fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
     let (owner, part) = entry.key.split_once('.')?;
-    let velocity = TURNING.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
+    let velocity = ANGULAR_MOTIONS.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
     if part != ORIENTATION && velocity.is_none() {
         return None;
     }

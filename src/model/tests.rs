@@ -29,7 +29,7 @@ fn interval(description: &Description, name: &str) -> [f64; 3] {
     let parameter = description.parameters.iter().find(|parameter| parameter.name == name).unwrap();
     match parameter.value {
         ParameterValue::Interval { nominal, lower, upper } => [nominal, lower, upper],
-        ParameterValue::Formula(_) => panic!("`{name}` is certain"),
+        ParameterValue::Formula(_) => panic!("`{name}` is deterministic"),
     }
 }
 
@@ -103,7 +103,7 @@ fn overrides_replace_value_and_tolerance() {
     close(interval(&with("l = 160 +- 2"), "l"), [0.16, 0.158, 0.162]);
     close(interval(&with("l=[100,0.2 m]"), "l"), [0.15, 0.1, 0.2]);
     close(interval(&with("l=15 cm±1 mm"), "l"), [0.15, 0.149, 0.151]);
-    let ParameterValue::Formula(value) = with("l=150").parameters.remove(0).value else { panic!("certain") };
+    let ParameterValue::Formula(value) = with("l=150").parameters.remove(0).value else { panic!("deterministic") };
     assert_eq!(value.as_number(), Some(0.15));
 }
 

@@ -42,7 +42,7 @@ impl std::ops::Add for StepInstructions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EffectCost {
     /// Where it acts.
-    pub acting: StepInstructions,
+    pub active: StepInstructions,
     /// Where it and its like touch nothing in any sample of a tile; absent where it always acts.
-    pub apart: Option<StepInstructions>,
+    pub inactive: Option<StepInstructions>,
 }

@@ -32,10 +32,10 @@ pub struct Explanation {
     pub effects: Vec<EffectExplanation>,
     /// Outputs by name.
     pub outputs: Vec<String>,
-    /// How the work is divided; where effects act only sometimes, with all of them acting.
+    /// How the work is divided; where effects act only sometimes, with all of them active.
     pub instructions: InstructionCounts,
     /// The same where none of them acts in any sample of a tile, if that is less.
-    pub apart: Option<InstructionCounts>,
+    pub inactive: Option<InstructionCounts>,
     /// The matrix of Newton's method.
     pub newton: NewtonMatrix,
     /// What the model says and the program does not hold.

@@ -181,9 +181,9 @@ impl EffectCost {
     /// In two programs.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let apart = |cost: &Self| cost.apart.unwrap_or(cost.acting);
-        let conditional = self.apart.is_some() || other.apart.is_some();
-        Self { acting: self.acting + other.acting, apart: conditional.then(|| apart(&self) + apart(&other)) }
+        let inactive = |cost: &Self| cost.inactive.unwrap_or(cost.active);
+        let conditional = self.inactive.is_some() || other.inactive.is_some();
+        Self { active: self.active + other.active, inactive: conditional.then(|| inactive(&self) + inactive(&other)) }
     }
 }
 
@@ -226,9 +226,9 @@ impl Explanation {
             }
         }
         self.outputs.extend(other.outputs);
-        if self.apart.is_some() || other.apart.is_some() {
-            let apart = self.apart.get_or_insert_with(|| self.instructions.clone());
-            apart.add(other.apart.as_ref().unwrap_or(&other.instructions));
+        if self.inactive.is_some() || other.inactive.is_some() {
+            let inactive = self.inactive.get_or_insert_with(|| self.instructions.clone());
+            inactive.add(other.inactive.as_ref().unwrap_or(&other.instructions));
         }
         self.instructions.add(&other.instructions);
         // The subsystems' matrices are blocks on one diagonal.

@@ -178,7 +178,7 @@ fn constants(prepared: &[Prepared]) -> Vec<Decision> {
     found
 }
 
-/// Parameters that are certain are folded into the instructions.
+/// Parameters that are deterministic are folded into the instructions.
 fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
     let (mut other, mut count) = (0, 0);
     for one in prepared {
@@ -197,7 +197,7 @@ fn numbers(prepared: &[Prepared], step: usize) -> Option<Decision> {
             "{} folded into the instructions",
             if count == 1 { "1 number".to_owned() } else { format!("{count} numbers") }
         ),
-        why: "parameters that are certain".to_owned(),
+        why: "parameters that are deterministic".to_owned(),
         saves: Some(saving(other, step, Each::Step)),
     })
 }

@@ -78,7 +78,8 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
             .collect(),
         outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
         instructions: instruction_counts(program, true),
-        apart: Some(instruction_counts(program, false)).filter(|apart| *apart != instruction_counts(program, true)),
+        inactive: Some(instruction_counts(program, false))
+            .filter(|inactive| *inactive != instruction_counts(program, true)),
         newton: NewtonMatrix {
             size: program.residual.len(),
             nonzeros,

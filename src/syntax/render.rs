@@ -20,6 +20,9 @@ const LINES_TOGETHER: usize = 6;
 /// Characters of a line on either side of the markers that are rendered at most.
 const LONG_LINE: usize = 400;
 
+/// Characters of a line of help.
+const LONG_HELP: usize = 100;
+
 impl Diagnostics {
     /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty. The only control
     /// characters are those of the colours.
@@ -65,7 +68,7 @@ impl Diagnostics {
             group = group.element(snippet);
             moved.extend(places);
         }
-        let help = diagnostic.help.as_deref().map(|help| Level::HELP.message(help));
+        let help = diagnostic.help.as_deref().map(|help| Level::HELP.message(wrapped(help)));
         (vec![group.elements(help)], moved)
     }
 
@@ -98,6 +101,23 @@ impl Diagnostic {
             ..self.clone()
         }
     }
+}
+
+/// A text in lines of at most so many characters, broken at spaces.
+fn wrapped(text: &str) -> String {
+    let mut wrapped = String::with_capacity(text.len());
+    let mut width = 0;
+    for word in text.split_inclusive(' ') {
+        let length = word.trim_end().chars().count();
+        if width > 0 && width + length > LONG_HELP {
+            wrapped.truncate(wrapped.trim_end().len());
+            wrapped.push('\n');
+            width = 0;
+        }
+        wrapped += word;
+        width += word.chars().count();
+    }
+    wrapped
 }
 
 struct Mark<'d> {

@@ -3,6 +3,12 @@
 /// Known names that are looked at.
 const MOST_KNOWN: usize = 1000;
 
+/// Known names that are listed in full.
+const MOST_LISTED: usize = 32;
+
+/// How many of more known names are listed.
+const FEW: usize = 3;
+
 /// Longest name that is compared or quoted in full.
 const LONGEST: usize = 60;
 
@@ -34,19 +40,27 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
         .map(|(_, candidate)| candidate)
 }
 
-/// Help for an unknown name: the nearest known one, or all where they are few. `kind` is their plural: `bodies`.
+/// Help for an unknown name: the nearest known one, or all, or those of many that are most alike. `kind` is their plural: `bodies`.
+/// `None` where no known name is short enough to be shown.
 pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>) -> Option<String> {
     let known: Vec<&str> = known.into_iter().take(MOST_KNOWN).collect();
     if let Some(near) = nearest(name, known.iter().copied()) {
         return Some(format!("did you mean `{near}`?"));
     }
-    match known.as_slice() {
-        [] => Some(format!("there are no {kind}")),
-        [one] if one.len() <= LONGEST => Some(format!("there is only `{one}`")),
-        few if few.len() <= 16 && few.iter().all(|name| name.len() <= LONGEST) => {
-            Some(format!("the {kind} are {}", list(few)))
+    let mut short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= LONGEST).collect();
+    match short.as_slice() {
+        _ if known.is_empty() => Some(format!("there are no {kind}")),
+        [] => None,
+        [one] if known.len() == 1 => Some(format!("there is only `{one}`")),
+        all if all.len() == known.len() && all.len() <= MOST_LISTED => Some(format!("the {kind} are {}", list(all))),
+        _ => {
+            let name = clip(name).to_lowercase();
+            // Alike is what begins alike; the sort is stable.
+            let likeness = |other: &str| strsim::jaro_winkler(&name, &other.to_lowercase());
+            short.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
+            short.truncate(FEW);
+            Some(format!("there are {} {kind}, most like it {}", known.len(), list(&short)))
         }
-        _ => None,
     }
 }
 
@@ -84,6 +98,14 @@ mod tests {
         assert_eq!(nearest("x", ["y"]), None);
         assert_eq!(nearest("l3", ["l1", "tau"]), Some("l1"));
         assert_eq!(help("piston", "bodies", bodies).unwrap(), "the bodies are `crank`, `rod` and `slider`");
+        let many: Vec<String> = (0..50).map(|index| format!("point{index}")).chain(["wheel".to_owned()]).collect();
+        let many = || many.iter().map(String::as_str);
+        assert_eq!(
+            help("whee_of_cart", "points", many()).unwrap(),
+            "there are 51 points, most like it `wheel`, `point0` and `point1`"
+        );
+        assert_eq!(help("wing", "points", many().take(30)).unwrap().matches("point").count(), 31);
+        assert_eq!(help("wing", "points", []).unwrap(), "there are no points");
         assert_eq!(clip(&"x".repeat(100)).chars().count(), 61);
     }
 }

@@ -136,7 +136,7 @@ impl Vary for Description {
 
     fn uncertain(mut self, parameter: &str, relative: f64) -> Self {
         let found = self.parameters.iter_mut().find(|known| known.name == parameter).unwrap();
-        let ParameterValue::Interval { nominal, .. } = found.value else { panic!("{parameter} is certain") };
+        let ParameterValue::Interval { nominal, .. } = found.value else { panic!("{parameter} is deterministic") };
         let half = relative * nominal.abs();
         found.value = ParameterValue::Interval { nominal, lower: nominal - half, upper: nominal + half };
         self

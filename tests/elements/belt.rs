@@ -1,5 +1,6 @@
 //! Belts: the ratio, and tensions by the torque carried.
 
+use crate::common::power::{APART, assert_balance, pair};
 use crate::common::{curve, nominal, read, row};
 
 /// A pulley turned at a constant speed drives another against a brake, until nothing changes any more: its speed and the tensions
@@ -87,4 +88,28 @@ simulation: { duration: 0.1, step: 1e-3 }
     }
     let (found, pull) = (curve(&bounds, "reaction")[0], 2.0 * tension * 0.51 / strand(0.51));
     assert!((found - pull).abs() < 1e-4, "{found}, not {pull}");
+}
+
+/// Damping takes c (ẋ₁² + ẋ₂²) from the energy of pulleys and strands, of which both stay taut.
+#[test]
+fn damping_is_all_that_takes_energy() {
+    let rates = |run: &str, [first, second]: [f64; 2], parting: &str| {
+        let sign = if run == "open" { -1.0 } else { 1.0 };
+        let shift = format!("({first}*a.angular_velocity + {}*b.angular_velocity)", sign * second);
+        format!("(({parting}) + {shift})^2 + (({parting}) - {shift})^2")
+    };
+    for run in ["open", "crossed"] {
+        let belt = format!(
+            "  belt: {{ belt: {{ between: [a, b], run: {run}, first_radius: 0.3, second_radius: 0.5, stiffness: 20, damping: 0.5, preload: 40 }} }}"
+        );
+        assert_balance(&pair("", &belt, APART), &format!("-0.5*({})", rates(run, [0.3, 0.5], "0")));
+    }
+    let belt = "  belt:
+    belt:
+      { between: [a, b], first_radius: 0.15, second_radius: 0.25, stiffness: 1, damping: 0.3, preload: 1.5, centers: [a.P, b.P], distance: 1.7 }";
+    // dL/dt, L² = d² − (r₁ − r₂)²
+    let along = |axis: &str| format!("(b.P.{axis} - a.P.{axis})*(b.P.v{axis} - a.P.v{axis})");
+    let square = "((b.P.x - a.P.x)^2 + (b.P.y - a.P.y)^2 - 0.01)";
+    let parting = format!("({} + {})/sqrt({square})", along("x"), along("y"));
+    assert_balance(&pair("", belt, APART), &format!("-0.3*({})", rates("open", [0.15, 0.25], &parting)));
 }

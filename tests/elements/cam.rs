@@ -10,10 +10,13 @@ const BASE: f64 = 0.03;
 const OMEGA: f64 = 10.0;
 const GRAVITY: f64 = 9.81;
 
-/// A cam at constant speed that lifts a mass in a guide over its centre.
-fn run(follower: &str, lift: &str, tables: &str) -> Bounds {
+/// A cam at constant speed that lifts a mass in a guide over its centre, in the plane or in space.
+fn run(space: &str, follower: &str, lift: &str, tables: &str) -> Bounds {
+    // In space `torque` is a magnitude.
+    let about = if space == "spatial" { "torque.z" } else { "torque" };
     nominal(&read(&format!(
         "
+space: {space}
 {tables}
 bodies:
   wheel: {{ mass: 1, inertia: 0.01 }}
@@ -30,8 +33,8 @@ outputs:
   height: slider.y
   contact: nose.force
   side: guide.force.x
-  tilt: guide.torque
-  torque: drive.torque
+  tilt: guide.{about}
+  torque: drive.{about}
 simulation: {{ duration: 1.3, step: 5e-4, output_step: 5e-3 }}
 "
     )))
@@ -77,8 +80,8 @@ fn polynomial(angle: f64) -> [f64; 3] {
 
 #[test]
 fn a_harmonic_lift_has_its_closed_form() {
-    for follower in ["roller", "flat"] {
-        compare(follower, &run(follower, "0.005*(1 - cos(angle))", ""), 1e-4, harmonic);
+    for (space, follower) in [("planar", "roller"), ("planar", "flat"), ("spatial", "roller"), ("spatial", "flat")] {
+        compare(follower, &run(space, follower, "0.005*(1 - cos(angle))", ""), 1e-4, harmonic);
     }
 }
 
@@ -91,7 +94,7 @@ fn a_polynomial_lift_has_its_closed_form() {
     };
     let lift = format!("0.01*({} - {})", rise(0.0), rise(1.0));
     for follower in ["roller", "flat"] {
-        compare(follower, &run(follower, &lift, ""), 2e-2, polynomial);
+        compare(follower, &run("planar", follower, &lift, ""), 2e-2, polynomial);
     }
 }
 
@@ -103,7 +106,7 @@ fn a_table_is_a_lift() {
         format!("[{angle}, {}]", harmonic(angle)[0])
     });
     let tables = format!("tables: {{ rise: {{ points: [{}] }} }}", points.collect::<Vec<_>>().join(", "));
-    let bounds = run("roller", "rise(angle)", &tables);
+    let bounds = run("planar", "roller", "rise(angle)", &tables);
     let exact = |t: f64| BASE + harmonic((OMEGA * t).rem_euclid(std::f64::consts::TAU))[0];
     let height = distance_from(&bounds.times, curve(&bounds, "height"), exact);
     assert!(height < 1e-7, "{height:e}");

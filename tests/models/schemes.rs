@@ -32,9 +32,9 @@ fn nominal_sample(simulator: &Simulator) -> Vec<f64> {
 
 /// Every output's course of a sample.
 fn courses(simulator: &Simulator, schedule: &Schedule, sample: Vec<f64>) -> Vec<Vec<f64>> {
-    let mut fleet = EnsembleRun::start(simulator, &[sample], schedule.first_step()).unwrap();
+    let mut ensemble = EnsembleRun::start(simulator, &[sample], schedule.first_step()).unwrap();
     let mut values = Vec::new();
-    let stops = fleet.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
+    let stops = ensemble.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
     assert_eq!(stops, []);
     let outputs = simulator.program.outputs.len();
     (0..outputs).map(|output| values.iter().skip(output).step_by(outputs).copied().collect()).collect()

@@ -1,13 +1,15 @@
 //! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
 //! perhaps with `# help: …`, in a URDF `<!-- error: … -->`. Message and place must both be found, and nothing else.
 //!
+//! `{effects}` stands for the list of all effects, which grows.
+//!
 //! `MBINT_UPDATE=1 cargo test --test program bad_models` writes what is found; then read the difference.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use mbint::inner::{
-    model::{self, Override},
+    model::{self, EffectKind, Override},
     syntax::Diagnostics,
 };
 use proptest::prelude::*;
@@ -33,7 +35,15 @@ fn commented(path: &Path, lines: Vec<String>) -> Vec<String> {
     lines.iter().map(|line| format!("<!-- {} -->", line.trim_start_matches("# "))).collect()
 }
 
+/// `` `gravity`, … and `belt` ``.
+fn all_effects() -> String {
+    let quoted: Vec<String> = EffectKind::KEYWORDS.iter().map(|keyword| format!("`{keyword}`")).collect();
+    let (last, others) = quoted.split_last().unwrap();
+    format!("{} and {last}", others.join(", "))
+}
+
 fn found(diagnostics: &Diagnostics) -> Vec<String> {
+    let effects = all_effects();
     let mut lines = Vec::new();
     for record in diagnostics.records() {
         let severity = format!("{:?}", record.severity).to_lowercase();
@@ -42,7 +52,7 @@ fn found(diagnostics: &Diagnostics) -> Vec<String> {
             _ => String::new(),
         };
         lines.push(format!("# {severity}: {place}{}", record.message));
-        lines.extend(record.help.map(|help| format!("# help: {help}")));
+        lines.extend(record.help.map(|help| format!("# help: {}", help.replace(&effects, "{effects}"))));
     }
     lines
 }

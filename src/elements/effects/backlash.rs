@@ -67,7 +67,7 @@ impl ForceElement for Backlash {
     ];
 
     fn coordinates(&self) -> Vec<OnJoint> {
-        let joint = |turning: &Rotating| match turning {
+        let joint = |rotating: &Rotating| match rotating {
             Rotating::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
             Rotating::Body(_) => None,
         };
@@ -89,7 +89,7 @@ impl ForceElement for Backlash {
         let bearing_at = place.abs() - (half - corner);
         forces.only_where(bearing_at);
         let [ahead, behind] = [ahead, behind].map(|depth| PositivePart::of(depth, corner));
-        let torque = stiffness * (ahead.value - behind.value) + damping * (ahead.slope + behind.slope) * rate;
+        let torque = stiffness * (ahead.value - behind.value) + damping * (ahead.derivative + behind.derivative) * rate;
         let (back, forth) = (-torque, ratio * torque);
         forces.torque_about(self.between[0], forth)?;
         forces.torque_about(self.between[1], back)?;

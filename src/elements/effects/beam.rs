@@ -97,9 +97,9 @@ impl ForceElement for Beam {
         let chord = line / length;
         let across = chord.perpendicular();
         let rate = chord.dot(growth);
-        let turning = across.dot(growth) / length;
+        let turn_rate = across.dot(growth) / length;
 
-        let ends = self.between.map(|end| self.bent(forces, end, line, turning));
+        let ends = self.between.map(|end| self.bent(forces, end, line, turn_rate));
         let [first, second] = ends;
         let [first, second] = [first?, second?];
         // ∂e/∂φ₁, ∂e/∂φ₂
@@ -112,8 +112,8 @@ impl ForceElement for Beam {
         let tension = axial * (stretch + damping * stretching);
         let felt = [first, second].map(|end| end.angle + damping * end.rate);
         let mut moments = [[4.0, 2.0], [2.0, 4.0]].map(|row| bending * (row[0] * felt[0] + row[1] * felt[1]));
-        for (moment, slope) in moments.iter_mut().zip(gradient) {
-            *moment += tension * slope;
+        for (moment, derivative) in moments.iter_mut().zip(gradient) {
+            *moment += tension * derivative;
         }
 
         let shear = (moments[0] + moments[1]) / length;
@@ -156,12 +156,12 @@ impl Beam {
         forces: &dyn Forces<'g>,
         end: PointRef,
         line: Vector<'g>,
-        turning: Scalar<'g>,
+        turn_rate: Scalar<'g>,
     ) -> Result<End<'g>, BuildError> {
         let axis = forces.rotated(end.body, forces.prescribed_vector(&self.axis)?);
         let (along, beside) = (line.dot(axis), line.cross(axis)[2]);
         let angle = beside.atan2(along);
-        Ok(End { angle, rate: forces.angular_velocity(end.body)[2] - turning })
+        Ok(End { angle, rate: forces.angular_velocity(end.body)[2] - turn_rate })
     }
 }
 
@@ -172,8 +172,8 @@ fn sum_of_products<'g>(a: [Scalar<'g>; 2], b: [Scalar<'g>; 2]) -> Scalar<'g> {
 
 impl Checked for Beam {
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        let turning = self.between.iter().find(|end| reader.model.has_orientation(end.body));
-        if let (Some(end), Some(node)) = (turning, fields.get("between")) {
+        let free = self.between.iter().find(|end| reader.model.has_orientation(end.body));
+        if let (Some(end), Some(node)) = (free, fields.get("between")) {
             let message = format!("`{}` turns about more than z", reader.model.body_name(end.body));
             let help = "a beam bends in the plane: use a `bushing` in space".to_owned();
             reader.error(node.span.clone(), message, help);

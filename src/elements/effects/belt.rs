@@ -101,7 +101,7 @@ impl ForceElement for Belt {
         &[(Self::FIRST_TENSION, Dimension::FORCE), (Self::SECOND_TENSION, Dimension::FORCE)];
 
     fn coordinates(&self) -> Vec<OnJoint> {
-        let joint = |turning: &Rotating| match turning {
+        let joint = |rotating: &Rotating| match rotating {
             Rotating::Joint(joint) => Some(OnJoint { joint: *joint, coordinate: JointCoordinate::Angle }),
             Rotating::Body(_) => None,
         };
@@ -142,7 +142,7 @@ impl ForceElement for Belt {
         forces.only_where(taut);
         let strand = |stretch, rate| {
             let taut = PositivePart::of(stretch, corner);
-            (clipped(stiffness * taut.value + damping * taut.slope * rate), stiffness * taut.integral)
+            (clipped(stiffness * taut.value + damping * taut.derivative * rate), stiffness * taut.integral)
         };
         let (first, first_energy) = strand(parting + shift, parting_rate + rate);
         let (second, second_energy) = strand(parting - shift, parting_rate - rate);

@@ -72,7 +72,7 @@ impl ForceElement for Cable {
         let tight = line.dot(line) - slack * slack;
         forces.only_where(tight);
         let taut = PositivePart::of(stretch, corner);
-        let tension = clipped(stiffness * taut.value + damping * taut.slope * rate);
+        let tension = clipped(stiffness * taut.value + damping * taut.derivative * rate);
         forces.between(&b, &a, tension * direction);
         let tension = tension.only_where(tight);
         let potential = (stiffness * taut.integral).only_where(tight);

@@ -11,7 +11,7 @@
 //! surface against the first. In space round surfaces are spheres, or cylinders with parallel axes where an axis is
 //! given: d is then taken across it. Centres that coincide have no direction between them: inside a hollow |d| is
 //! √(d² + ε²), ε = 10⁻⁴ (R − r), which moves the wall by half of 10⁻⁸ of the clearance. One round body in another, or two whose
-//! centres meet, is no contact that this can tell. Apart the force and its slopes are exactly zero, and of a tile of samples that
+//! centres meet, is no contact that this can tell. Apart the force and its derivatives are exactly zero, and of a tile of samples that
 //! all are apart only the sign of the gap is computed: without a root, from squares.
 
 use mbint_derive::Element;

@@ -4,7 +4,7 @@
 //! F = −(b + k |u|) u,   u = ṙ − wind,   k = ½ ρ c_d A          N
 //! ```
 //!
-//! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second slope at rest. It has no potential.
+//! |u| is √(u² + ε²), ε = 1 µm/s: the square law has no second derivative at rest. It has no potential.
 
 use mbint_derive::Element;
 use symdiff::Formula;

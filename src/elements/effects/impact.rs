@@ -6,9 +6,9 @@
 //! χ = 3 (1 − e²)/(4 v)         Lankarani & Nikravesh, J. Mech. Des. 112 (1990) 369
 //! ```
 //!
-//! e is the coefficient of restitution of an impact at the speed v. Hertz's n = 3/2 has a continuous slope where the
+//! e is the coefficient of restitution of an impact at the speed v. Hertz's n = 3/2 has a continuous derivative where the
 //! surfaces first touch, and the damping grows with the depth, so the force has no jump there. Surfaces do not stick: where
-//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its slope: the law is written for
+//! 1 + χ δ̇ is negative they have parted already. Apart the force is exactly zero, and so is its derivative: the law is written for
 //! δ > 0 alone, and the caller guards it by that condition.
 //!
 //! Whatever K and n, an impact at v ends with the speed e v of χ v − ln(1 + χ v) = −χ e v − ln(1 − χ e v) (Marhefka & Orin,

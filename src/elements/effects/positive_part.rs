@@ -4,15 +4,15 @@
 //! p(x) = (⟨x + ε⟩² − ⟨x − ε⟩²)/4ε,   ⟨x⟩ = max(x, 0):   0 below −ε, x above ε, (x + ε)²/4ε between
 //! ```
 //!
-//! p has a continuous slope, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
+//! p has a continuous derivative, which is what Newton's iteration asks for, and is exactly zero where nothing acts.
 
 use symdiff::Scalar;
 
-/// p, its slope and its integral.
+/// p, its derivative and its integral.
 #[derive(Clone, Copy, Debug)]
 pub struct PositivePart<'g> {
     pub value: Scalar<'g>,
-    pub slope: Scalar<'g>,
+    pub derivative: Scalar<'g>,
     pub integral: Scalar<'g>,
 }
 
@@ -26,6 +26,6 @@ impl<'g> PositivePart<'g> {
     pub fn of(x: Scalar<'g>, corner: Scalar<'g>) -> Self {
         let (above, below) = (clipped(x + corner), clipped(x - corner));
         let difference = |power: i32, divisor: f64| (above.powi(power) - below.powi(power)) / (divisor * corner);
-        Self { slope: difference(1, 2.0), value: difference(2, 4.0), integral: difference(3, 12.0) }
+        Self { derivative: difference(1, 2.0), value: difference(2, 4.0), integral: difference(3, 12.0) }
     }
 }

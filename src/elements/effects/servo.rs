@@ -5,7 +5,7 @@
 //! sat(x) = ½ [√((x + L)² + ε²) − √((x − L)² + ε²)],   ε = L/100
 //! ```
 //!
-//! sat is x well within the limit L (its slope there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
+//! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};

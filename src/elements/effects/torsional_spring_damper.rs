@@ -102,8 +102,8 @@ impl Checked for TorsionalSpringDamper {
 
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         let bodies = self.between.iter().flatten().filter(|_| self.on.is_none());
-        let turning = bodies.into_iter().find(|body| reader.model.has_orientation(body.0));
-        if let (Some(body), Some(node)) = (turning, fields.get("between")) {
+        let free = bodies.into_iter().find(|body| reader.model.has_orientation(body.0));
+        if let (Some(body), Some(node)) = (free, fields.get("between")) {
             let message = format!("`{}` turns about more than z, so it has no angle", reader.model.body_name(body.0));
             let help = "write `on` with the joint whose angle it acts on, or make it a `bushing`";
             reader.error(node.span.clone(), message, help.to_owned());

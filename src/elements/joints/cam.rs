@@ -101,8 +101,8 @@ impl Joint for Cam {
             Follower::Roller => {
                 let planar = offset - z.dot(offset) * z;
                 let distance = planar.norm();
-                let [lift, slope] = k.of_angle(&self.lift, angle_of(planar))?;
-                let tangent = slope / distance;
+                let [lift, derivative] = k.of_angle(&self.lift, angle_of(planar))?;
+                let tangent = derivative / distance;
                 let scale = (1.0 + tangent * tangent).sqrt();
                 let radial = planar / distance;
                 let normal = (radial + tangent * z.cross(radial)) / scale;
@@ -111,9 +111,9 @@ impl Joint for Cam {
             }
             Follower::Flat => {
                 let normal = frames.outward_of_second(k.unit_vector(&self.normal)?);
-                let [lift, slope] = k.of_angle(&self.lift, angle_of(normal))?;
+                let [lift, derivative] = k.of_angle(&self.lift, angle_of(normal))?;
                 let value = normal.dot(offset) - base - lift;
-                let arm = z.cross(normal).dot(offset) + slope;
+                let arm = z.cross(normal).dot(offset) + derivative;
                 Row { name: "", value, force: -normal, torque: -(arm * z) }
             }
         };

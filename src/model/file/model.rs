@@ -100,7 +100,7 @@ grammar! {
         impact: Impact,
     }
 
-    /// A parameter; certain unless it has a tolerance, an interval, or plus and minus.
+    /// A parameter; deterministic unless it has a tolerance, an interval, or plus and minus.
     Parameter is "a parameter" {
         /// Its nominal value.
         value: Option<Number>,

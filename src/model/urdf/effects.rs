@@ -46,10 +46,10 @@ pub fn read<'r>(
     for &index in &source.robot.order {
         let joint = &source.robot.joints[index];
         let (Some(number), Some((coordinate, ..))) = (built.joints[index], coordinate(joint.kind)) else { continue };
-        found.extend(rubbing(reader, source, joint, number));
+        found.extend(friction(reader, source, joint, number));
         let impact = impacts
             .as_ref()
-            .and_then(|[turning, sliding]| if joint.kind.turns() { turning.clone() } else { sliding.clone() });
+            .and_then(|[rotational, sliding]| if joint.kind.turns() { rotational.clone() } else { sliding.clone() });
         let on = OnJoint { joint: number, coordinate };
         if let Some(impact) = impact {
             if let (Some(limits), true) = (&joint.limits, is_limited(joint)) {
@@ -70,7 +70,7 @@ fn is_limited(joint: &Joint) -> bool {
 }
 
 /// Damping and friction, where the file has them.
-fn rubbing<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found: usize) -> Vec<RobotEffect<'r>> {
+fn friction<'r>(reader: &mut Reader, source: &Source<'r>, joint: &'r Joint, found: usize) -> Vec<RobotEffect<'r>> {
     let acts = |number: &Number| number.value != 0.0 || source.named.contains(&number.name);
     let mut effects = Vec::new();
     for (number, what) in [(&joint.damping, "damping"), (&joint.friction, "friction")] {

@@ -245,32 +245,44 @@ impl Lowering<'_> {
                 }
                 continue;
             }
-            let instruction = match self.graph.node(expr) {
-                Node::Binary(function @ (Binary::Add | Binary::Sub), x, y) => match (product(x), product(y)) {
-                    (_, Some((a, b))) => {
-                        absorbed.insert(y);
-                        let op = if function == Binary::Add { Op::MulAdd } else { Op::NegMulAdd };
-                        Pending::new(op, [a, b, x], 3, expr)
-                    }
-                    (Some((a, b)), None) => {
-                        absorbed.insert(x);
-                        let op = if function == Binary::Add { Op::MulAdd } else { Op::MulSub };
-                        Pending::new(op, [a, b, y], 3, expr)
-                    }
-                    (None, None) => Pending::new(Op::Binary(function), [x, y, x], 2, expr),
-                },
-                Node::Binary(function, a, b) => Pending::new(Op::Binary(function), [a, b, a], 2, expr),
-                Node::Unary(Unary::Sin | Unary::Cos, a) => match circular.remove(&a) {
-                    Some(writes) => Pending { op: Op::SinCos, reads: [a; 3], count: 1, writes, region },
-                    None => continue,
-                },
-                Node::Unary(function, a) => Pending::new(Op::Unary(function), [a; 3], 1, expr),
-                Node::Constant(_) | Node::Symbol(_) => continue,
-            };
+            let Some(instruction) = self.instruction(expr, product, &mut absorbed, &mut circular) else { continue };
             pending.push(instruction.within(region));
         }
         pending.retain(|pending| pending.op == Op::Copy || !pending.written().any(|expr| absorbed.contains(&expr)));
         pending
+    }
+
+    /// The operation of a node; `None` where another's writes its value too, or none has to. `product` gives the factors of what may
+    /// become part of a sum, which is then `absorbed`; `circular` has the sine and cosine of each argument.
+    fn instruction(
+        &self,
+        expr: Expr,
+        product: impl Fn(Expr) -> Option<(Expr, Expr)>,
+        absorbed: &mut FxHashSet<Expr>,
+        circular: &mut FxHashMap<Expr, [Option<Expr>; 2]>,
+    ) -> Option<Pending> {
+        Some(match self.graph.node(expr) {
+            Node::Binary(function @ (Binary::Add | Binary::Sub), x, y) => match (product(x), product(y)) {
+                (_, Some((a, b))) => {
+                    absorbed.insert(y);
+                    let op = if function == Binary::Add { Op::MulAdd } else { Op::NegMulAdd };
+                    Pending::new(op, [a, b, x], 3, expr)
+                }
+                (Some((a, b)), None) => {
+                    absorbed.insert(x);
+                    let op = if function == Binary::Add { Op::MulAdd } else { Op::MulSub };
+                    Pending::new(op, [a, b, y], 3, expr)
+                }
+                (None, None) => Pending::new(Op::Binary(function), [x, y, x], 2, expr),
+            },
+            Node::Binary(function, a, b) => Pending::new(Op::Binary(function), [a, b, a], 2, expr),
+            Node::Unary(Unary::Sin | Unary::Cos, a) => match circular.remove(&a) {
+                Some(writes) => Pending { writes, ..Pending::new(Op::SinCos, [a; 3], 1, expr) },
+                None => return None,
+            },
+            Node::Unary(function, a) => Pending::new(Op::Unary(function), [a; 3], 1, expr),
+            Node::Constant(_) | Node::Symbol(_) => return None,
+        })
     }
 }
 

@@ -15,18 +15,7 @@ pub(crate) fn allocate(
     register_of: &FxHashMap<Expr, u32>,
     first: u32,
 ) -> Tape {
-    let mut last_use: FxHashMap<Expr, usize> = FxHashMap::default();
-    let mut read_registers: FxHashSet<u32> = FxHashSet::default();
-    let mut computed: FxHashSet<Expr> = FxHashSet::default();
-    for (place, step) in steps.iter().enumerate() {
-        for read in step.read() {
-            last_use.insert(read, place);
-            read_registers.extend(register_of.get(&read));
-        }
-        if let Step::Do(instruction) = step {
-            computed.extend(instruction.written());
-        }
-    }
+    let Uses { last_use, mut read_registers, computed } = Uses::of(steps, register_of);
     read_registers.extend(targets.iter().filter_map(|(expr, _)| register_of.get(expr)));
     let placed: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
     let may_share = |expr: &Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains_key(expr);
@@ -36,30 +25,29 @@ pub(crate) fn allocate(
         let last = last_use_of.entry(shared.root(expr)).or_default();
         *last = place.max(*last);
     }
-    let mut place_of: FxHashMap<Expr, u32> = FxHashMap::default();
+    let mut registers = Registers {
+        register_of,
+        shared: &shared,
+        place_of: FxHashMap::default(),
+        free: Vec::new(),
+        first,
+        next: first,
+    };
     let mut copies = Vec::new();
     for &(expr, register) in targets {
-        if computed.contains(&expr) && !read_registers.contains(&register) && !place_of.contains_key(&expr) {
-            place_of.insert(expr, register);
+        let is_free = !read_registers.contains(&register);
+        if computed.contains(&expr) && is_free && !registers.place_of.contains_key(&expr) {
+            registers.place_of.insert(expr, register);
         } else if register_of.get(&expr) != Some(&register) {
             copies.push((expr, register));
             last_use_of.insert(expr, steps.len());
         }
     }
-    let kept = |place_of: &FxHashMap<Expr, u32>, expr: Expr| {
-        let root = shared.root(expr);
-        register_of.get(&root).or_else(|| place_of.get(&root)).copied()
-    };
-    let mut free: Vec<u32> = Vec::new();
-    let mut next = first;
     let mut items = Vec::with_capacity(steps.len() + copies.len());
     for (place, step) in steps.iter().enumerate() {
-        let register = |place_of: &FxHashMap<Expr, u32>, expr| {
-            kept(place_of, expr).expect("operands are computed before their use")
-        };
         let instruction = match step {
             Step::Enter(guard) => {
-                items.push(Item::Enter(register(&place_of, guard.condition), guard.elsewhere));
+                items.push(Item::Enter(registers.of(guard.condition), guard.elsewhere));
                 continue;
             }
             Step::Leave => {
@@ -69,54 +57,124 @@ pub(crate) fn allocate(
             Step::Do(_) if shared.is_needless(place) => continue,
             Step::Do(instruction) => instruction,
         };
-        let [a, b, c] = instruction.reads.map(|read| register(&place_of, read));
-        let already_free = free.len();
-        for read in instruction.read().map(|read| shared.root(read)).filter(|read| last_use_of[read] == place) {
-            // An operand may stand there twice.
-            if let Some(&old) = place_of.get(&read)
-                && old >= first
-                && !free[already_free..].contains(&old)
-            {
-                free.push(old);
-            }
-        }
-        let mut unused = None;
-        let mut destinations = instruction.writes.map(|write| match write {
-            Some(expr) => kept(&place_of, expr).unwrap_or_else(|| {
-                let fresh = take(&mut free, &mut next);
-                place_of.insert(shared.root(expr), fresh);
-                fresh
-            }),
-            None => u32::MAX,
-        });
+        let [a, b, c] = instruction.reads.map(|read| registers.of(read));
+        let read = instruction.read().map(|read| shared.root(read));
+        registers.release(read.filter(|read| last_use_of[read] == place));
+        let [sine, cosine] = instruction.writes;
         if instruction.op == Op::SinCos {
-            for destination in &mut destinations {
-                if *destination == u32::MAX {
-                    *destination = take(&mut free, &mut next);
-                    unused = Some(*destination);
-                }
+            // The one that is not wanted takes a register for this operation alone.
+            let written = [sine, cosine].map(|write| write.map(|expr| registers.place(expr)));
+            let [d, b] = written.map(|register| register.unwrap_or_else(|| registers.take()));
+            items.push(Item::Do(instruction.op, Operands { a, b, c, d }));
+            let fresh = [(sine, d), (cosine, b)].into_iter().filter(|(write, _)| write.is_none());
+            registers.free.extend(fresh.map(|(_, register)| register));
+        } else {
+            let d = instruction.writes[0].map_or(u32::MAX, |expr| registers.place(expr));
+            items.push(Item::Do(instruction.op, Operands { a, b, c, d }));
+        }
+    }
+    let copies: Vec<(u32, u32)> = copies.into_iter().map(|(expr, register)| (registers.of(expr), register)).collect();
+    copy_at_once(copies, || registers.take(), &mut items);
+    Tape::new(items)
+}
+
+/// Where values stand, and which scratch registers are free.
+struct Registers<'a> {
+    /// Of values that are there before or stay.
+    register_of: &'a FxHashMap<Expr, u32>,
+    shared: &'a Shared,
+    /// Of values that were computed, by the first of those that share a register.
+    place_of: FxHashMap<Expr, u32>,
+    free: Vec<u32>,
+    /// The first scratch register, and the first that was never taken.
+    first: u32,
+    next: u32,
+}
+
+impl Registers<'_> {
+    fn find(&self, expr: Expr) -> Option<u32> {
+        let root = self.shared.root(expr);
+        self.register_of.get(&root).or_else(|| self.place_of.get(&root)).copied()
+    }
+
+    /// The register of a value.
+    fn of(&self, expr: Expr) -> u32 {
+        self.find(expr).expect("what is read is a symbol, a constant, kept, or computed before")
+    }
+
+    /// The register for a value, a free one where it has none yet.
+    fn place(&mut self, expr: Expr) -> u32 {
+        self.find(expr).unwrap_or_else(|| {
+            let fresh = self.take();
+            self.place_of.insert(self.shared.root(expr), fresh);
+            fresh
+        })
+    }
+
+    fn take(&mut self) -> u32 {
+        self.free.pop().unwrap_or_else(|| {
+            self.next += 1;
+            self.next - 1
+        })
+    }
+
+    /// Frees the scratch registers of values that one operation reads as the last.
+    fn release(&mut self, values: impl Iterator<Item = Expr>) {
+        let already_free = self.free.len();
+        for value in values {
+            // An operand may stand there twice.
+            if let Some(&old) = self.place_of.get(&value)
+                && old >= self.first
+                && !self.free[already_free..].contains(&old)
+            {
+                self.free.push(old);
             }
         }
-        let [d, second] = destinations;
-        let b = if instruction.op == Op::SinCos { second } else { b };
-        items.push(Item::Do(instruction.op, Operands { a, b, c, d }));
-        free.extend(unused);
     }
-    // All copies happen at once: what another copy overwrites is put aside first.
+}
+
+/// What a list of steps reads and writes.
+#[derive(Debug, Default)]
+struct Uses {
+    /// The last step that reads a value.
+    last_use: FxHashMap<Expr, usize>,
+    /// Registers of values that are there before.
+    read_registers: FxHashSet<u32>,
+    /// Values that are written.
+    computed: FxHashSet<Expr>,
+}
+
+impl Uses {
+    fn of(steps: &[Step], register_of: &FxHashMap<Expr, u32>) -> Self {
+        let mut uses = Self::default();
+        for (place, step) in steps.iter().enumerate() {
+            for read in step.read() {
+                uses.last_use.insert(read, place);
+                uses.read_registers.extend(register_of.get(&read));
+            }
+            if let Step::Do(instruction) = step {
+                uses.computed.extend(instruction.written());
+            }
+        }
+        uses
+    }
+}
+
+/// Copies from register to register as if all happened at once: what another copy overwrites is put aside first, in a `fresh`
+/// register.
+fn copy_at_once(copies: Vec<(u32, u32)>, mut fresh: impl FnMut() -> u32, items: &mut Vec<Item>) {
     let overwritten: FxHashSet<u32> = copies.iter().map(|&(_, register)| register).collect();
     let copy = |from: u32, to: u32| Item::Do(Op::Copy, Operands { a: from, b: from, c: from, d: to });
     let mut last = Vec::with_capacity(copies.len());
-    for &(expr, register) in &copies {
-        let mut source = kept(&place_of, expr).expect("an output is a symbol, a constant, kept, or computed here");
+    for (mut source, register) in copies {
         if overwritten.contains(&source) {
-            let aside = take(&mut free, &mut next);
+            let aside = fresh();
             items.push(copy(source, aside));
             source = aside;
         }
         last.push(copy(source, register));
     }
     items.extend(last);
-    Tape::new(items)
 }
 
 /// Values that take one register after the other: what holds elsewhere, and then the choice that a region makes in its place.
@@ -164,11 +222,4 @@ impl Shared {
     fn is_needless(&self, place: usize) -> bool {
         self.needless.contains(&place)
     }
-}
-
-fn take(free: &mut Vec<u32>, next: &mut u32) -> u32 {
-    free.pop().unwrap_or_else(|| {
-        *next += 1;
-        *next - 1
-    })
 }

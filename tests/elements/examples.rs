@@ -1,0 +1,57 @@
+//! The examples in the documentation of joints are run. (Those of effects are run where their costs are counted.)
+
+use mbint::inner::elements::JointKind;
+use mbint::inner::model::{self, Description};
+
+use crate::common::nominal;
+
+/// What the examples of joints name, each body by itself.
+const MECHANISM: &str = "
+space: SPACE
+bodies:
+  arm: { mass: 1, inertia: 0.01, points: { P: [0.2, 0] } }
+  bead: { mass: 1, inertia: 0.01 }
+  bob: { mass: 1, inertia: 0.01 }
+  cart: { mass: 1, inertia: 0.01 }
+  crank: { mass: 1, inertia: 0.01, points: { A: [-0.1, 0], P: [0.1, 0] } }
+  follower: { mass: 1, inertia: 0.01 }
+  foot: { mass: 1, inertia: 0.01, points: { P: [0, -0.1] } }
+  fork: { mass: 1, inertia: 0.01, points: { A: [-0.1, 0] } }
+  frame: { mass: 1, inertia: 0.01 }
+  gear: { mass: 1, inertia: 0.01 }
+  lever: { mass: 1, inertia: 0.01 }
+  link: { mass: 1, inertia: 0.01, points: { S: [0.1, 0] } }
+  nut: { mass: 1, inertia: 0.01 }
+  puck: { mass: 1, inertia: 0.01 }
+  rod: { mass: 1, inertia: 0.01, points: { A: [-0.2, 0] } }
+  shaft: { mass: 1, inertia: 0.01, points: { P: [0.1, 0] } }
+  slider: { mass: 1, inertia: 0.01 }
+  wheel: { inertia: 0.02, coordinates: [angle] }
+  pinion: { inertia: 0.01, coordinates: [angle] }
+joints:
+  axle: { revolute: [ground, gear] }
+  guide: { prismatic: { between: [ground, cart], axis: x } }
+  pivot: { revolute: [ground, lever] }
+  it: { KEYWORD: EXAMPLE }
+guess: { bob.x: 0.5, follower.y: 0.03 }
+outputs: { energy: kinetic_energy }
+simulation: { duration: 0.02, step: 1e-3 }
+";
+
+/// The example in the plane or else in space.
+fn with(keyword: &str, example: &str) -> Description {
+    let text = MECHANISM.replace("KEYWORD", keyword).replace("EXAMPLE", example);
+    let read = |space: &str| model::load_str("example", &text.replace("SPACE", space), &[]);
+    read("planar").or_else(|_| read("spatial")).unwrap_or_else(|wrong| panic!("{keyword}: {}", wrong.render(false)))
+}
+
+#[test]
+fn every_example_of_a_joint_is_run() {
+    let docs = JointKind::docs();
+    assert!(docs.len() >= 16);
+    for joint in docs {
+        let keyword = joint.element.keyword;
+        let bounds = nominal(&with(keyword, joint.element.example));
+        assert!(bounds.outputs[0].nominal.iter().all(|energy| energy.is_finite()), "{keyword}");
+    }
+}
