@@ -157,7 +157,7 @@ macro_rules! methods {
         /// A bounding method.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Method {
-            $(#[doc = concat!("See [`", stringify!($Type), "`](struct@", stringify!($Type), ").")] $Type,)*
+            $($(#[doc = $doc])* $Type,)*
         }
 
         impl Method {

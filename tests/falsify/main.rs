@@ -10,6 +10,8 @@
 //! `MBINT_FALSIFY_SECONDS=600` begins no draw after ten minutes. `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and
 //! method simple and prints them as models; `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod draw;
 mod families;
 mod known;
