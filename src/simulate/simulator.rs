@@ -59,7 +59,7 @@ impl Assembled {
             let term = not_finite(&system, &layout, state, 0.0)?;
             Some(SimulationError::NotFinite { term, time: 0.0, parameters: named() })
         };
-        let singular = |none: NoFactors<Equation>| no_number(&guess).unwrap_or_else(|| no_factors(&system, &none));
+        let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;

@@ -90,6 +90,19 @@ impl Diagnostics {
     }
 }
 
+impl Diagnostic {
+    /// The same in words that a terminal only shows.
+    fn harmless(&self) -> Self {
+        Self {
+            message: harmless(&self.message),
+            label: self.label.as_deref().map(harmless),
+            secondary: self.secondary.iter().map(|(span, label)| (span.clone(), harmless(label))).collect(),
+            help: self.help.as_deref().map(harmless),
+            ..self.clone()
+        }
+    }
+}
+
 /// A text in lines of at most so many characters, broken at spaces.
 fn wrapped(text: &str) -> String {
     let mut wrapped = String::with_capacity(text.len());
@@ -105,19 +118,6 @@ fn wrapped(text: &str) -> String {
         width += word.chars().count();
     }
     wrapped
-}
-
-impl Diagnostic {
-    /// The same in words that a terminal only shows.
-    fn harmless(&self) -> Self {
-        Self {
-            message: harmless(&self.message),
-            label: self.label.as_deref().map(harmless),
-            secondary: self.secondary.iter().map(|(span, label)| (span.clone(), harmless(label))).collect(),
-            help: self.help.as_deref().map(harmless),
-            ..self.clone()
-        }
-    }
 }
 
 struct Mark<'d> {

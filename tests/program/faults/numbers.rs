@@ -6,7 +6,7 @@ use crate::place::Place;
 
 fn rod(tolerance: &str, torque: &str) -> String {
     format!(
-        "parameters: {{ length: {{ value: 0.6, unit: m, tolerance: {tolerance} }} }}\n\
+        "parameters: {{ length: {{ value: 0.6, unit: m, tolerance: {tolerance} }}, tau: {{ value: 1, unit: s }} }}\n\
          bodies: {{ rod: {{ mass: 1.4, inertia: 0.05, points: {{ pivot: [-length/2, 0] }} }} }}\n\
          joints: {{ hinge: {{ revolute: [ground, rod.pivot] }} }}\n\
          effects: {{ e: {{ torque: {{ on: rod, value: {torque} }} }} }}\n\
@@ -28,7 +28,7 @@ fn limits_of_a_parameter_are_finite() {
 #[test]
 fn a_term_that_is_no_finite_number_is_named_with_its_time() {
     let place = Place::new();
-    for (torque, term) in [("1/t", "`1/t`"), ("3 + 2*log(t)", "`log(t)`")] {
+    for (torque, term) in [("1/t", "`1/t`"), ("3 + 2*log(t/tau)", "`log(t)`")] {
         fs::write(place.path().join("rod.yaml"), rod("2%", torque)).unwrap();
         for command in ["check rod.yaml", "run rod.yaml -o out"] {
             let done = place.command(command).output().unwrap();
@@ -37,7 +37,7 @@ fn a_term_that_is_no_finite_number_is_named_with_its_time() {
             assert!(errors.contains(term) && errors.contains("t = 0 s") && errors.contains("motion of"), "{errors}");
         }
     }
-    fs::write(place.path().join("rod.yaml"), rod("2%", "log(0.0145 - t)")).unwrap();
+    fs::write(place.path().join("rod.yaml"), rod("2%", "log(0.0145 - t/tau)")).unwrap();
     let (_, errors) = place.run("run -q rod.yaml -o out", 1);
     assert!(errors.contains("`log(0.0145 - t)`") && errors.contains("t = 0.015 s"), "{errors}");
     let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
