@@ -11,12 +11,14 @@
 
 mod bernstein;
 mod chebyshev;
+mod decay;
 mod domain;
 mod envelope;
 mod error;
 #[cfg(test)]
 mod evaluation;
 mod extremes;
+mod lattice;
 mod leja;
 mod observed_order;
 mod peak;
@@ -25,6 +27,7 @@ mod range;
 mod samples;
 mod scan;
 mod search;
+mod separation;
 mod sobol;
 mod sparse_basis;
 mod sparse_grid;
@@ -33,6 +36,7 @@ mod surrogate;
 mod taylor;
 mod tensor;
 
+pub use decay::truncation;
 pub use domain::ParameterBox;
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
@@ -44,6 +48,7 @@ pub use range::{EMPTY, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
+pub use separation::Separation;
 pub use sobol::SobolDecomposition;
 pub use sparse_basis::SparseWork;
 pub use sparse_grid::SparseGrid;

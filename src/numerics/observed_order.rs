@@ -3,6 +3,8 @@
 //! With an error C hᵠ, steps h, h/2 and r h give differences in the ratio ρ = (2⁻ᵠ − rᵠ)/(1 − 2⁻ᵠ). Where q is not near 2, the error is not
 //! what a second-order scheme's would be: steps are too long for what they resolve, or the motion is not smooth.
 
+use symdiff::math;
+
 use super::envelope::envelope;
 
 /// Orders below this are not that of the scheme.
@@ -54,7 +56,7 @@ pub fn corrections(rows: &[Differences], ratio: f64) -> Vec<Correction> {
         if order.is_nan() || order >= LEAST_ORDER {
             return Correction::NONE;
         }
-        let factor = (1.0 - 0.25) / (1.0 - 0.5_f64.powf(order.max(NO_ORDER)));
+        let factor = (1.0 - 0.25) / (1.0 - math::pow(0.5, order.max(NO_ORDER)));
         Correction { factor, least: OF_DIFFERENCES * halved[row].max(finer[row]).max(all[row]) }
     };
     (0..rows.len()).map(of_row).collect()
@@ -65,7 +67,7 @@ fn order(found: f64, ratio: f64) -> f64 {
     if found.is_nan() {
         return f64::NAN;
     }
-    let of = |q: f64| (0.5_f64.powf(q) - ratio.powf(q)) / (1.0 - 0.5_f64.powf(q));
+    let of = |q: f64| (math::pow(0.5, q) - math::pow(ratio, q)) / (1.0 - math::pow(0.5, q));
     let (mut low, mut high) = (1e-3, 8.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
@@ -83,7 +85,7 @@ mod tests {
     use super::*;
 
     fn differences(q: f64, ratio: f64) -> Vec<Differences> {
-        let (coarse, half, fine) = (1.0, 0.5_f64.powf(q), ratio.powf(q));
+        let (coarse, half, fine) = (1.0, math::pow(0.5, q), math::pow(ratio, q));
         vec![Differences { halved: coarse - half, finer: half - fine, all: coarse - fine }; 3]
     }
 

@@ -24,12 +24,12 @@ mod step;
 mod time_functions;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use control::{Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use control::{Controller, Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
 pub use error::SimulationError;
 pub use modes::{ExcitedMode, excited_modes};
-pub use simulator::Simulator;
+pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;

@@ -4,18 +4,19 @@
 use std::time::Instant;
 
 use super::ensemble::Progress;
-use super::single::{Outcome, Results, Study, simulation_error, timed, validation_summary};
+use super::outcome::{Outcome, Results};
+use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
-use crate::simulate::{Divided, Schedule, SimulationError};
+use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every sampled method's bounds are the nominal motion.
     pub(super) fn deterministic(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
         let mut steps = StepSearch::new(schedule);
@@ -33,13 +34,15 @@ impl Study<'_> {
                 validation: None,
                 methods: Vec::new(),
                 halved: Vec::new(),
+                internal: Vec::new(),
             };
             if self.request.is_empty() {
                 return Ok(results);
             }
             let begun = Instant::now();
             let nominal = &results.nominal.result;
-            let [finer, at_odds] = [&halved, &odd].map(|schedule| self.motions(schedule, None, &progress));
+            let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
+            let [finer, at_odds] = [&halved, &odd].map(|schedule| self.motions(schedule, finer_tolerance, &progress));
             let ratio = schedule.ratio_to(&odd);
             let ensembles = Ensembles { direct: &motions, halved: &finer, odd: &at_odds, ratio };
             let validation =
@@ -55,7 +58,9 @@ impl Study<'_> {
                 if method.about().is_sampled {
                     results.methods.push((method, same(&schedule, &results.nominal.result, method)?));
                 } else {
-                    results.methods.extend(self.bound(&motions, &schedule, &validation, |wanted| wanted == method)?);
+                    let of_method = |wanted| wanted == method;
+                    let found = self.bound(&motions, &schedule, &validation, &mut results.internal, of_method)?;
+                    results.methods.extend(found);
                 }
             }
             results.validation = Some((validation, summary));

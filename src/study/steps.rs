@@ -4,7 +4,7 @@ use super::ensemble::Progress;
 use super::single::{Study, simulation_error};
 use crate::methods::{Ensembles, Observed, Validation};
 use crate::model::Stepping;
-use crate::simulate::{Divided, ExcitedMode, Schedule, SimulationError, excited_modes};
+use crate::simulate::{Controller, Divided, ExcitedMode, Schedule, SimulationError, excited_modes};
 
 impl Study<'_> {
     /// A schedule with those steps divided that do not resolve a function of the time.
@@ -27,14 +27,15 @@ impl Study<'_> {
     pub(super) fn validation(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         observed: Observed,
         progress: &Progress,
     ) -> Result<Validation, SimulationError> {
         let (halved, odd) = (schedule.refined(2), schedule.at_odds());
         let direct = self.motions(schedule, tolerance, progress);
-        let [halved, finer] = [&halved, &odd].map(|schedule| self.motions(schedule, None, progress));
+        let finer_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
+        let [halved, finer] = [&halved, &odd].map(|schedule| self.motions(schedule, finer_tolerance, progress));
         let ensembles = Ensembles { direct: &direct, halved: &halved, odd: &finer, ratio: schedule.ratio_to(&odd) };
-        Validation::run(ensembles, observed).map_err(simulation_error)
+        Validation::run(ensembles, observed, self.request.degree()).map_err(simulation_error)
     }
 }

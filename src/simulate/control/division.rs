@@ -72,7 +72,7 @@ impl Division<'_> {
         }
         let schedule = self.schedule;
         let longest = match schedule.steps_per_row() {
-            Some(_) => schedule.first_step(),
+            Some(_) => schedule.longest_step(),
             None => rows.clone().flat_map(|row| schedule.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
         };
         let span = (schedule.time(rows.start - 1), schedule.time(rows.end - 1));

@@ -1,11 +1,16 @@
 //! The step schedule that all samples share: fixed, or controlled by a tolerance; in both cases divided where functions of the
 //! time ask for it.
 
+mod adaptive;
 mod controller;
 mod division;
 mod samples;
 mod schedule;
+mod switch_watch;
 
+pub use adaptive::Adaptive;
+pub use controller::Controller;
 pub use division::Divided;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};
 pub use schedule::Schedule;
+pub use switch_watch::SwitchWatch;

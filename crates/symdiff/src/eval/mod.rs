@@ -5,6 +5,7 @@ mod enclosed;
 pub(crate) mod functions;
 pub mod interval;
 pub mod jet;
+pub mod math;
 mod ranges;
 pub mod sincos;
 pub mod taylor_model;
