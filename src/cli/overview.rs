@@ -216,7 +216,7 @@ mod tests {
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
         let text = overview(&summary, Path::new("results/slider_crank"), &files);
-        let plain = anstream::adapter::strip_str(&text).to_string();
+        let plain = crate::cli::console::plain(&text);
         insta::assert_snapshot!(plain, @r"
         slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
 

@@ -4,7 +4,7 @@
 //! - `scheme`: the integration schemes' coefficients;
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start; `equation_tapes`: the equations alone;
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`); `equation_tapes`: the equations alone;
 //! - `layout`: the memory that all of them share.
 
 mod elimination;
@@ -16,12 +16,15 @@ mod program;
 mod scheme;
 mod sparse_lu;
 mod start;
+mod start_equations;
 mod step;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};
+pub use equations::{ClosureRow, Equation};
 pub use layout::Layout;
 pub use program::{PivotSample, Program, Watched};
 pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
 pub use start::{StartProgram, compile_start};
+pub use start_equations::Residual;
 pub use step::compile;

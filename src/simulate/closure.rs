@@ -148,8 +148,8 @@ impl<'s> Closure<'s> {
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
         let allowed = allowed_residual(&self.simulator.program.scale);
         let mut closed = vec![true; WIDTH];
-        for &register in &self.program.constraint {
-            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(register)) {
+        for residual in &self.program.constraint {
+            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(residual.register)) {
                 *closed &= gap.abs() <= allowed;
             }
         }

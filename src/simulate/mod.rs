@@ -25,5 +25,5 @@ pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
 pub use error::SimulationError;
-pub use simulator::Simulator;
+pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};

@@ -4,7 +4,8 @@
 use std::time::Instant;
 
 use super::ensemble::Progress;
-use super::single::{Outcome, Results, Study, simulation_error, timed, validation_summary};
+use super::outcome::{Outcome, Results};
+use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
@@ -31,6 +32,7 @@ impl Study<'_> {
                 validation: None,
                 methods: Vec::new(),
                 halved: Vec::new(),
+                internal: Vec::new(),
             };
             if self.request.is_empty() {
                 return Ok(results);
@@ -51,7 +53,9 @@ impl Study<'_> {
                 if method.about().is_sampled {
                     results.methods.push((method, same(&schedule, &results.nominal.result, method)?));
                 } else {
-                    results.methods.extend(self.bound(&motions, &schedule, &validation, |wanted| wanted == method)?);
+                    let of_method = |wanted| wanted == method;
+                    let found = self.bound(&motions, &schedule, &validation, &mut results.internal, of_method)?;
+                    results.methods.extend(found);
                 }
             }
             results.validation = Some((validation, summary));

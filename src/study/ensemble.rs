@@ -54,6 +54,8 @@ pub(super) struct Motions<'a> {
     tolerance: Option<f64>,
     progress: &'a Progress<'a>,
     interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Simulations that are over: at the end, or where they stopped.
+    over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
 }
@@ -68,7 +70,13 @@ impl<'a> Motions<'a> {
         progress: &'a Progress<'a>,
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, certifier: OnceLock::new() }
+        let over = AtomicUsize::new(0);
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier: OnceLock::new() }
+    }
+
+    /// Simulations that are over: at the end, or where they stopped.
+    pub fn over(&self) -> usize {
+        self.over.load(Ordering::Relaxed)
     }
 
     /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
@@ -118,6 +126,9 @@ impl<'a> Motions<'a> {
             reduce(rows.clone(), &values);
             self.progress.advance(samples.len() * rows.len());
             next = rows.end;
+        }
+        if next == self.schedule.rows || !goes_on(&stop) {
+            self.over.fetch_add(samples.len(), Ordering::Relaxed);
         }
         let reached = match &stop {
             Some(stop) if until == Until::FirstStop => stop.row,
@@ -206,6 +217,9 @@ impl Ensemble for Motions<'_> {
             reduce(rows.clone(), &values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
             next = rows.end;
+        }
+        if next == self.schedule.rows || stop.is_some() {
+            self.over.fetch_add(1, Ordering::Relaxed);
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
         let stop = stop.map(|stop| (stopped_at(&stop), center));

@@ -15,7 +15,7 @@ grammar! {
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,
-        /// s between rows of output; by default about a 200th of the duration.
+        /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however near.
         output_step: Option<Number>,
         /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions.
         formulation: Option<FormulationName>,

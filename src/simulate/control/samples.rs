@@ -34,7 +34,7 @@ pub struct ToleranceSchedule {
 }
 
 /// The schedule at which every controlling sample keeps its local position errors within their shares of `tolerance`. Rows
-/// are whole multiples of `output_step`; a step is repeated with a smaller size where the largest error is too large or a
+/// are whole multiples of `output_step`, and the end; a step is repeated with a smaller size where the largest error is too large or a
 /// sample does not converge.
 ///
 /// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
@@ -55,7 +55,7 @@ pub fn schedule_for_tolerance(
     let mut ends = Vec::with_capacity(rows - 1);
     let (mut complete_rows, mut failure) = (rows, None);
     for row in 1..rows {
-        let (mut time, goal) = ((row - 1) as f64 * output_step, row as f64 * output_step);
+        let (mut time, goal) = ((row - 1) as f64 * output_step, Schedule::time_of(duration, output_step, row));
         let mut list = Vec::new();
         while time < goal {
             match control.step(time, goal) {

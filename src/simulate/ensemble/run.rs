@@ -5,7 +5,7 @@ use symdiff::WIDTHS;
 
 use super::row_accelerations::RowAccelerations;
 use crate::simulate::control::Schedule;
-use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch};
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, StepFailure, Stepper};
@@ -192,6 +192,13 @@ impl<'s> EnsembleRun<'s> {
         // A residual needs time to grow.
         let times = [stop.time, stop.time + schedule.output_step];
         times.into_iter().find_map(|time| self.simulator.open_constraint(state, time))
+    }
+
+    /// The term that is no finite number where a sample stopped. Known for the first sample of each tile that stops.
+    pub fn not_finite(&self, stop: &Stop) -> Option<String> {
+        let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
+        let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
+        not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
     }
 
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
