@@ -217,9 +217,18 @@ impl System {
 
     /// Whether an output depends on accelerations or multipliers.
     pub fn observes_accelerations(&self) -> bool {
+        self.observes(&self.w) || self.observes(&self.lambda)
+    }
+
+    /// Whether an output depends on velocities.
+    pub fn observes_velocities(&self) -> bool {
+        self.observes(&self.v)
+    }
+
+    fn observes(&self, symbols: &[Expr]) -> bool {
         let outputs: Vec<Expr> = self.outputs.iter().map(|output| output.expr).collect();
         let used = self.graph.symbols_of(&outputs);
-        self.w.iter().chain(&self.lambda).any(|symbol| used.binary_search(symbol).is_ok())
+        symbols.iter().any(|symbol| used.binary_search(symbol).is_ok())
     }
 
     /// They are noted as left out.

@@ -216,7 +216,7 @@ mod tests {
                 saves: Some(Saving { instructions: 120, each: Each::Step }),
             }],
         };
-        let plain = anstream::adapter::strip_str(&text(&explanation)).to_string();
+        let plain = crate::cli::console::plain(&text(&explanation));
         insta::assert_snapshot!(plain, @r"
         slider_crank
         planar: nothing leaves the plane

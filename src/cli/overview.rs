@@ -59,10 +59,16 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
     bands.sort_by(|a, b| a.0.total_cmp(&b.0));
     bands.truncate(MOST);
     let (from, first) = bands.first()?;
-    let others: String = bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {time} s")).collect();
+    let others: String =
+        bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {} s", rounded(*time))).collect();
     let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
     let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
-    Some(format!("bounds of `{first}` are unreliable from {from} s{others}{more}: {help}"))
+    Some(format!("bounds of `{first}` are unreliable from {} s{others}{more}: {help}", rounded(*from)))
+}
+
+/// A time without the rounding error of a multiple of the output step.
+fn rounded(time: f64) -> f64 {
+    (1e9 * time).round() / 1e9
 }
 
 /// A start that is a choice, singular configurations, and reactions that equilibrium does not determine.
@@ -183,6 +189,7 @@ mod tests {
             rank_revealing_solves,
             order: None,
             boxes: None,
+            expanded_outputs: Vec::new(),
             seconds,
         };
         let summary = Summary {
@@ -217,7 +224,7 @@ mod tests {
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
         let text = overview(&summary, Path::new("results/slider_crank"), &files);
-        let plain = anstream::adapter::strip_str(&text).to_string();
+        let plain = crate::cli::console::plain(&text);
         insta::assert_snapshot!(plain, @r"
         slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
 

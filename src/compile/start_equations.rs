@@ -1,13 +1,22 @@
-//! The equations that hold at the start: constraints, their rates, and the conditions of the start alone.
+//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and what their rows are.
 
 use symdiff::{Expr, Graph, SparseMatrix};
 
-use super::equations::{equations_of_motion, time_derivative};
+use super::equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 use super::sparse_lu::NoFactors;
 use crate::assemble::{StartCondition, System};
 
+/// What remains of a row of the closure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Residual {
+    /// Of which row.
+    pub row: ClosureRow,
+    /// Where it is.
+    pub register: usize,
+}
+
 /// The equations that hold at the start.
-pub struct Equations {
+pub(super) struct Equations {
     /// M w + Φ_qᵀ λ − Q.
     pub motion: Vec<Expr>,
     /// Φ_q.
@@ -25,9 +34,9 @@ pub struct Equations {
 }
 
 /// Conditions on positions.
-pub const OF_POSITION: Kind = |condition| condition.position;
+pub(super) const OF_POSITION: Kind = |condition| condition.position;
 /// Conditions on velocities.
-pub const OF_VELOCITY: Kind = |condition| condition.velocity;
+pub(super) const OF_VELOCITY: Kind = |condition| condition.velocity;
 
 impl Equations {
     /// Over the system's own symbols.
@@ -44,16 +53,25 @@ impl Equations {
 }
 
 /// Conditions on positions, or those on velocities.
-pub type Kind = fn(&StartCondition) -> bool;
+pub(super) type Kind = fn(&StartCondition) -> bool;
 
-/// Renumbers the rows of conditions of a kind, which follow the constraints, by their numbers among all conditions.
-pub fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
-    let NoFactors::Singular { rows } = none else { return none };
-    let first = system.q.len() + system.constraint.len();
-    let conditions: Vec<usize> =
-        (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
-    let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
-    NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
+/// The constraints, then the conditions of a kind.
+fn closure_rows(system: &System, kind: Kind) -> impl Iterator<Item = ClosureRow> {
+    let conditions = system.start.conditions.iter().enumerate().filter(move |(_, condition)| kind(condition));
+    let constraints = (0..system.constraint.len()).map(ClosureRow::Constraint);
+    constraints.chain(conditions.map(|(place, _)| ClosureRow::Condition(place)))
+}
+
+/// Their residuals, in these registers.
+pub(super) fn residuals(system: &System, kind: Kind, registers: Vec<usize>) -> Vec<Residual> {
+    closure_rows(system, kind).zip(registers).map(|(row, register)| Residual { row, register }).collect()
+}
+
+/// A correction's matrix without factors: its rows are those of the coordinates, then those of the closure.
+pub(super) fn named(system: &System, none: NoFactors, kind: Kind) -> NoFactors<Equation> {
+    let closure = closure_rows(system, kind).map(Equation::Closure);
+    let equations: Vec<Equation> = (0..system.q.len()).map(Equation::Motion).chain(closure).collect();
+    none.named(|row| equations[row])
 }
 
 /// The conditions of a kind, and Φ_q with their derivatives below it.

@@ -14,6 +14,7 @@ use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{self, Entry, Node};
@@ -91,7 +92,7 @@ pub fn load_str(name: &str, text: &str, overrides: &[Override]) -> Result<Descri
 
 /// A path as it is shown: on one line, and saying nothing to the terminal.
 pub fn shown(path: &Path) -> String {
-    path.display().to_string().replace(char::is_control, "\u{fffd}")
+    harmless(&path.display().to_string()).replace(['\n', '\t'], "\u{fffd}")
 }
 
 /// Like [`load`], with the warnings of a model that can be used.

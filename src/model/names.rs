@@ -42,6 +42,21 @@ impl SymbolTable for Description {
         self.joints.iter().map(|joint| joint.name.as_str())
     }
 
+    fn parameter(&self, name: &str) -> Option<usize> {
+        let list = &self.parameters;
+        self.places.parameters.find(name, list.len(), |place| &list[place].name)
+    }
+
+    fn body(&self, name: &str) -> Option<usize> {
+        let list = &self.bodies;
+        self.places.bodies.find(name, list.len(), |place| &list[place].name)
+    }
+
+    fn joint(&self, name: &str) -> Option<usize> {
+        let list = &self.joints;
+        self.places.joints.find(name, list.len(), |place| &list[place].name)
+    }
+
     fn effects(&self) -> usize {
         self.effects.len()
     }

@@ -176,6 +176,9 @@ pub struct MethodSummary {
     /// How many boxes the parameters' was split into, where a tolerance decided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boxes: Option<usize>,
+    /// Outputs that at some time do not follow from the coordinates, and were expanded themselves there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub expanded_outputs: Vec<String>,
     /// Computing time, s, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,

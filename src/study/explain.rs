@@ -1,9 +1,9 @@
 //! `mbint explain`: what a model is compiled to.
 
+use super::RunError;
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::subsystems::{Prepared, prepare};
-use super::{RunError, prepare_whole};
 use crate::compile::Program;
 use crate::model::Description;
 use crate::reduce::Choices;
@@ -44,14 +44,6 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
 fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
     let reached = |number: &usize| prepared.iter().any(|one| one.subsystem.parameters.contains(number));
     (0..uncertain.len()).filter(|number| !reached(number)).collect()
-}
-
-/// What a whole model is compiled to, with the parts on which no output depends, and nothing merged.
-///
-/// # Errors
-/// Where it cannot be built or assembled.
-pub fn explain_whole(description: &Description) -> Result<Explanation, RunError> {
-    Ok(of_simulator(&description.name, &prepare_whole(description)?))
 }
 
 /// What one subsystem is compiled to.

@@ -56,14 +56,14 @@ fn every_picture_is_shown_beside_an_example() {
     }
 }
 
-/// `MBINT_UPDATE_REFERENCE=1 cargo test --test docs_effects` writes the page.
+/// `MBINT_UPDATE_DOCS=1 cargo test --test program docs_effects` writes the page.
 #[test]
 fn the_reference_of_effects_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/effects.md");
     let current = mbint::inner::export::effects_page(&study::language_costs().unwrap());
-    if std::env::var_os("MBINT_UPDATE_REFERENCE").is_some() {
+    if std::env::var_os("MBINT_UPDATE_DOCS").is_some() {
         std::fs::write(&path, &current).unwrap();
     }
     let committed = std::fs::read_to_string(&path).unwrap();
-    assert!(committed == current, "write it anew: MBINT_UPDATE_REFERENCE=1 cargo test --test docs_effects");
+    assert!(committed == current, "write it anew: MBINT_UPDATE_DOCS=1 cargo test --test program");
 }

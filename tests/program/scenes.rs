@@ -488,7 +488,8 @@ fn a_ctrl_c_keeps_the_scenes_that_are_done() {
     let text = fs::read_to_string(&path).unwrap();
     let slow = "  slow: { simulation: { duration: 8, step: 1e-4 }, bounds: { scan: { points: 150 } } }\n  never: {}\n";
     fs::write(path, format!("{text}{slow}")).unwrap();
-    let run = place.command("run door.yaml -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let run =
+        place.command("run --yes door.yaml -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let summary = place.path().join("out/long/summary.json");
     // The scene before the slow one is done: now it is the slow one's turn.
     for _ in 0..600 {

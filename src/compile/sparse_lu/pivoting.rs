@@ -50,6 +50,9 @@ pub enum Pivoting<'m> {
     Diagonal {
         /// First row of the block that is nearly zero until the others are eliminated.
         constraints: usize,
+        /// Entries that are eliminated before, each with the one across the diagonal: a coordinate without inertia and a constraint
+        /// that defines it, whose derivative by it cannot vanish.
+        pairs: &'m [(usize, usize)],
     },
 }
 
@@ -72,7 +75,7 @@ impl Pivoting<'_> {
     pub fn first_late(self) -> usize {
         match self {
             Self::Any | Self::Symmetric { .. } => usize::MAX,
-            Self::Diagonal { constraints } => constraints,
+            Self::Diagonal { constraints, .. } => constraints,
         }
     }
 }
@@ -95,6 +98,8 @@ pub struct PivotSearch<'m> {
     ready: BTreeSet<usize>,
     /// The second pivot of a pair, to be taken next.
     second: Option<(usize, usize)>,
+    /// For [`Pivoting::Diagonal`], how many pairs have been taken.
+    paired: usize,
 }
 
 impl<'m> PivotSearch<'m> {
@@ -112,7 +117,7 @@ impl<'m> PivotSearch<'m> {
             Pivoting::Any | Pivoting::Diagonal { .. } => (Vec::new(), Vec::new()),
         };
         let in_order = order.iter().enumerate().map(|(row, &order)| (order, row)).collect();
-        Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None }
+        Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None, paired: 0 }
     }
 
     /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where no
@@ -120,6 +125,13 @@ impl<'m> PivotSearch<'m> {
     pub fn choose(&mut self, graph: &Graph, active: &Active) -> Option<(usize, usize)> {
         if let Some(second) = self.second.take() {
             return Some(second);
+        }
+        if let Pivoting::Diagonal { pairs, .. } = self.pivoting
+            && let Some(&(row, column)) = pairs.get(self.paired)
+        {
+            self.paired += 1;
+            self.second = Some((column, row));
+            return Some((row, column));
         }
         self.stages.update(graph);
         let singular = self.pivoting.smallest();

@@ -9,7 +9,7 @@ macro_rules! effects {
         /// An effect of any kind.
         #[derive(Clone, Debug)]
         pub enum EffectKind {
-            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name),)*
+            $(#[doc = concat!("See `", stringify!($name), "`.")] $name($name),)*
         }
 
         $(impl From<$name> for EffectKind {

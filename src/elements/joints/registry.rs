@@ -24,7 +24,7 @@ macro_rules! joints {
         /// A joint of any kind.
         #[derive(Clone, Debug)]
         pub enum JointKind {
-            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name),)*
+            $(#[doc = concat!("See `", stringify!($name), "`.")] $name($name),)*
         }
 
         $(impl From<$name> for JointKind {

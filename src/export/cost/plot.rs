@@ -60,7 +60,7 @@ pub fn cost_svg(study: &CostStudy) -> Result<String, String> {
 fn draw(canvas: &Canvas, study: &CostStudy) -> Drawn {
     canvas.fill(&WHITE)?;
     let half = f64::from(SIZE.0) / 2.0;
-    let scale = if study.is_deterministic() { "error / reach of the course" } else { "error / widest band" };
+    let scale = if study.is_deterministic() { "error / range of the course" } else { "error / largest width" };
     let panels = [
         ("Bounds", &study.bounds, study.reference.bounds_error),
         ("Nominal trajectory", &study.trajectories, study.reference.trajectory_error),

@@ -64,7 +64,7 @@ impl ExtremeSearch {
 
     /// Extremes of `outputs` functions. `evaluate` is given points and writes the values there, those of the first
     /// function at all points, then of the second, …; it is called with many points a few times. `neighbours` are the
-    /// extremes of similar functions, as many, or none.
+    /// extremes of similar functions, as many, or none; `places` are where some function is known to be large or small.
     ///
     /// # Errors
     /// The first of `evaluate`.
@@ -72,6 +72,7 @@ impl ExtremeSearch {
         &self,
         outputs: usize,
         neighbours: &[Extremes],
+        places: &[Vec<f64>],
         mut evaluate: impl FnMut(&[Vec<f64>], &mut [f64]) -> Result<(), E>,
     ) -> Result<Vec<Extremes>, E> {
         let mut seen = Evaluations { values: vec![Vec::new(); outputs], ..Evaluations::default() };
@@ -80,7 +81,7 @@ impl ExtremeSearch {
         let known = known.cloned();
         let spared = if neighbours.is_empty() { 0 } else { (SCATTERED.0 - SCATTERED.1) * self.dimension };
         let design = &self.design[..self.design.len() - spared];
-        seen.look(design.iter().cloned().chain(known).collect(), &mut evaluate)?;
+        seen.look(design.iter().chain(places).cloned().chain(known).collect(), &mut evaluate)?;
         let goals = || (0..outputs).flat_map(|output| [1.0, -1.0].map(|sign| Goal { output, sign }));
         let separable = goals().map(|goal| self.separable_maximum(&seen, goal)).collect();
         seen.look(separable, &mut evaluate)?;
@@ -143,7 +144,7 @@ fn design(dimension: usize) -> Vec<Vec<f64>> {
     };
     let corners = (0..(dimension + 1).next_power_of_two()).map(walsh);
     // The root of φ^(k+1) = φ + 1: steps φ^−1, φ^−2, … that are as irrational as they can be together.
-    let golden = (0..64).fold(2.0_f64, |phi, _| (1.0 + phi).powf(1.0 / (dimension as f64 + 1.0)));
+    let golden = (0..64).fold(2.0_f64, |phi, _| symdiff::math::pow(1.0 + phi, 1.0 / (dimension as f64 + 1.0)));
     let scattered = (1..=SCATTERED.0 * dimension).map(|n| {
         let coordinate = |axis| 2.0 * (0.5 + n as f64 * golden.powi(-(axis as i32) - 1)).fract() - 1.0;
         (0..dimension).map(coordinate).collect()
