@@ -408,7 +408,6 @@ fn friction_is_the_documented_formula() {
         let v0 = numbers.next().unwrap();
         let files = |dynamics: &str| {
             robot(&[
-                link("base", 1.0, "0 0 0", [0.1; 3]),
                 link("arm", 0.5, "0 0 0", [0.02; 3]),
                 joint(
                     "hinge",
