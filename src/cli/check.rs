@@ -76,6 +76,8 @@ struct Counts {
     uncertain_parameters: Vec<String>,
     redundant_constraints: Vec<String>,
     singular_at_start: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
     /// Parts that no output depends on.
@@ -149,7 +151,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let Assembled { system, mobility, undetermined, .. } = study::assemble_whole(model)?;
+        let Assembled { system, mobility, undetermined, shared, .. } = study::assemble_whole(model)?;
         let constraints = |numbers: &[usize]| numbers.iter().map(|&k| system.constraints[k].name.clone()).collect();
         Ok(Self {
             model: model.name.clone(),
@@ -159,6 +161,7 @@ impl Counts {
             uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             redundant_constraints: constraints(&mobility.redundant),
             singular_at_start: constraints(&mobility.singular_at_start),
+            shared_start: shared,
             undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             not_simulated: Reduction::of(model, Choices::default()).left_out,
@@ -183,10 +186,11 @@ impl Counts {
             names => format!(", {what} {}", names.join(", ")),
         };
         let singular = others(&self.singular_at_start, "a singular start, at which other constraints imply");
+        let shared = others(&self.shared_start, "a start that the model leaves open, nearest to rest in");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
         let left_out = others(&self.not_simulated, "not simulated because no output depends on it:");
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}{left_out}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}\n",
             self.model,
             count(self.coordinates, "coordinate", "coordinates"),
             count(self.constraints, "constraint", "constraints"),
@@ -210,6 +214,7 @@ mod tests {
             uncertain_parameters: vec!["l1".into(), "tau".into()],
             redundant_constraints: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
             not_simulated: vec![],

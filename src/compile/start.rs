@@ -8,11 +8,15 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
+//!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
 //! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it cannot vanish (the
 //! angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides are augmented: μ Φ_kᵀ Φ_k is added
 //! to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0, but couples what k couples.
+//!
+//! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
 //!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
@@ -25,6 +29,7 @@ use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
 use super::equations::Equation;
 use super::layout::Layout;
+use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, Residual, named, residuals};
 use crate::assemble::System;
@@ -48,6 +53,8 @@ pub struct StartProgram {
     pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
+    /// What is nearest to rest.
+    pub open: OpenStart,
     lowered: Lowered,
 }
 
@@ -58,6 +65,7 @@ const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
 const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
+const PROJECTION: usize = 7;
 
 impl StartProgram {
     /// Number of registers of a tile.
@@ -100,6 +108,12 @@ impl StartProgram {
         &self.lowered.kernels[ACCELERATION]
     }
 
+    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
+    /// consistent.
+    pub fn projection(&self) -> &Tape {
+        &self.lowered.kernels[PROJECTION]
+    }
+
     /// Outputs of the state.
     pub fn observe(&self) -> &Tape {
         &self.lowered.kernels[OBSERVE]
@@ -124,12 +138,28 @@ pub fn compile_start(
     redundant: &[usize],
     sample: &[f64],
 ) -> Result<StartProgram, NoFactors<Equation>> {
+    compile_nearest_start(system, redundant, sample, OpenStart::default())
+}
+
+/// The same where the start is left open: it is then the one nearest to rest.
+///
+/// # Errors
+/// As for [`compile_start`].
+pub fn compile_nearest_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+    open: OpenStart,
+) -> Result<StartProgram, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
-    let mut graph = system.graph.clone();
+    let mut graph = match &system.start.nearest {
+        Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),
+        _ => system.graph.clone(),
+    };
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations)?;
+    let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -150,6 +180,7 @@ pub fn compile_start(
         with(&acceleration, &[]),
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
+        with(&projection[..n], &[]),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
@@ -162,6 +193,7 @@ pub fn compile_start(
         constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
         jacobian_entries,
+        open,
         layout,
         lowered,
     })
@@ -187,27 +219,34 @@ struct Builder<'s> {
 }
 
 impl Builder<'_> {
-    /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors<Equation>> {
+    /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
+    fn corrections(&mut self, equations: &Equations, open: OpenStart) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
-        let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
-        let diagonal: Vec<(usize, usize, Expr)> =
-            metric.iter().enumerate().map(|(i, &weight)| (i, i, self.graph.constant(weight))).collect();
+        let smallest = LeastSquares::smallest_change(system, &mut self.graph);
+        let positions = open.positions.then(|| LeastSquares::of_positions(system, &mut self.graph));
+        let velocities = open.velocities.then(|| LeastSquares::of_velocities(system, &mut self.graph));
+        let [positions, velocities] = [&positions, &velocities].map(|open| open.as_ref().unwrap_or(&smallest));
         let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
-        let zero = vec![self.graph.constant(0.0); n];
         let none = SparseMatrix::zero(n, system.lambda.len());
         let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
-            .correction(&diagonal, &none, closure_jacobian, (&given(&system.start.position), &[]), &zero, closure)
+            .correction(
+                &positions.metric,
+                &none,
+                closure_jacobian,
+                (&given(&system.start.position), &[]),
+                &positions.gradient,
+                closure,
+            )
             .map_err(|none| named(system, none, OF_POSITION))?;
         let velocity = self
             .correction(
-                &diagonal,
+                &velocities.metric,
                 &none,
                 closure_rate_jacobian,
                 (&given(&system.start.velocity), &[]),
-                &zero,
+                &velocities.gradient,
                 closure_rate,
             )
             .map_err(|none| named(system, none, OF_VELOCITY))?;
@@ -216,10 +255,15 @@ impl Builder<'_> {
         let pairs = self.pairs(jacobian);
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
+        let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
         let acceleration = self
             .correction(&mass, &by_multiplier, jacobian, (&free, &pairs), &motion, rate_of_rate)
-            .map_err(|none| none.named(|row| Equation::of_row(row, n)))?;
-        Ok([position, velocity, acceleration])
+            .map_err(of_motion)?;
+        let rate = &closure_rate[..system.lambda.len()];
+        let zero = vec![self.graph.constant(0.0); n];
+        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
+        let projection = self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
+        Ok([position, velocity, acceleration, projection])
     }
 
     /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have

@@ -1,4 +1,4 @@
-//! The equations that hold at the start, and what their rows are.
+//! The equations that hold at the start — constraints, their rates, and the conditions of the start alone — and what their rows are.
 
 use symdiff::{Expr, Graph, SparseMatrix};
 
@@ -21,11 +21,13 @@ pub(super) struct Equations {
     pub motion: Vec<Expr>,
     /// Φ_q.
     pub jacobian: SparseMatrix,
-    /// Φ, then the conditions on positions; and its derivatives by q.
+    /// Φ, then the conditions on positions.
     pub closure: Vec<Expr>,
+    /// Its derivatives by q.
     pub closure_jacobian: SparseMatrix,
-    /// Φ̇, then the rates of the conditions on velocities; and its derivatives by v.
+    /// Φ̇, then the rates of the conditions on velocities.
     pub closure_rate: Vec<Expr>,
+    /// Its derivatives by v.
     pub closure_rate_jacobian: SparseMatrix,
     /// Φ̈.
     pub rate_of_rate: Vec<Expr>,
@@ -37,6 +39,7 @@ pub(super) const OF_POSITION: Kind = |condition| condition.position;
 pub(super) const OF_VELOCITY: Kind = |condition| condition.velocity;
 
 impl Equations {
+    /// Over the system's own symbols.
     pub fn new(system: &System, graph: &mut Graph) -> Self {
         let (motion, jacobian) = equations_of_motion(system, graph);
         let rate = time_derivative(system, graph, &system.constraint);

@@ -151,6 +151,7 @@ mod tests {
             redundant_constraints: vec![],
             undetermined_outputs: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             singular_configurations: vec![],
             alpha: -0.1,
             duration: 1.0,

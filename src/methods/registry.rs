@@ -134,6 +134,11 @@ pub trait BoundingMethod: Debug {
         self.samples().map_or(budget.solves, |samples| samples as usize)
     }
 
+    /// Highest degree in a parameter of its surrogate; 0 where it has none, or where the degree follows from the response.
+    fn degree(&self) -> usize {
+        0
+    }
+
     /// What it needs to know of the validation samples.
     fn observes(&self, _problem: &Problem) -> Observed {
         Observed::Outputs
@@ -289,6 +294,11 @@ impl BoundsRequest {
     /// Whether no method is asked for.
     pub fn is_empty(&self) -> bool {
         self.methods().is_empty()
+    }
+
+    /// Highest degree in a parameter of any surrogate.
+    pub fn degree(&self) -> usize {
+        self.methods().into_iter().map(|(_, method)| method.degree()).max().unwrap_or(0)
     }
 
     /// The request adjusted to a problem, with these methods instead of its own where they are given.

@@ -4,7 +4,7 @@ use std::ops::Range as Rows;
 
 use super::ensemble::Simulated;
 use super::validation::Validation;
-use crate::numerics::{Range, surrogate_error};
+use crate::numerics::{Range, largest, surrogate_error};
 
 /// How an output's spread in one row comes about.
 #[derive(Clone, Debug)]
@@ -38,6 +38,8 @@ pub struct MethodResult {
     pub order: Option<Vec<usize>>,
     /// Number of boxes into which the box was split, where the tolerance decided it.
     pub boxes: Option<usize>,
+    /// Outputs that in some row do not follow from the coordinates and were expanded themselves.
+    pub expanded: Vec<usize>,
     /// What came of the simulations.
     pub simulated: Simulated,
 }
@@ -53,12 +55,16 @@ pub struct Estimate {
     pub step_error: f64,
     /// Where asked for.
     pub sensitivity: Option<Sensitivity>,
+    /// Whether the output does not follow from the coordinates there and was expanded itself.
+    pub is_expanded: bool,
 }
 
-/// An output's polynomial in a row: its range, how much too wide that may be, and its values at the validation samples.
+/// An output's polynomial in a row: its range, how much too wide that may be, how large the terms are that it lacks, as far as they are
+/// known, and its values at the validation samples.
 pub(super) struct PolynomialEstimate {
     pub range: Range,
     pub excess: f64,
+    pub truncation: f64,
     pub at_validation: Vec<f64>,
 }
 
@@ -69,6 +75,7 @@ pub struct BandBuilder {
     surrogate: Vec<Vec<f64>>,
     steps: Vec<Vec<f64>>,
     sensitivities: Vec<Vec<Option<Sensitivity>>>,
+    expanded: Vec<bool>,
 }
 
 impl BandBuilder {
@@ -79,6 +86,7 @@ impl BandBuilder {
             surrogate: vec![vec![f64::NAN; rows]; outputs],
             steps: vec![vec![f64::NAN; rows]; outputs],
             sensitivities: vec![vec![None; rows]; outputs],
+            expanded: vec![false; outputs],
         }
     }
 
@@ -93,14 +101,15 @@ impl BandBuilder {
         self.set(row, output, estimate.range, estimate.error);
         self.steps[output][row] = estimate.step_error;
         self.sensitivities[output][row] = estimate.sensitivity;
+        self.expanded[output] |= estimate.is_expanded;
     }
 
     /// Sets ranges of polynomials, row by row, output by output.
     pub(super) fn set_polynomials(&mut self, rows: Rows<usize>, found: &[PolynomialEstimate], validation: &Validation) {
         for (row, found) in rows.zip(found.chunks_exact(self.bands.len())) {
-            for (output, PolynomialEstimate { range, excess, at_validation }) in found.iter().enumerate() {
-                let error = surrogate_error(at_validation, &validation.direct.at(row, output));
-                self.set(row, output, *range, error + excess);
+            for (output, found) in found.iter().enumerate() {
+                let error = surrogate_error(&found.at_validation, &validation.direct.at(row, output));
+                self.set(row, output, found.range, largest([error, found.truncation]) + found.excess);
             }
         }
     }
@@ -122,6 +131,7 @@ impl BandBuilder {
             simulations,
             order: None,
             boxes: None,
+            expanded: (0..self.expanded.len()).filter(|&output| self.expanded[output]).collect(),
             simulated,
         }
     }

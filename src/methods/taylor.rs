@@ -105,6 +105,10 @@ impl Registered for Taylor {
 }
 
 impl BoundingMethod for Taylor {
+    fn degree(&self) -> usize {
+        self.order
+    }
+
     fn work(&self, _: &Budget) -> usize {
         JET_WORK * (self.order + 1)
     }
@@ -128,7 +132,7 @@ impl BoundingMethod for Taylor {
                         let at_point = |xi: &Vec<f64>| range.monomials().evaluate(coefficients, xi);
                         let at_validation = validation.points.iter().map(at_point).collect();
                         let (range, excess) = range.enclose(coefficients);
-                        PolynomialEstimate { range, excess, at_validation }
+                        PolynomialEstimate { range, excess, truncation: 0.0, at_validation }
                     },
                 )
                 .collect();

@@ -3,6 +3,9 @@
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{BandError, Range, largest, probes, time_error, validation};
 
+/// Width of an output's range, relative to its values, that is rounding.
+const ROUNDING: f64 = 1e-10;
+
 /// All values of a few samples in all rows.
 #[derive(Clone, Debug)]
 pub struct ValidationTable {
@@ -58,14 +61,15 @@ impl ValidationTable {
         self.values.len() / ((self.motions + self.outputs) * self.samples)
     }
 
-    /// Width of an output's range over all rows and samples; zero where that is less than `least`.
+    /// Width of an output's range over all rows and samples; zero where that is less than `least`, or than rounding of the values.
     fn span(&self, output: usize, least: f64) -> f64 {
         let lines = self.values.chunks_exact(self.samples);
         let lines = lines.skip(self.motions + output).step_by(self.motions + self.outputs);
         let (lower, upper) = lines
             .flatten()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(lower, upper), &value| (lower.min(value), upper.max(value)));
-        if upper - lower < least { 0.0 } else { (upper - lower).max(0.0) }
+        let least = least.max(ROUNDING * lower.abs().max(upper.abs()));
+        if upper - lower <= least { 0.0 } else { (upper - lower).max(0.0) }
     }
 
     fn spans(&self, ensemble: &dyn Ensemble) -> Vec<f64> {
@@ -93,13 +97,18 @@ pub struct Validation {
 }
 
 impl Validation {
-    /// Simulates them; `halved` is the ensemble with each step halved.
+    /// Simulates them, for surrogates of this degree at most; `halved` is the ensemble with each step halved.
     ///
     /// # Errors
     /// Where one cannot be assembled.
-    pub fn run(ensemble: &dyn Ensemble, halved: &dyn Ensemble, observed: Observed) -> Result<Self, EnsembleError> {
+    pub fn run(
+        ensemble: &dyn Ensemble,
+        halved: &dyn Ensemble,
+        observed: Observed,
+        degree: usize,
+    ) -> Result<Self, EnsembleError> {
         let domain = ensemble.domain();
-        let points = validation(domain.dimension());
+        let points = validation(domain.dimension(), degree);
         let first = probes(domain.dimension()).len();
         let samples = domain.points(&points);
         let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
@@ -121,7 +130,7 @@ impl Validation {
         halved: &dyn Ensemble,
         (nominal, reached): (&[Vec<Range>], usize),
     ) -> Result<Self, EnsembleError> {
-        let points = validation(0);
+        let points = validation(0, 0);
         let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
         let values = (0..reached).flat_map(at).collect();
         let direct = ValidationTable { motions: 0, outputs: ensemble.outputs(), samples: points.len(), values };

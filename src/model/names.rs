@@ -85,6 +85,13 @@ impl SymbolTable for Description {
         self.joints[joint].kind.axis_of(coordinate).is_some()
     }
 
+    fn has_axis(&self, joint: usize) -> bool {
+        let kind = &self.joints[joint].kind;
+        let own = [JointCoordinate::Angle, JointCoordinate::Displacement];
+        let drives = || kind.coordinates(joint).iter().any(|on| self.has_coordinate(on.joint, on.coordinate));
+        own.into_iter().any(|coordinate| self.has_coordinate(joint, coordinate)) || kind.between().is_none() && drives()
+    }
+
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {
         match self.joints[joint].kind.mobilizer()? {
             Mobilizer::Rotation { .. } => Some(FrictionMode::Rotating),

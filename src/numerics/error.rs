@@ -36,6 +36,9 @@ const FAR_OFF: f64 = 0.25;
 /// A surrogate's error below this share of the output's span is none to speak of, however narrow the band is there.
 const SMALL: f64 = 1e-3;
 
+/// A nominal value that lies outside of a band by less than this share of its own size does so by rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// A band's errors over the output times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BandError {
@@ -103,6 +106,22 @@ impl BandError {
             });
         }
         Self { total, surrogate: largest(surrogate), time: largest(time), unresolved }
+    }
+
+    /// Flags every row whose nominal value, where it is known, lies outside of its range and error: one of the two is wrong. What is
+    /// outside by rounding only is added to the error.
+    pub fn hold_nominal(&mut self, ranges: &[Range], nominal: &[f64]) {
+        for (row, (range, &nominal)) in ranges.iter().zip(nominal).enumerate() {
+            let distance = range.distance(nominal);
+            if nominal.is_nan() || distance <= self.total[row] {
+                continue;
+            }
+            if distance <= ROUNDING * nominal.abs() {
+                self.total[row] = distance;
+            } else {
+                self.unresolved[row] = true;
+            }
+        }
     }
 
     /// Largest of all rows; NaN if one is.
@@ -173,6 +192,17 @@ mod tests {
         assert_eq!(BandError::new(&ranges, &[0.0; 2], &[f64::NAN; 2], 0.0, None).unresolved, [true; 2]);
         // At rest, to rounding.
         assert_eq!(BandError::new(&ranges, &[1e-16; 2], &[1e-16; 2], 0.0, None).unresolved, [false; 2]);
+    }
+
+    #[test]
+    fn a_nominal_value_outside_is_flagged() {
+        let ranges = [Range { lower: 0.0, upper: 1.0 }; 4];
+        let mut error = BandError::new(&ranges, &[0.0; 4], &[0.01; 4], 1.0, None);
+        error.hold_nominal(&ranges, &[1.01, 1.1, f64::NAN, -0.5]);
+        assert_eq!(error.unresolved, [false, true, false, true]);
+        let mut exact = BandError::new(&ranges, &[0.0; 4], &[0.0; 4], 1.0, None);
+        exact.hold_nominal(&ranges, &[1.0_f64.next_up(), 0.5, 0.0, 1.0]);
+        assert!(exact.unresolved == [false; 4] && ranges[0].upper + exact.total[0] >= 1.0_f64.next_up());
     }
 
     #[test]

@@ -1,20 +1,35 @@
-//! The extremes of functions of few parameters: the best of a grid over the box, and then the peak beside it.
+//! The extremes of functions of few parameters: local extremes on a lattice over the box, and then the peaks beside them.
+//!
+//! The lattice is as dense as the functions ask for: where a value is not what those beside it tell, by some share of the function's
+//! range, the lattice is made finer along that axis. Every local extreme from which the best may be within reach is refined. Points of
+//! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: what they find beyond it makes the lattice
+//! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
 
+use super::lattice::Lattice;
 use super::peak::Peak;
 use super::range::Range;
-use super::samples::TensorGrid;
+use super::samples::spread;
 
-/// First distance of neighbours in the search near a known extreme.
+/// First distance of neighbours in the search near a known extreme, at most.
 const NEAR: f64 = 0.1;
-
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
-
 /// An end is found when a step changes less than this share of the range's width.
-const SETTLED: f64 = 1e-6;
-
+const SETTLED: f64 = 1e-10;
 /// Most steps of the search for an end.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 16;
+/// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside it tell: fewer
+/// than eight points to a wave.
+const COARSE: f64 = 0.03;
+/// What a check may find beyond the range, as a share of it, before the lattice is made finer.
+const BEYOND: f64 = 1e-4;
+/// Points of the check for those of the lattice, and at least.
+const CHECKS: usize = 4;
+const LEAST_CHECKS: usize = 8;
+/// Local extremes that are refined for each end.
+const CANDIDATES: usize = 6;
+/// Most points of a lattice by the number of parameters.
+const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
 /// A function's range.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,30 +40,115 @@ pub struct Extent {
     pub gap: f64,
     /// ξ of the least and of the largest value.
     pub places: [Vec<f64>; 2],
+    /// Distances within which nothing else was seen beside them, along each axis.
+    pub spacing: [Vec<f64>; 2],
 }
 
-/// Extremes of many functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The grid
-/// has `points` ≥ 3 along each axis. Unknown where a value on it is NaN.
-pub fn extremes(k: usize, points: usize, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
-    let grid = TensorGrid::full_factorial(&vec![points; k]);
-    let samples: Vec<Vec<f64>> = (0..grid.len()).map(|index| grid.sample(index)).collect();
-    let values = evaluate(&samples);
-    let mut ends: Vec<End> =
-        values.chunks_exact(grid.len()).flat_map(|line| SIGNS.map(|sign| End::on_grid(line, &grid, sign))).collect();
-    climb(&mut ends, &evaluate);
-    ends.chunks_exact(2).map(extent).collect()
+impl Extent {
+    /// Of what cannot be bounded.
+    pub fn unknown(dimension: usize) -> Self {
+        let zeros = || [vec![0.0; dimension], vec![NEAR; dimension]];
+        let [place, spacing] = zeros();
+        Self {
+            range: Range::UNKNOWN,
+            gap: f64::NAN,
+            places: [place.clone(), place],
+            spacing: [spacing.clone(), spacing],
+        }
+    }
+
+    /// Found at these places.
+    pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
+        let spacing = [vec![NEAR; places[0].len()], vec![NEAR; places[1].len()]];
+        Self { range, gap, places, spacing }
+    }
+}
+
+/// Extremes of `outputs` functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The first
+/// lattice has `intervals` ≥ 2 along each axis, one for each. Unknown where a value on a lattice is NaN.
+pub fn extremes(outputs: usize, intervals: &[usize], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    let mut lattice = Lattice::new(intervals);
+    let mut intervals = intervals.to_vec();
+    loop {
+        let points = lattice.points();
+        let count = points.len();
+        let scattered = if intervals.is_empty() { 0 } else { (count / CHECKS).max(LEAST_CHECKS) };
+        let checks = spread(intervals.len(), scattered);
+        let all = [points, checks.clone()].concat();
+        let values = evaluate(&all);
+        let lines: Vec<(&[f64], &[f64])> =
+            values.chunks_exact(all.len()).take(outputs).map(|line| line.split_at(count)).collect();
+        let finer = finer(&lattice, &intervals, &lines);
+        if finer != intervals {
+            (lattice, intervals) = (Lattice::new(&finer), finer);
+            continue;
+        }
+        let mut searches: Vec<Search> =
+            lines.iter().enumerate().map(|(output, line)| Search::new(output, &lattice, line.0)).collect();
+        climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+        let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
+        let beyond = |(extent, line): (&Extent, &(&[f64], &[f64]))| {
+            let beyond = line.1.iter().map(|&value| extent.range.distance(value)).fold(0.0, f64::max);
+            beyond > BEYOND * extent.range.width()
+        };
+        let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
+        if found.iter().zip(&lines).any(beyond) && has_room(&doubled) {
+            (lattice, intervals) = (Lattice::new(&doubled), doubled);
+            continue;
+        }
+        found.iter_mut().zip(&lines).for_each(|(extent, line)| extent.include(&checks, line.1));
+        return found;
+    }
+}
+
+fn has_room(intervals: &[usize]) -> bool {
+    let points = intervals.iter().fold(1_usize, |points, count| points.saturating_mul(count + 1));
+    points <= MOST_POINTS[intervals.len().clamp(1, MOST_POINTS.len()) - 1]
+}
+
+/// Intervals of a lattice that is finer along the axes along which some function is not resolved, as far as there is room.
+fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])]) -> Vec<usize> {
+    let mut worst = vec![0.0_f64; intervals.len()];
+    for (values, _) in lines {
+        let width = Range::of(values).width();
+        if width > 0.0 {
+            let residuals = lattice.residuals(values);
+            worst.iter_mut().zip(residuals).for_each(|(worst, residual)| *worst = worst.max(residual / width));
+        }
+    }
+    let mut finer = intervals.to_vec();
+    let mut axes: Vec<usize> = (0..intervals.len()).filter(|&axis| worst[axis] > COARSE).collect();
+    axes.sort_by(|&a, &b| worst[b].total_cmp(&worst[a]));
+    for axis in axes {
+        finer[axis] *= 2;
+        if !has_room(&finer) {
+            finer[axis] /= 2;
+        }
+    }
+    finer
 }
 
 /// Extremes of other functions, not far from those of similar ones.
 pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
-    let near = |extent: &Extent| [0, 1].map(|end| End::near(extent.places[end].clone(), SIGNS[end]));
-    let mut ends: Vec<End> = known.iter().flat_map(near).collect();
-    climb(&mut ends, &evaluate);
-    ends.chunks_exact(2).map(extent).collect()
+    let near = |(output, extent): (usize, &Extent)| {
+        let width = extent.range.width();
+        let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], width);
+        Search { ends: [0, 1].map(end).into(), omitted: [f64::NEG_INFINITY; 2] }
+    };
+    let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
+    climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+    searches.iter().map(Search::extent).collect()
+}
+
+/// What is sought of one function.
+struct Search {
+    ends: Vec<End>,
+    /// How low and how high local extremes that are not refined may be; the former negative.
+    omitted: [f64; 2],
 }
 
 /// Searches until all ends are found.
-fn climb(ends: &mut [End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
+fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
     for _ in 0..ROUNDS {
         let searched: Vec<usize> = (0..ends.len()).filter(|&end| !ends[end].found).collect();
         let around: Vec<Vec<Vec<f64>>> = searched.iter().map(|&end| ends[end].points()).collect();
@@ -59,24 +159,82 @@ fn climb(ends: &mut [End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
         let values = evaluate(&points);
         let mut first = 0;
         for (&end, around) in searched.iter().zip(&around) {
-            let width = ends[end | 1].best - ends[end & !1].best;
-            ends[end].refine(around, &values[end / 2 * points.len() + first..][..around.len()], width);
+            let of_output = ends[end].output * points.len() + first;
+            ends[end].refine(around, &values[of_output..][..around.len()]);
             first += around.len();
         }
     }
 }
 
-fn extent(ends: &[End]) -> Extent {
-    Extent {
-        range: Range { lower: ends[0].best, upper: ends[1].best },
-        gap: ends[0].gap.max(ends[1].gap),
-        places: [0, 1].map(|end| ends[end].best_xi.clone()),
+impl Search {
+    /// From the values of function number `output` on a lattice.
+    fn new(output: usize, lattice: &Lattice, values: &[f64]) -> Self {
+        let range = Range::of(values);
+        let end = |place: usize, sign: f64| {
+            End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, range.width())
+        };
+        let mut search = Self { ends: Vec::new(), omitted: [f64::NEG_INFINITY; 2] };
+        for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
+            if range.lower.is_nan() {
+                search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
+                continue;
+            }
+            let best = if sign > 0.0 { range.upper } else { -range.lower };
+            let mut peaks = lattice.peaks(values, sign);
+            // What cannot reach the best is left out. The best itself stays, and comes first.
+            peaks.retain(|&(_, height)| height >= best);
+            let is_best = |place: usize| sign * values[place] == best;
+            peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
+            search.ends.extend(peaks.iter().take(CANDIDATES).map(|peak| end(peak.0, sign)));
+            *omitted = peaks.iter().skip(CANDIDATES).map(|peak| peak.1).fold(*omitted, f64::max);
+        }
+        search
+    }
+
+    /// From the best of all ends.
+    fn extent(&self) -> Extent {
+        let best = |(sign, omitted): (f64, f64)| {
+            let ends = self.ends.iter().filter(|end| end.sign == sign);
+            let best = ends.reduce(|a, b| if sign * b.best > sign * a.best { b } else { a })?;
+            Some((best, best.gap.max(omitted - sign * best.best)))
+        };
+        let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], self.omitted[end])))
+        else {
+            // There is an end of either sign.
+            return Extent::unknown(0);
+        };
+        Extent {
+            range: Range { lower: least.best, upper: largest.best },
+            gap: below.max(above),
+            places: [least.best_xi.clone(), largest.best_xi.clone()],
+            spacing: [least.spacing.clone(), largest.spacing.clone()],
+        }
     }
 }
 
-/// One end of a function's range, as it is found.
+impl Extent {
+    /// Takes in values at other points. What lies beyond the range had been missed.
+    pub fn include(&mut self, points: &[Vec<f64>], values: &[f64]) {
+        for (point, &value) in points.iter().zip(values) {
+            let beyond = self.range.distance(value);
+            if beyond > 0.0 {
+                let end = usize::from(value > self.range.upper);
+                self.range = Range { lower: self.range.lower.min(value), upper: self.range.upper.max(value) };
+                self.places[end].clone_from(point);
+                self.gap += beyond;
+            }
+        }
+    }
+}
+
+/// A place from which one end of a function's range is sought.
 struct End {
+    output: usize,
     sign: f64,
+    /// Of the function's range, as far as that is known.
+    width: f64,
+    /// Distances of the first neighbours.
+    spacing: Vec<f64>,
     /// Where the peak is looked for, and where it is believed to be.
     around: Peak,
     xi: Vec<f64>,
@@ -89,24 +247,13 @@ struct End {
 }
 
 impl End {
-    /// The best of the values on a grid, and the peak that its neighbours tell.
-    fn on_grid(values: &[f64], grid: &TensorGrid, sign: f64) -> Self {
-        let better = |a: usize, b: usize| if sign * values[b] > sign * values[a] { b } else { a };
-        let place = (0..values.len()).fold(0, better);
-        let unknown = values.iter().any(|value| value.is_nan());
-        let best = if unknown { f64::NAN } else { values[place] };
-
-        let peak = Peak::new(grid.sample(place), grid.spacing());
-        let middle = grid.inner(place);
-        let stencil: Vec<f64> = peak.stencil().iter().map(|offsets| values[grid.beside(middle, offsets)]).collect();
-        let xi = peak.vertex(&stencil, sign);
-        Self { sign, around: peak.next(&xi), xi, best, best_xi: grid.sample(place), gap: 0.0, found: unknown }
-    }
-
-    /// Not far from a place; nothing is known of the function.
-    fn near(xi: Vec<f64>, sign: f64) -> Self {
-        let around = Peak::new(xi.clone(), vec![NEAR; xi.len()]);
-        Self { sign, around, best_xi: xi.clone(), xi, best: -sign * f64::INFINITY, gap: f64::NAN, found: false }
+    /// Not far from a place, with neighbours at these distances.
+    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, width: f64) -> Self {
+        let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(NEAR)).collect();
+        let around = Peak::new(xi.to_vec(), spacing.clone());
+        let best = -sign * f64::INFINITY;
+        let (xi, best_xi) = (xi.to_vec(), xi.to_vec());
+        Self { output, sign, width, spacing, around, best_xi, xi, best, gap: f64::NAN, found: false }
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.
@@ -115,14 +262,15 @@ impl End {
         stencil.iter().map(|offsets| self.around.neighbour(offsets)).chain([self.xi.clone()]).collect()
     }
 
-    /// Takes in the values there. `width` is that of the range so far.
-    fn refine(&mut self, points: &[Vec<f64>], values: &[f64], width: f64) {
+    /// Takes in the values there.
+    fn refine(&mut self, points: &[Vec<f64>], values: &[f64]) {
         let best = (0..values.len()).fold(0, |a, b| if self.sign * values[b] > self.sign * values[a] { b } else { a });
         let gain = self.sign * (values[best] - self.best);
-        // NaN beside the grid's points changes nothing.
+        // NaN beside the lattice's points changes nothing.
         if gain > 0.0 {
+            // Once may be by chance. (At first nothing is known, and NaN is not settled.)
+            self.found = gain.max(self.gap) <= SETTLED * self.width && !self.gap.is_nan();
             self.gap = gain;
-            self.found = gain <= SETTLED * width;
             self.best = values[best];
             self.best_xi.clone_from(&points[best]);
             self.xi = self.around.vertex(&values[..values.len() - 1], self.sign);
@@ -141,14 +289,14 @@ impl End {
 mod tests {
     use super::*;
 
-    fn range(k: usize, points: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
-        extremes(k, points, |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
+    fn range(k: usize, intervals: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
+        extremes(1, &vec![intervals; k], |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
     }
 
     #[test]
     fn a_peak_beside_an_edge_is_found() {
         // Between the last two points of the grid.
-        let found = range(1, 9, |xi| (xi[0] - 0.93).powi(2) + 0.1 * (xi[0] - 0.93).powi(3));
+        let found = range(1, 8, |xi| (xi[0] - 0.93).powi(2) + 0.1 * (xi[0] - 0.93).powi(3));
         assert!(found.range.lower.abs() < 1e-9 && found.gap < 1e-6, "{found:?}");
         assert!((found.range.upper - (1.93_f64.powi(2) - 0.1 * 1.93_f64.powi(3))).abs() < 1e-12);
     }
@@ -161,7 +309,7 @@ mod tests {
             // The best x for this y, by a dense search.
             (0..=200_000).map(|i| f(&[-1.0 + 1e-5 * f64::from(i), y, -1.0])).fold(f64::INFINITY, f64::min)
         };
-        let found = range(3, 7, f);
+        let found = range(3, 6, f);
         let truth = (0..=40).map(|i| least(-1.0 + 0.01 * f64::from(i))).fold(f64::INFINITY, f64::min);
         assert!((found.range.lower - truth).abs() < 1e-3 * found.range.width(), "{found:?}, {truth}");
     }
@@ -171,20 +319,53 @@ mod tests {
         let wave = |shift: f64| {
             move |points: &[Vec<f64>]| points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect()
         };
-        let known: Vec<Extent> = extremes(2, 25, wave(0.0));
+        let known: Vec<Extent> = extremes(1, &[24; 2], wave(0.0));
         let shifted = extremes_near(&known, wave(0.4));
         assert!(
             (shifted[0].range.upper - 1.1).abs() < 1e-6 && (shifted[0].range.lower + 1.1).abs() < 1e-6,
             "{shifted:?}"
         );
         let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
-        let shifted = extremes_near(&extremes(1, 5, slope(0.0)), slope(0.4));
+        let shifted = extremes_near(&extremes(1, &[4], slope(0.0)), slope(0.4));
         assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
     }
 
     #[test]
     fn nothing_uncertain_and_the_unknown() {
-        assert_eq!(range(0, 9, |_| 3.0).range, Range { lower: 3.0, upper: 3.0 });
-        assert!(range(1, 9, |xi| if xi[0] == 0.0 { f64::NAN } else { 1.0 }).range.lower.is_nan());
+        assert_eq!(range(0, 8, |_| 3.0).range, Range { lower: 3.0, upper: 3.0 });
+        assert!(range(1, 8, |xi| if xi[0] == 0.0 { f64::NAN } else { 1.0 }).range.lower.is_nan());
+    }
+
+    #[test]
+    fn the_best_of_many_waves_is_found() {
+        // Two waves that beat: only one crest of thirty is the highest.
+        let f = |x: f64| (60.0 * x).sin() + (57.0 * x + 0.4).sin() + 0.05 * x;
+        let found = range(1, 16, |xi| f(xi[0]));
+        let dense = (0..=400_000).map(|i| f(-1.0 + 5e-6 * f64::from(i)));
+        let truth = dense.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)));
+        assert!((found.range.lower - truth.0).abs() < 1e-8 && (found.range.upper - truth.1).abs() < 1e-8, "{found:?}");
+        assert!(found.gap < 1e-8);
+        let found = range(2, 8, |xi| (9.0 * xi[0]).sin() * (14.0 * xi[1] + xi[0]).cos() + 0.1 * xi[0] * xi[1]);
+        let f = |x: f64, y: f64| (9.0 * x).sin() * (14.0 * y + x).cos() + 0.1 * x * y;
+        let dense = (0..=1_000_000).map(|i| f(-1.0 + 2e-3 * f64::from(i % 1001), -1.0 + 2e-3 * f64::from(i / 1001)));
+        let truth = dense.fold(f64::NEG_INFINITY, f64::max);
+        assert!(found.range.upper >= truth && found.range.upper < truth + 1e-4, "{found:?}, {truth}");
+    }
+
+    #[test]
+    fn size_sign_and_order_do_not_matter() {
+        let f = |x: f64, y: f64| (7.0 * x + y * y).sin() + (5.0 * y - x).cos();
+        let known = range(2, 10, |xi| f(xi[0], xi[1]));
+        let moved = range(2, 10, |xi| 1e3 + 0.1 * f(xi[0], xi[1]));
+        let mirrored = range(2, 10, |xi| -1e9 * f(xi[0], xi[1]));
+        let permuted = range(2, 10, |xi| f(xi[1], xi[0]));
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-9 * known.range.width();
+        assert!(close(10.0 * (moved.range.upper - 1e3), known.range.upper), "{moved:?} {known:?}");
+        assert!(
+            close(-1e-9 * mirrored.range.lower, known.range.upper) && close(permuted.range.upper, known.range.upper)
+        );
+        assert!(
+            close(-1e-9 * mirrored.range.upper, known.range.lower) && close(permuted.range.lower, known.range.lower)
+        );
     }
 }

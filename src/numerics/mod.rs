@@ -11,11 +11,13 @@
 
 mod bernstein;
 mod chebyshev;
+mod decay;
 mod domain;
 mod error;
 #[cfg(test)]
 mod evaluation;
 mod extremes;
+mod lattice;
 mod leja;
 mod peak;
 mod polynomial_range;
@@ -23,6 +25,7 @@ mod range;
 mod samples;
 mod scan;
 mod search;
+mod separation;
 mod sobol;
 mod sparse_basis;
 mod sparse_grid;
@@ -31,6 +34,7 @@ mod surrogate;
 mod taylor;
 mod tensor;
 
+pub use decay::truncation;
 pub use domain::ParameterBox;
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
@@ -41,6 +45,7 @@ pub use range::{EMPTY, Range, union};
 pub use samples::{TensorGrid, corners, probes, spread, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
+pub use separation::Separation;
 pub use sobol::SobolDecomposition;
 pub use sparse_basis::SparseWork;
 pub use sparse_grid::SparseGrid;

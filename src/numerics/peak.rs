@@ -5,6 +5,9 @@ use nalgebra::{DMatrix, DVector};
 
 /// How much nearer the next neighbours are.
 const NEARER: f64 = 0.25;
+/// How much further, and how far at most.
+const FURTHER: f64 = 2.0;
+const FURTHEST: f64 = 0.5;
 
 /// A point near a function's peak, and its neighbours within [−1, 1]^k.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,12 +50,15 @@ impl Peak {
         self.away(&steps)
     }
 
-    /// Around the peak that was found: nearer neighbours, unless it lies at the limit of their reach.
+    /// Around the peak that was found: nearer neighbours, or further ones where it lies at the limit of their reach.
     #[must_use]
     pub fn next(&self, xi: &[f64]) -> Self {
         let at_limit = |axis: usize| (xi[axis] - self.center[axis]).abs() > 0.99 * self.spacing[axis];
         let further = (0..xi.len()).any(|axis| at_limit(axis) && xi[axis].abs() < 1.0);
-        if further { Self::new(xi.to_vec(), self.spacing.clone()) } else { self.nearer(xi) }
+        if !further {
+            return self.nearer(xi);
+        }
+        Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| (FURTHER * spacing).min(FURTHEST)).collect())
     }
 
     /// Around a point, with nearer neighbours.

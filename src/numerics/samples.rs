@@ -57,30 +57,6 @@ impl TensorGrid {
         }
     }
 
-    /// Distance of the first two coordinates along each axis; both must be there.
-    pub fn spacing(&self) -> Vec<f64> {
-        self.axes.iter().map(|axis| (axis[1] - axis[0]).abs()).collect()
-    }
-
-    /// The sample itself, or the nearest that has neighbours on both sides along each axis; each has three coordinates or more.
-    pub fn inner(&self, index: usize) -> usize {
-        let mut rest = index;
-        let mut stride = 1;
-        let mut inner = 0;
-        for axis in self.axes.iter().rev() {
-            inner += stride * (rest % axis.len()).clamp(1, axis.len() - 2);
-            rest /= axis.len();
-            stride *= axis.len();
-        }
-        inner
-    }
-
-    /// The sample so many coordinates further along each axis, all of which must be there.
-    pub fn beside(&self, index: usize, offsets: &[i8]) -> usize {
-        let along = |away: isize, (axis, &by): (&Vec<f64>, &i8)| away * axis.len() as isize + isize::from(by);
-        index.wrapping_add_signed(self.axes.iter().zip(offsets).fold(0, along))
-    }
-
     /// The coordinates of a sample.
     pub fn sample(&self, index: usize) -> Vec<f64> {
         let mut out = vec![0.0; self.dimension()];
@@ -112,10 +88,11 @@ pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
 }
 
-/// All points at which a surrogate is held against the simulation: [`probes`], then those held out.
-pub fn validation(k: usize) -> Vec<Vec<f64>> {
+/// All points at which a surrogate of so high a degree is held against the simulation: [`probes`], then those held out, which are two
+/// more than the degree: a polynomial that wiggles as often as it can shows at one of them.
+pub fn validation(k: usize, degree: usize) -> Vec<Vec<f64>> {
     let mut points = probes(k);
-    points.extend(spread(k, if k == 0 { 0 } else { HELD_OUT.max(k) }));
+    points.extend(spread(k, if k == 0 { 0 } else { HELD_OUT.max(k).max(degree + 2) }));
     points
 }
 
@@ -144,21 +121,6 @@ mod tests {
         let expected =
             [[-1.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [-1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0]];
         assert_eq!(all, expected);
-    }
-
-    #[test]
-    fn neighbours_are_beside_inner_samples() {
-        let grid = TensorGrid::full_factorial(&[3, 4, 5]);
-        for index in 0..grid.len() {
-            let (at, inner) = (grid.sample(index), grid.inner(index));
-            let middle = grid.sample(inner);
-            let spacing = grid.spacing();
-            assert!((0..3).all(|axis| (at[axis] - middle[axis]).abs() <= spacing[axis] + 1e-12));
-            let beside = grid.sample(grid.beside(inner, &[-1, 1, -1]));
-            for (axis, sign) in [-1.0, 1.0, -1.0].into_iter().enumerate() {
-                assert!((beside[axis] - middle[axis] - sign * spacing[axis]).abs() < 1e-12);
-            }
-        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Least and largest values over a grid of samples, as they come.
 //!
-//! Between two samples a smooth response can go beyond both: past an extreme of the grid that is not at the box's edge by at
-//! most an eighth of the second difference along each axis (that of the parabola through it and its neighbours). That is the
-//! error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
+//! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth of the second
+//! difference (that of the parabola through it and its neighbours). Where second differences stand out against those beside them,
+//! it is not smooth there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of what
+//! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest that any sample
+//! leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
 
 use super::range::Range;
 
@@ -19,24 +21,22 @@ pub struct ScanBounds {
     gaps: Vec<bool>,
 }
 
-/// A value, and how far the response may go beyond it beside its sample.
+/// The least or largest value, and how far the response may go between the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extreme {
     value: f64,
-    beyond: f64,
+    reach: f64,
 }
 
-const EMPTY: [Extreme; 2] =
-    [Extreme { value: f64::INFINITY, beyond: 0.0 }, Extreme { value: f64::NEG_INFINITY, beyond: 0.0 }];
+const EMPTY: [Extreme; 2] = [
+    Extreme { value: f64::INFINITY, reach: f64::INFINITY },
+    Extreme { value: f64::NEG_INFINITY, reach: f64::NEG_INFINITY },
+];
 
-/// Widens `extremes`; of equals the one with the larger error is taken.
+/// Widens `extremes`.
 fn include([least, largest]: &mut [Extreme; 2], [low, high]: [Extreme; 2]) {
-    if low.value < least.value || (low.value == least.value && low.beyond > least.beyond) {
-        *least = low;
-    }
-    if high.value > largest.value || (high.value == largest.value && high.beyond > largest.beyond) {
-        *largest = high;
-    }
+    *least = Extreme { value: least.value.min(low.value), reach: least.reach.min(low.reach) };
+    *largest = Extreme { value: largest.value.max(high.value), reach: largest.reach.max(high.reach) };
 }
 
 impl ScanBounds {
@@ -54,13 +54,34 @@ impl ScanBounds {
     pub fn observe(&mut self, time: usize, output: usize, first: usize, values: &[f64]) {
         let line = time * self.outputs + output;
         self.gaps[line] |= values.iter().any(|value| value.is_nan());
-        let known = || (0..values.len()).filter(|&place| !values[place].is_nan());
-        let least = known().reduce(|a, b| if values[b] < values[a] { b } else { a });
-        let largest = known().reduce(|a, b| if values[b] > values[a] { b } else { a });
-        let (Some(least), Some(largest)) = (least, largest) else { return };
-        let extremes = [least, largest]
-            .map(|place| Extreme { value: values[place], beyond: beyond(&self.points, first, values, place) });
-        include(&mut self.extremes[line], extremes);
+        for (place, &value) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+            let [below, above] = self.beyond(first, values, place);
+            let least = Extreme { value, reach: value - below };
+            include(&mut self.extremes[line], [least, Extreme { value, reach: value + above }]);
+        }
+    }
+
+    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each axis. Along an axis
+    /// whose neighbours are in another part of the scan, as far as along the others.
+    fn beyond(&self, first: usize, values: &[f64], place: usize) -> [f64; 2] {
+        let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);
+        let mut stride = 1;
+        for &count in self.points.iter().rev() {
+            if count > 2 {
+                let at = (first + place) / stride % count;
+                let along = Along { values, place, stride, at, count };
+                let smooth = along.smooth();
+                if smooth.is_none() && at > 0 && at + 1 < count {
+                    unknown += 1.0;
+                }
+                let (smooth, before, after) = (smooth.unwrap_or_default(), along.irregular(-1), along.irregular(1));
+                let further = [0, 1].map(|end| smooth[end].max(before[end]).max(after[end]));
+                known = [known[0] + further[0], known[1] + further[1]];
+                largest = largest.max(further[0]).max(further[1]);
+            }
+            stride *= count;
+        }
+        known.map(|known| known + unknown * largest)
     }
 
     /// Bounds of an output at a time, over the samples that are numbers; unknown where none is.
@@ -75,35 +96,87 @@ impl ScanBounds {
             return f64::NAN;
         }
         let [least, largest] = self.extremes[time * self.outputs + output];
-        if least.beyond <= largest.beyond { largest.beyond } else { least.beyond }
+        (least.value - least.reach).max(largest.reach - largest.value)
     }
 }
 
-/// What the response may go beyond the sample at `place`: along each axis an eighth of the second difference, unless the
-/// sample is at the axis' end. Along an axis whose neighbours are in another part of the scan, the largest of the others'.
-fn beyond(points: &[usize], first: usize, values: &[f64], place: usize) -> f64 {
-    let (mut known, mut largest, mut unknown) = (0.0, 0.0_f64, 0.0);
-    let mut stride = 1;
-    for &count in points.iter().rev() {
-        if count > 2 {
-            let at = (first + place) / stride % count;
-            // The nearest sample that is not at the end.
-            let middle = (place + stride * at.clamp(1, count - 2)).checked_sub(stride * at);
-            let neighbours = middle.and_then(|middle| Some((middle.checked_sub(stride)?, middle)));
-            let inside = at > 0 && at + 1 < count;
-            match neighbours.filter(|(_, middle)| middle + stride < values.len()) {
-                Some((before, middle)) => {
-                    let bend = (values[before] - 2.0 * values[middle] + values[middle + stride]).abs() / 8.0;
-                    known += if inside { bend } else { 0.0 };
-                    largest = largest.max(bend);
-                }
-                _ if inside => unknown += 1.0,
-                _ => (),
-            }
-        }
-        stride *= count;
+/// A sample among those along one axis.
+struct Along<'a> {
+    values: &'a [f64],
+    place: usize,
+    stride: usize,
+    at: usize,
+    count: usize,
+}
+
+/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where those before
+/// grow, as far as that goes.
+const GROWTH: f64 = 1.5;
+const MOST_GROWTH: f64 = 8.0;
+
+impl Along<'_> {
+    /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
+    fn value(&self, away: isize) -> Option<f64> {
+        let at = self.at.checked_add_signed(away).filter(|&at| at < self.count)?;
+        let place = (self.place + self.stride * at).checked_sub(self.stride * self.at)?;
+        self.values.get(place).copied()
     }
-    known + unknown * largest
+
+    /// The second difference so many samples further.
+    fn bend(&self, away: isize) -> Option<f64> {
+        Some(self.value(away - 1)? - 2.0 * self.value(away)? + self.value(away + 1)?)
+    }
+
+    /// How far a smooth response may go below and above an inner sample; `None` at the ends.
+    fn smooth(&self) -> Option<[f64; 2]> {
+        let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
+        let height = (before - 2.0 * here + after).abs() / 8.0;
+        let lowest = here <= before && here <= after;
+        let highest = here >= before && here >= after;
+        Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])
+    }
+
+    /// How far below and above the sample and its neighbour on one side a response that is not smooth between them may go.
+    fn irregular(&self, side: isize) -> [f64; 2] {
+        let (Some(here), Some(there)) = (self.value(0), self.value(side)) else { return [0.0; 2] };
+        let excess = |away: isize, others: [isize; 2]| {
+            let bend = self.bend(away)?;
+            let expected = others.into_iter().filter_map(|other| self.expected(bend, away, other)).reduce(f64::max)?;
+            Some(bend.signum() * (bend.abs() - expected).max(0.0))
+        };
+        let outer = [-side, 2 * side];
+        let excess = [excess(0, outer), excess(side, outer)];
+        let share = if excess.contains(&None) { 0.5 } else { 0.25 };
+        let [a, b] = excess.map(Option::unwrap_or_default);
+        if a * b < 0.0 {
+            return [share * (a.abs() + b.abs()); 2];
+        }
+        let total = share * (a + b);
+        // Lines through the pairs on both sides meet at a kink's tip.
+        let tip = || {
+            let (left, right) = (here - self.value(-side)?, there - self.value(2 * side)?);
+            let at = (there + right - here) / (left + right);
+            (0.0..=1.0).contains(&at).then_some(here + at * left)
+        };
+        let most = |beyond: Option<f64>| beyond.map_or(total.abs(), |beyond| beyond.clamp(0.0, total.abs()));
+        if total > 0.0 {
+            [most(tip().map(|tip| here.min(there) - tip)), 0.0]
+        } else if total < 0.0 {
+            [0.0, most(tip().map(|tip| tip - here.max(there)))]
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// The largest second difference `away` from here that a smooth response has, by those beyond, from number `outer` on; of the same
+    /// sign, since one that changes it is too short a wave to tell.
+    fn expected(&self, bend: f64, away: isize, outer: isize) -> Option<f64> {
+        let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
+        let growth = (beside / beyond).abs().clamp(1.0, MOST_GROWTH);
+        let growth = if growth.is_nan() { 1.0 } else { growth };
+        let distance = (outer - away).unsigned_abs() as i32;
+        Some(if beside * bend < 0.0 { 0.0 } else { GROWTH * beside.abs() * growth.powi(distance) })
+    }
 }
 
 #[cfg(test)]
@@ -140,6 +213,45 @@ mod tests {
             let (missed, error) = (1.0 - scan.range(0, 0).upper, scan.error(0, 0));
             assert!(missed <= error + 1e-12, "{shift}: {missed} of {error}");
             assert!(error < 0.041);
+        }
+    }
+
+    fn of_line(f: impl Fn(f64) -> f64, count: usize) -> (Range, f64) {
+        let values: Vec<f64> = (0..count).map(|i| f(2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect();
+        let mut scan = ScanBounds::new(1, 1, &[count]);
+        scan.observe(0, 0, 0, &values);
+        (scan.range(0, 0), scan.error(0, 0))
+    }
+
+    #[test]
+    fn a_kink_between_samples_is_within_the_error() {
+        for at in [-0.61, 0.0, 0.013, 0.05, 0.3] {
+            let (range, error) = of_line(|x| (x - at).abs() + 0.1 * x * x, 20);
+            // On either side it rises.
+            let missed = range.lower - 0.1 * at * at;
+            assert!(missed <= error + 2e-3 && error < 0.06, "{at}: {missed} of {error}");
+        }
+        // From what is level it leads nowhere.
+        let (range, error) = of_line(|x| (x - 0.31).max(0.0), 20);
+        assert!(range.lower == 0.0 && error < 1e-12, "{error}");
+    }
+
+    #[test]
+    fn half_of_a_jump_is_an_error() {
+        for at in [-0.95, 0.02, 0.5] {
+            let (_, error) = of_line(|x| 0.1 * x + if x > at { 3.0 } else { 0.0 }, 15);
+            assert!((1.0..=2.0).contains(&error), "{at}: {error}");
+        }
+        // What is steep, but smooth, has none.
+        let (_, error) = of_line(|x| (3.0 * x).exp(), 15);
+        assert!(error < 1e-12, "{error}");
+    }
+
+    #[test]
+    fn a_narrow_peak_is_an_error_where_a_sample_stands_out() {
+        for shift in [0.03, 0.05, 0.06] {
+            let (range, error) = of_line(|x| 1.0 / (1.0 + ((x - shift) / 0.03).powi(2)), 20);
+            assert!(error > 0.2 * range.upper, "{shift}: {range:?}, {error}");
         }
     }
 

@@ -26,6 +26,9 @@ pub struct Summary {
     /// Names of constraints that others imply at the start only.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_at_start: Vec<String>,
+    /// Coordinates that share what the model leaves open of the start.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shared_start: Vec<String>,
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,
@@ -173,6 +176,9 @@ pub struct MethodSummary {
     /// How many boxes the parameters' was split into, where a tolerance decided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boxes: Option<usize>,
+    /// Outputs that at some time do not follow from the coordinates, and were expanded themselves there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub expanded_outputs: Vec<String>,
     /// Computing time, s, where it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,

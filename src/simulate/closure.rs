@@ -79,11 +79,8 @@ impl<'s> Closure<'s> {
         system.start.conditions.clear();
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
             .map_err(|none| no_factors(&simulator.system, &none))?;
-        let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();
-        let used = system.graph.symbols_of(&outputs);
-        let velocities = system.v.iter().any(|symbol| used.binary_search(symbol).is_ok());
         let accelerations = system.observes_accelerations();
-        let needs = (accelerations || velocities, accelerations);
+        let needs = (accelerations || system.observes_velocities(), accelerations);
         Ok(Self { simulator, independent, program, needs })
     }
 

@@ -1,12 +1,19 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
+use std::sync::OnceLock;
+
 use symdiff::{Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_factors};
-use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
+use super::start::{
+    Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
+};
 use crate::assemble::System;
-use crate::compile::{Equation, Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
+use crate::compile::{
+    Equation, Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
+    compile_start, compile_switches,
+};
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
@@ -27,6 +34,8 @@ pub struct Assembled {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<usize>,
+    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    pub shared: Vec<String>,
 }
 
 impl Assembled {
@@ -67,8 +76,19 @@ impl Assembled {
         if let Some(error) = no_number(&nominal) {
             return Err(error);
         }
+        let open = open_start(&system, &start, &nominal);
+        if open.is_any() {
+            let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open).map_err(singular)?;
+            let mut assembly = Assembly::new(&nearest, &system, 1, |parameter, _| parameters[parameter]);
+            if assembly.assemble_nearest(&nominal).is_ok() {
+                assembly.shift_accelerations(scheme.coefficients().shift() * h);
+                nominal = assembly.tile().values()[..layout.registers()].to_vec();
+                start = nearest;
+            }
+        }
+        let shared = shared_coordinates(&system, &start, &nominal);
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
-        Ok(Self { system, start, nominal, mobility, undetermined })
+        Ok(Self { system, start, nominal, mobility, undetermined, shared })
     }
 }
 
@@ -87,6 +107,10 @@ pub struct Simulator {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<usize>,
+    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    pub shared: Vec<String>,
+    /// Compiled where steps are controlled.
+    switches: OnceLock<Option<SwitchProgram>>,
 }
 
 impl Simulator {
@@ -103,13 +127,13 @@ impl Simulator {
     /// # Errors
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
-        let Assembled { mut system, start, nominal, mobility, undetermined } =
+        let Assembled { mut system, start, nominal, mobility, undetermined, shared } =
             Assembled::within(system, scheme, h, operations)?;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined })
+        Ok(Self { system, start, program, nominal, mobility, undetermined, shared, switches: OnceLock::new() })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -183,6 +207,16 @@ impl Simulator {
     /// those of the steps.
     pub(super) fn solves_row_accelerations(&self) -> bool {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
+    }
+
+    /// Whether rows of output make their velocities consistent where steps are controlled.
+    pub(super) fn projects_row_velocities(&self) -> bool {
+        !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// Where the equations switch, if they do.
+    pub(super) fn switches(&self) -> Option<&SwitchProgram> {
+        self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
     }
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.

@@ -75,6 +75,7 @@ fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contr
 /// An output's band by every method, with its error.
 fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
+    let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let ranges = &outcome.result.bands[output][..rows];
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
@@ -88,11 +89,16 @@ fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Ba
             })
             .collect();
         let surrogate = &outcome.result.surrogate[output][..rows];
+        let mut error = BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance);
+        // A part of the box need not hold the nominal parameters.
+        if study.domain.contains(&study.domain.nominal) {
+            error.hold_nominal(ranges, &nominal);
+        }
         Band {
             method: *method,
             lower: ranges.iter().map(|range| range.lower).collect(),
             upper: ranges.iter().map(|range| range.upper).collect(),
-            error: BandError::new(ranges, surrogate, &time, validation.spans[output], study.request.tolerance),
+            error,
         }
     };
     results.methods.iter().enumerate().map(band).collect()
@@ -146,6 +152,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         redundant_constraints: names(&mobility.redundant),
         undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         singular_at_start: names(&mobility.singular_at_start),
+        shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
@@ -162,7 +169,10 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .collect(),
         methods: std::iter::once(results.nominal.summary)
             .chain(results.validation.map(|(_, summary)| summary))
-            .chain(results.methods.into_iter().map(|(_, outcome)| outcome.summary))
+            .chain(results.methods.into_iter().map(|(_, outcome)| MethodSummary {
+                expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+                ..outcome.summary
+            }))
             .chain(results.halved.into_iter().map(|(method, outcome)| MethodSummary {
                 method: format!("{} with halved steps", method.name()),
                 ..outcome.summary

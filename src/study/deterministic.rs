@@ -9,14 +9,14 @@ use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
-use crate::simulate::{Schedule, SimulationError};
+use crate::simulate::{Controller, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every sampled method's bounds are the nominal motion.
     pub(super) fn deterministic(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
         let mut steps = StepSearch::new(schedule);
@@ -39,7 +39,7 @@ impl Study<'_> {
             }
             let begun = Instant::now();
             let nominal = &results.nominal.result;
-            let finer = self.motions(&halved, None, &progress);
+            let finer = self.motions(&halved, tolerance.map(|tolerance| tolerance.for_parts(2)), &progress);
             let validation = Validation::of_nominal(&motions, &finer, (&nominal.bands, nominal.reached))
                 .map_err(simulation_error)?;
             if let Some(allowed) = self.request.tolerance

@@ -12,8 +12,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range};
 use crate::simulate::{
-    Certifier, Closure, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint, Points,
-    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
+    Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -51,7 +51,7 @@ pub(super) struct Motions<'a> {
     domain: &'a ParameterBox,
     schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
-    tolerance: Option<f64>,
+    tolerance: Option<Controller>,
     progress: &'a Progress<'a>,
     interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Simulations that are over: at the end, or where they stopped.
@@ -66,7 +66,7 @@ impl<'a> Motions<'a> {
         simulator: &'a Simulator,
         domain: &'a ParameterBox,
         schedule: &'a Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &'a Progress<'a>,
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
@@ -178,13 +178,17 @@ impl Ensemble for Motions<'_> {
     fn rounding(&self, output: usize) -> f64 {
         let length = self.simulator.system.length;
         let duration = self.schedule.output_step * self.schedule.rows as f64;
-        // What has no size of its own, as a force, has no rounding that could be told.
+        // Accelerations are second differences over steps. What has no size of its own, as a force, has no rounding that could be
+        // told.
+        let step = self.schedule.first_step();
         AT_REST
             * match self.simulator.system.outputs[output].unit.as_str() {
                 "rad" => 1.0,
                 "m" => length,
                 "rad/s" => 1.0 / duration,
                 "m/s" => length / duration,
+                "rad/s^2" => 1.0 / (duration * step),
+                "m/s^2" => length / (duration * step),
                 _ => 0.0,
             }
     }
@@ -208,6 +212,9 @@ impl Ensemble for Motions<'_> {
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
         let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
+        if self.tolerance.is_some() {
+            jet = jet.controlled();
+        }
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;

@@ -62,6 +62,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,
         redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+        shared_start: simulator.shared.clone(),
         singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
         undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),

@@ -76,7 +76,7 @@ pub(super) fn explained(study: &Study, error: RunError) -> RunError {
 
 fn survey(study: &Study, first: SimulationError) -> Survey {
     let domain = &study.domain;
-    let mut points = validation(domain.dimension());
+    let mut points = validation(domain.dimension(), study.request.degree());
     points.extend(spread(domain.dimension(), SURVEYED));
     let can = study.simulator.can_assemble(&domain.points(&points));
     let failing: Vec<&Vec<f64>> = points.iter().zip(&can).filter(|(_, can)| !**can).map(|(xi, _)| xi).collect();
@@ -181,7 +181,7 @@ fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>])
 
 /// Tries a piece's held-out samples.
 fn trial(study: &Study) -> Result<Found, RunError> {
-    let points = validation(study.domain.dimension());
+    let points = validation(study.domain.dimension(), study.request.degree());
     let can = study.simulator.can_assemble(&study.domain.points(&points));
     if !can.contains(&true) {
         return Ok(Found::Nothing);

@@ -91,8 +91,8 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         return within_budget(description, &of_system);
     }
     if description.bodies.len() <= FEW_BODIES {
-        let Simulator { system, start, nominal, mobility, undetermined, .. } = compiled(description)?;
-        return Ok(Assembled { system, start, nominal, mobility, undetermined });
+        let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = compiled(description)?;
+        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared });
     }
     match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
         // Shallow trees are short in joint coordinates.

@@ -8,6 +8,7 @@
 //! panic to what panicked.
 
 mod conclude;
+mod controlled;
 mod cost;
 mod decisions;
 mod deterministic;

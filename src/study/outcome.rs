@@ -44,12 +44,12 @@ impl Results {
         stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
     }
 
-    /// The sample with the largest error ratio, where that is more than 1.
-    pub fn beyond_tolerance(&self) -> Option<(Vec<f64>, f64)> {
+    /// The largest error ratio of a sample, where that is more than 1.
+    pub fn beyond_tolerance(&self) -> Option<f64> {
         let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
         let ratios =
             self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
-        ratios.filter(|(_, ratio)| *ratio > 1.0).max_by(|a, b| a.1.total_cmp(&b.1)).cloned()
+        ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
     }
 }
 

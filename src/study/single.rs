@@ -10,15 +10,9 @@ use crate::methods::{
     Stop, Validation, can_compose,
 };
 use crate::model::{Description, Stepping};
-use crate::numerics::{ParameterBox, corners, probes, validation};
+use crate::numerics::{ParameterBox, probes, validation};
 use crate::results::MethodSummary;
-use crate::simulate::{Schedule, SimulationError, Simulator, ToleranceSchedule, schedule_for_tolerance};
-
-/// Corners of the box that join the nominal sample as controlling samples of the step size.
-const CONTROLLING_CORNERS: usize = 16;
-
-/// How often samples that turn out to need smaller steps may be added to the controlling samples.
-const CONTROL_ROUNDS: usize = 8;
+use crate::simulate::{Controller, Schedule, SimulationError, Simulator, schedule_for_tolerance};
 
 /// A compiled subsystem, and what is asked of it.
 pub(super) struct Study<'a> {
@@ -32,6 +26,9 @@ pub(super) struct Study<'a> {
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
+
+/// A schedule, the local errors that are allowed on it, and what the validation samples found.
+type Balanced = (Schedule, Option<Controller>, (Validation, MethodSummary));
 
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
@@ -82,7 +79,7 @@ impl<'a> Study<'a> {
     pub(super) fn motions<'s>(
         &'s self,
         schedule: &'s Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
@@ -98,7 +95,8 @@ impl<'a> Study<'a> {
                 let halved = schedule.refined(2);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let [direct, halved] = [&schedule, &halved].map(|schedule| self.motions(schedule, None, &progress));
-                let validation = Validation::run(&direct, &halved, Observed::Outputs).map_err(simulation_error)?;
+                let validation = Validation::run(&direct, &halved, Observed::Outputs, self.request.degree())
+                    .map_err(simulation_error)?;
                 let Validation { points, simulated, .. } = validation;
                 Ok(Tried {
                     reached: simulated.stop.as_ref().map_or(schedule.rows, |(stop, _)| stop.row),
@@ -134,44 +132,13 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The schedule of the controlling samples is tried on all samples; one that needs smaller steps becomes a controlling sample,
-    /// and all run again.
-    fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
-        let simulation = &self.description.simulation;
-        let mut samples = self.controlling_samples();
-        let mut round = 1;
-        loop {
-            let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let ToleranceSchedule { schedule, failure, .. } =
-                schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
-            let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
-            let results = self.methods(&schedule, Some(tolerance))?;
-            match results.beyond_tolerance() {
-                None => return Ok(self.conclude(results, failure)),
-                Some((_, ratio)) if round == CONTROL_ROUNDS => {
-                    let note = format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance");
-                    return Ok(self.conclude(results, Some(note)));
-                }
-                Some((sample, _)) => samples.push(sample),
-            }
-            round += 1;
-        }
-    }
-
-    /// The nominal sample and corners of the box.
-    fn controlling_samples(&self) -> Vec<Vec<f64>> {
-        let mut samples = vec![self.domain.nominal.clone()];
-        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.point(xi)) {
-            if !samples.contains(&corner) {
-                samples.push(corner);
-            }
-        }
-        samples
-    }
-
     /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
     /// validation samples decide how the schedule's steps are divided or joined.
-    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+    pub(super) fn methods(
+        &self,
+        schedule: &Schedule,
+        mut tolerance: Option<Controller>,
+    ) -> Result<Results, SimulationError> {
         if self.domain.dimension() == 0 {
             return self.deterministic(schedule, tolerance);
         }
@@ -181,7 +148,11 @@ impl<'a> Study<'a> {
             (schedule.clone(), None)
         } else {
             match caught("the validation samples", || self.balance(schedule, tolerance, &progress)) {
-                Ok(balanced) => balanced.map(|(schedule, validation)| (schedule, Some(validation)))?,
+                Ok(balanced) => {
+                    let (schedule, divided, validation) = balanced?;
+                    tolerance = divided;
+                    (schedule, Some(validation))
+                }
                 Err(error) => {
                     internal.push(error);
                     (schedule.clone(), None)
@@ -195,7 +166,8 @@ impl<'a> Study<'a> {
             methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
             if self.certify_time && !(self.interrupted)() {
                 let schedule = schedule.refined(2);
-                let motions = self.motions(&schedule, None, &progress);
+                let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
+                let motions = self.motions(&schedule, halved_tolerance, &progress);
                 let sampled = |method: Method| method.about().is_sampled;
                 halved = self.bound(&motions, &schedule, validation, &mut internal, sampled)?;
             }
@@ -208,9 +180,9 @@ impl<'a> Study<'a> {
     fn balance(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &Progress,
-    ) -> Result<(Schedule, (Validation, MethodSummary)), SimulationError> {
+    ) -> Result<Balanced, SimulationError> {
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
@@ -220,9 +192,11 @@ impl<'a> Study<'a> {
             let begun = std::time::Instant::now();
             let schedule = steps.schedule();
             let halved = schedule.refined(2);
+            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
             let direct = self.motions(&schedule, tolerance, progress);
-            let halved = self.motions(&halved, None, progress);
-            let validation = Validation::run(&direct, &halved, observed).map_err(simulation_error)?;
+            let halved = self.motions(&halved, tolerance.map(|tolerance| tolerance.for_parts(2)), progress);
+            let validation =
+                Validation::run(&direct, &halved, observed, self.request.degree()).map_err(simulation_error)?;
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
             let summary = validation_summary(&schedule, &validation, stop, begun);
             let enough = match self.request.tolerance {
@@ -231,7 +205,7 @@ impl<'a> Study<'a> {
             };
             drop((direct, halved));
             if enough {
-                return Ok((schedule, (validation, summary)));
+                return Ok((schedule, tolerance, (validation, summary)));
             }
         }
     }
@@ -306,7 +280,8 @@ impl<'a> Study<'a> {
         let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
         let methods: usize = self.request.methods().iter().map(work).sum();
         let k = self.domain.dimension();
-        let held_out = if self.request.is_empty() { 0 } else { probes(k).len() + validation(k).len() };
+        let held_out =
+            if self.request.is_empty() { 0 } else { probes(k).len() + validation(k, self.request.degree()).len() };
         (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }
@@ -334,6 +309,7 @@ pub(super) fn timed<T>(
         rank_revealing_solves: simulated.effort.rank_revealing,
         order: result.order.clone(),
         boxes: result.boxes,
+        expanded_outputs: Vec::new(),
         seconds: Some(begun.elapsed().as_secs_f64()),
     };
     Ok((Outcome { result, summary }, other))
@@ -354,6 +330,7 @@ pub(super) fn validation_summary(
         rank_revealing_solves: validation.effort.rank_revealing,
         order: None,
         boxes: None,
+        expanded_outputs: Vec::new(),
         seconds: Some(begun.elapsed().as_secs_f64()),
     }
 }

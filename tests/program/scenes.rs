@@ -555,3 +555,16 @@ fn the_examples_are_right() {
         assert!(!report.has_errors(), "{}", report.render(false));
     }
 }
+
+/// An output that is called like an effect or a joint stays when that is left out.
+#[test]
+fn what_is_left_out_is_the_effect_and_not_the_output_of_its_name() {
+    let text = format!(
+        "{CRANK}{EFFECTS}outputs: {{ drive: slider.x, spring: rod.x }}\nwithout: [drive]\nscenes: {{ slack: {{ without: [spring] }} }}\n"
+    );
+    let simulation = "simulation: { duration: 0.1, step: 1e-3 }\n";
+    let description = scene(&format!("{text}{simulation}"), "slack");
+    let outputs: Vec<&str> = description.outputs.iter().map(|output| output.name.as_str()).collect();
+    assert_eq!(outputs, ["drive", "spring"]);
+    assert!(description.effects.iter().all(|effect| effect.name != "drive" && effect.name != "spring"));
+}

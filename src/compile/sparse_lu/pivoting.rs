@@ -33,8 +33,8 @@ pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
     Any,
     /// Entries that cannot vanish wherever the mechanism moves, in a matrix [M Φᵀ; Φ 0] with M positive definite but for
-    /// massless coordinates: diagonal entries of M; a derivative of Φ that is constant or by a massless coordinate, twice,
-    /// which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
+    /// massless coordinates: diagonal entries of M; a derivative of Φ by a massless coordinate or, in a row of Φ without
+    /// one, a constant derivative, twice, which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
     /// eliminated, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
     ///
     /// Bodies that rotate freely need it: each of their Euler parameters, and so each derivative by them, passes through
@@ -228,9 +228,12 @@ impl<'m> PivotSearch<'m> {
                 let is_derivative = row < massive.len() && column >= massive.len();
                 let is_constant = |value: Expr| !self.is_costly(value);
                 let transposed = active.rows[column].get(&row).filter(|_| is_derivative);
+                let mut coordinates = active.rows[column].range(..massive.len()).map(|(&other, _)| other);
                 transposed.is_some_and(|transposed| {
+                    // A massless coordinate has no other pivot than the constraint that defines it.
                     !massive[row]
-                        || !active.rows[column].contains_key(&column)
+                        || coordinates.all(|other| massive[other])
+                            && !active.rows[column].contains_key(&column)
                             && is_constant(transposed.value)
                             && is_constant(active.rows[row][&column].value)
                 })

@@ -12,8 +12,9 @@ use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
-use super::composition::{Composer, Previous, RangeSearch, Row};
+use super::composition::{Composer, Row};
 use super::estimator::RangeEstimator;
+use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
 use super::sub_box::{HIGHEST, SubBox};
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
@@ -254,8 +255,8 @@ impl<'r> Adaptation<'r> {
 
     /// Ranges over all sub-boxes together, with their errors.
     fn conclude(mut self, boxes: &[SubBox]) -> Result<Adapted, EnsembleError> {
-        let nothing = Estimate { range: EMPTY, error: 0.0, step_error: 0.0, sensitivity: None };
-        let mut found = vec![nothing; self.ensemble.rows() * self.ensemble.outputs()];
+        let nothing = Estimate { range: EMPTY, error: 0.0, step_error: 0.0, sensitivity: None, is_expanded: false };
+        let mut found = vec![nothing.clone(); self.ensemble.rows() * self.ensemble.outputs()];
         let mut order = vec![0; self.ensemble.domain().dimension()];
         let detail = if boxes.len() == 1 { Detail::Sensitivities } else { Detail::StepErrors };
         for sub_box in boxes {
@@ -263,12 +264,13 @@ impl<'r> Adaptation<'r> {
             indices.for_each(|(axis, &degree)| order[axis] = order[axis].max(degree.into()));
             let rows: Vec<usize> = (0..sub_box.rows(self.lines())).collect();
             let known = self.estimates(sub_box, &rows, detail)?;
-            let unknown = Estimate { range: Range::UNKNOWN, error: f64::NAN, step_error: f64::NAN, sensitivity: None };
+            let unknown = Estimate { range: Range::UNKNOWN, error: f64::NAN, step_error: f64::NAN, ..nothing.clone() };
             for (all, own) in found.iter_mut().zip(known.into_iter().chain(std::iter::repeat(unknown))) {
                 let range = all.range;
                 (all.range, all.error) = union((range, all.error), (own.range, own.error));
                 all.step_error = union((range, all.step_error), (own.range, own.step_error)).1;
                 all.sensitivity = own.sensitivity;
+                all.is_expanded |= own.is_expanded;
             }
         }
         let (simulations, boxes) = (self.goal.spent, boxes.len());

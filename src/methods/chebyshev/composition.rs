@@ -1,28 +1,41 @@
 //! Composition: what is expanded is what is smooth. The independent coordinates and their velocities become polynomials of
 //! the parameters; every output follows from them through the loop closure and its own formula.
+//!
+//! Where an output that is composed in this way is the same polynomial as the one through its own samples, that polynomial takes its
+//! place: its range costs no closure. Where it is not a number, or not what the samples' simulations say, so does that polynomial, as
+//! with `expand: output`.
 
 use std::convert::Infallible;
 
 use rayon::prelude::*;
 
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch, extent};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{
-    Extent, ExtremeSearch, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, corners, extremes,
-    extremes_near, largest, step_error, surrogate_error,
+    Extent, Extremes, ParameterBox, Range, SparseWork, Surrogate, SurrogateWork, corners, extremes_near, largest,
+    step_error, surrogate_error, truncation,
 };
-
-/// For so many parameters ranges are found on a grid; for more, by a search.
-const MOST_PARAMETERS: usize = 3;
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
 const MOST_COORDINATES: usize = 300;
 
-/// An independent coordinate moves by this share of its scale from one point of the grid to the next.
-const RESOLUTION: f64 = 0.15;
+/// An output is the polynomial through its samples where both differ by less than this share of its range, and so many units of
+/// rounding of its values.
+const ALIKE: f64 = 1e-7;
+const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// Fewest and most points of the grid along an axis, by the number of parameters.
-const POINTS: [(usize, usize); MOST_PARAMETERS] = [(9, 129), (9, 33), (7, 15)];
+/// An output does not follow from the coordinates where it differs from its simulated samples by this share of their range and this
+/// one of their values. (Accelerations and reactions of the samples have errors of the scheme that those which follow do not have.)
+const DISAGREES: (f64, f64) = (0.25, 1e-3);
+
+/// Samples at which outputs are held against the simulation, at most.
+const COMPARED: usize = 24;
+
+/// Samples, for either end of an output, near which it is searched for.
+const SEEDS: usize = 4;
+/// They are so far apart along some axis.
+const APART: f64 = 0.5;
 
 /// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
 pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
@@ -43,7 +56,7 @@ impl<'a> Composer<'a> {
     }
 
     /// Applies `look` to rows, in parallel block by block (with the extremes of the row before in the same block), given the
-    /// motions of a surrogate's samples over a box (`stride` values a row, the first 2n lines of samples).
+    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line).
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -55,17 +68,17 @@ impl<'a> Composer<'a> {
         (motions, stride): (&[f64], usize),
         look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
     ) -> Result<Vec<T>, EnsembleError> {
-        let lines = 2 * self.ensemble.scales().len() * surrogate.samples().len();
+        let coordinates = 2 * self.ensemble.scales().len() * surrogate.samples().len();
         let mut chosen = Vec::with_capacity(times.len());
         for (&time, motion) in times.iter().zip(motions.chunks_exact(stride)) {
-            chosen.push(self.choose(surrogate, domain, time, &motion[..lines])?);
+            chosen.push(self.choose(surrogate, domain, time, &motion[..coordinates])?);
         }
         let look_at_block = |(block, times): (usize, &[f64])| {
             let (mut work, mut previous) = (SurrogateWork::default(), Previous::default());
             let first = block * BLOCK;
             let at = |(place, &time): (usize, &f64)| {
                 let row = first + place;
-                let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..lines]);
+                let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
                 let at = Row::new(self.ensemble, surrogate, domain, closure, time, motion, &mut work);
                 look(row, &at, &mut previous)
             };
@@ -103,24 +116,6 @@ const CORNERS: usize = 256;
 /// on the number of threads.
 const BLOCK: usize = 16;
 
-/// The extremes in the row before; nothing at first.
-pub(super) type Previous = Vec<Extremes>;
-
-/// How ranges over a box are found.
-pub(super) enum RangeSearch {
-    /// On a grid.
-    Grid,
-    /// By climbs.
-    Climbs(ExtremeSearch),
-}
-
-impl RangeSearch {
-    /// For k parameters.
-    pub fn new(k: usize) -> Self {
-        if k <= MOST_PARAMETERS { Self::Grid } else { Self::Climbs(ExtremeSearch::new(k)) }
-    }
-}
-
 /// One row of output.
 pub(super) struct Row<'r> {
     ensemble: &'r dyn Ensemble,
@@ -128,10 +123,19 @@ pub(super) struct Row<'r> {
     domain: &'r ParameterBox,
     closure: &'r dyn Closure,
     time: f64,
-    /// Of each of the 2n lines.
+    /// Of each of the 2n lines, and then of each output.
     coefficients: Vec<f64>,
-    /// Least and largest of each line over the samples.
+    /// Least and largest of each of the 2n lines over the samples.
     extent: Vec<(f64, f64)>,
+    /// Each output's values at the samples.
+    at_samples: &'r [f64],
+}
+
+/// The outputs' ranges in a row.
+pub(super) struct Found {
+    pub extents: Vec<Extent>,
+    /// Whether an output does not follow from the coordinates here, and was expanded itself.
+    pub expanded: Vec<bool>,
 }
 
 impl<'r> Row<'r> {
@@ -141,30 +145,22 @@ impl<'r> Row<'r> {
         domain: &'r ParameterBox,
         closure: &'r dyn Closure,
         time: f64,
-        motion: &[f64],
+        motion: &'r [f64],
         work: &mut SurrogateWork,
     ) -> Self {
         let extent = |line: &[f64]| {
             line.iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
         };
-        let extent = motion.chunks_exact(surrogate.samples().len()).map(extent).collect();
+        let (coordinates, at_samples) = motion.split_at(2 * ensemble.scales().len() * surrogate.samples().len());
+        let extent = coordinates.chunks_exact(surrogate.samples().len()).map(extent).collect();
         let coefficients = surrogate.coefficients(motion, work);
-        Self { ensemble, surrogate, domain, closure, time, coefficients, extent }
+        Self { ensemble, surrogate, domain, closure, time, coefficients, extent, at_samples }
     }
 
     /// What its polynomials are made by.
     pub fn surrogate(&self) -> &Surrogate {
         self.surrogate
-    }
-
-    /// Points along each axis.
-    pub fn resolution(&self) -> usize {
-        let scale = self.ensemble.scales();
-        let moved = self.closure.independent().iter().map(|&i| (self.extent[i].1 - self.extent[i].0) / scale[i]);
-        let (least, most) = POINTS[self.domain.dimension().clamp(1, MOST_PARAMETERS) - 1];
-        let wanted = moved.fold(0.0, f64::max) / RESOLUTION;
-        if wanted.is_finite() { least.saturating_add(wanted as usize).min(most) } else { least }
     }
 
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
@@ -174,17 +170,23 @@ impl<'r> Row<'r> {
         range_search: &RangeSearch,
         (points, direct): (&[Vec<f64>], &ValidationTable),
         row: usize,
-        found: &[Extent],
+        Found { extents, expanded }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() {
-            return vec![f64::NAN; found.len()];
+            return vec![f64::NAN; extents.len()];
         }
-        let moved = self.moved(range_search, found, &self.coordinate_errors(points, direct.motion(row)));
+        let moved = self.moved(range_search, extents, &self.coordinate_errors(points, direct.motion(row)));
         let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
-            let outside = direct.at(row, output).into_iter().map(|value| found.range.distance(value));
+            let simulated = direct.at(row, output);
+            if expanded[output] {
+                let own = self.own_polynomials(&[output], points);
+                let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
+                return found.gap + largest([surrogate_error(&own, &simulated), tail]);
+            }
+            let outside = simulated.into_iter().map(|value| found.range.distance(value));
             found.gap + largest(outside.chain([moved]))
         };
-        found.iter().zip(moved).enumerate().map(error).collect()
+        extents.iter().zip(moved).enumerate().map(error).collect()
     }
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
@@ -194,13 +196,15 @@ impl<'r> Row<'r> {
         range_search: &RangeSearch,
         (direct, halved): (&ValidationTable, &ValidationTable),
         row: usize,
-        found: &[Extent],
+        Found { extents, expanded }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() || row >= halved.rows() {
-            return vec![f64::NAN; found.len()];
+            return vec![f64::NAN; extents.len()];
         }
         let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        self.moved(range_search, found, &errors)
+        let moved = self.moved(range_search, extents, &errors);
+        // Of what does not follow from coordinates, their errors say nothing.
+        moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
     }
 
     /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
@@ -224,59 +228,187 @@ impl<'r> Row<'r> {
     }
 
     /// Every output's range over the box.
-    pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Vec<Extent> {
-        match range_search {
-            RangeSearch::Grid => {
-                extremes(self.domain.dimension(), self.resolution(), |points| self.evaluate_shifted(points, &[]))
-            }
-            RangeSearch::Climbs(search) => {
-                *previous = self.search(search, &self.starts(previous), &[]);
-                previous.iter().cloned().map(extent).collect()
+    pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Found {
+        let outputs = self.ensemble.outputs();
+        let points = range_search.points();
+        let compared: Vec<usize> = self.compared();
+        let nodes = compared.iter().map(|&sample| self.surrogate.samples()[sample].clone());
+        let all: Vec<Vec<f64>> = points.iter().cloned().chain(nodes).collect();
+        let values = self.evaluate(&all);
+        let every: Vec<usize> = (0..outputs).collect();
+        let own = self.own_polynomials(&every, points);
+        let (mut polynomials, mut composed) = (Vec::new(), Vec::new());
+        let (mut defects, mut expanded) = (vec![0.0; outputs], vec![false; outputs]);
+        for output in 0..outputs {
+            let (here, at_nodes) = values[output * all.len()..][..all.len()].split_at(points.len());
+            let own = &own[output * points.len()..][..points.len()];
+            expanded[output] = self.disagrees(output, &compared, at_nodes);
+            let defect = surrogate_error(own, here);
+            if expanded[output] {
+                polynomials.push(output);
+            } else if defect <= self.rounding(output) {
+                defects[output] = defect;
+                polynomials.push(output);
+            } else {
+                composed.push(output);
             }
         }
+        let of = |outputs: &[usize], values: &[f64], stride: usize| -> Vec<Vec<f64>> {
+            outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
+        };
+        let mut extents = vec![Extent::unknown(self.domain.dimension()); outputs];
+        let places = if range_search.climbs().is_some() { self.seeds(previous) } else { Vec::new() };
+        let by_closure = |wanted: &[usize], points: &[Vec<f64>]| {
+            let values = self.evaluate(points);
+            wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
+        };
+        let composed_values = of(&composed, &values, all.len());
+        let functions = self.functions(composed, false, &places, &by_closure);
+        for (&output, extent) in
+            functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
+        {
+            if extent.range.width().is_finite() {
+                extents[output] = extent;
+            } else {
+                expanded[output] = true;
+                polynomials.push(output);
+            }
+        }
+        let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
+        let own_values = of(&polynomials, &own, points.len());
+        let functions = self.functions(polynomials, true, &places, &by_coefficients);
+        for (&output, mut extent) in functions.outputs.iter().zip(range_search.range(&functions, &own_values, previous))
+        {
+            extent.gap += defects[output];
+            extents[output] = extent;
+        }
+        Found { extents, expanded }
+    }
+
+    fn functions<'f>(
+        &'f self,
+        outputs: Vec<usize>,
+        are_polynomials: bool,
+        places: &'f [Vec<f64>],
+        evaluate: &'f Evaluate<'f>,
+    ) -> Functions<'f> {
+        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, places, evaluate }
+    }
+
+    /// Highest degree along each axis.
+    pub fn degrees(&self) -> &[u8] {
+        self.surrogate.basis().orders()
+    }
+
+    /// Values of the polynomials through outputs' own samples, output by output.
+    fn own_polynomials(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
+        let coefficients: Vec<f64> =
+            outputs.iter().flat_map(|&output| self.own_coefficients(output).to_vec()).collect();
+        let mut values = vec![0.0; outputs.len() * points.len()];
+        self.surrogate.basis().values(points, &coefficients, &mut values, &mut SparseWork::default());
+        values
+    }
+
+    fn own_coefficients(&self, output: usize) -> &[f64] {
+        let count = self.surrogate.basis().len();
+        &self.coefficients[(self.extent.len() + output) * count..][..count]
+    }
+
+    /// An output's values at the samples.
+    fn own_samples(&self, output: usize) -> &[f64] {
+        let count = self.surrogate.samples().len();
+        &self.at_samples[output * count..][..count]
+    }
+
+    /// What is too small a difference of an output to be one.
+    fn rounding(&self, output: usize) -> f64 {
+        let range = Range::of(self.own_samples(output));
+        ALIKE * range.width() + ROUNDING * range.lower.abs().max(range.upper.abs())
+    }
+
+    /// Samples at which outputs are held against the simulation, spread over all.
+    fn compared(&self) -> Vec<usize> {
+        let count = self.surrogate.samples().len();
+        (0..count).step_by(count.div_ceil(COMPARED)).collect()
+    }
+
+    /// Whether an output that follows from the coordinates is not what was simulated; what is not a number is not.
+    fn disagrees(&self, output: usize, compared: &[usize], values: &[f64]) -> bool {
+        let simulated = self.own_samples(output);
+        let range = Range::of(simulated);
+        if range.lower.is_nan() {
+            return false;
+        }
+        let allowed = DISAGREES.0 * range.width() + DISAGREES.1 * range.lower.abs().max(range.upper.abs());
+        let differs = |(&sample, value): (&usize, &f64)| {
+            let difference = (value - simulated[sample]).abs();
+            difference.is_nan() || difference > allowed
+        };
+        compared.iter().zip(values).any(differs)
+    }
+
+    /// The samples with the least and the largest values of each output, some apart from each other, and the best corners.
+    fn seeds(&self, previous: &Previous) -> Vec<Vec<f64>> {
+        let samples = self.surrogate.samples();
+        let mut seeds: Vec<Vec<f64>> = Vec::new();
+        for output in 0..self.ensemble.outputs() {
+            let values = self.own_samples(output);
+            for sign in [-1.0, 1.0] {
+                let mut order: Vec<usize> = (0..values.len()).collect();
+                order.sort_by(|&a, &b| (sign * values[b]).total_cmp(&(sign * values[a])));
+                let mut chosen: Vec<usize> = Vec::new();
+                for sample in order {
+                    let apart = |&other: &usize| {
+                        samples[other].iter().zip(&samples[sample]).any(|(a, b)| (a - b).abs() > APART)
+                    };
+                    if chosen.len() < SEEDS && chosen.iter().all(apart) {
+                        chosen.push(sample);
+                    }
+                }
+                seeds.extend(chosen.into_iter().map(|sample| samples[sample].clone()));
+            }
+        }
+        if previous.is_empty() {
+            seeds.extend(self.best_corners());
+        }
+        seeds
     }
 
     /// Ranges with some lines shifted, near those that are known.
     fn range_near(&self, range_search: &RangeSearch, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
-        match range_search {
-            RangeSearch::Grid => extremes_near(near, |points| self.evaluate_shifted(points, shift)),
-            RangeSearch::Climbs(search) => {
-                let near: Vec<Extremes> =
-                    near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
-                self.search(search, &near, shift).into_iter().map(extent).collect()
-            }
-        }
+        let evaluate = |points: &[Vec<f64>]| self.evaluate_shifted(points, shift);
+        let Some(search) = range_search.climbs() else { return extremes_near(near, evaluate) };
+        let near: Vec<Extremes> = near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
+        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+            values.copy_from_slice(&evaluate(points));
+            Ok::<(), Infallible>(())
+        };
+        let Ok(found) = search.extremes(self.ensemble.outputs(), &near, &[], evaluate);
+        found.into_iter().map(extent).collect()
     }
 
-    /// For each output the best of the box's corners and of what was best in the row before: where a search may begin.
-    fn starts(&self, known: &[Extremes]) -> Vec<Extremes> {
-        let mut places = corners(self.domain.dimension(), CORNERS);
-        places.extend(known.iter().flat_map(|known| [known.lowest.clone(), known.highest.clone()]));
-        let values = self.evaluate_shifted(&places, &[]);
+    /// For each output the corners of the box at which it is least and largest.
+    fn best_corners(&self) -> Vec<Vec<f64>> {
+        let places = corners(self.domain.dimension(), CORNERS);
+        let values = self.evaluate(&places);
         let of_output = |values: &[f64]| {
             let best =
                 |sign: f64| (0..values.len()).fold(0, |a, b| if sign * values[b] > sign * values[a] { b } else { a });
-            let (lowest, highest) = (best(-1.0), best(1.0));
-            let range = Range { lower: values[lowest], upper: values[highest] };
-            Extremes::at(range, [places[lowest].clone(), places[highest].clone()])
+            [best(-1.0), best(1.0)]
         };
-        values.chunks_exact(places.len()).map(of_output).collect()
+        values.chunks_exact(places.len()).flat_map(of_output).map(|place| places[place].clone()).collect()
     }
 
-    fn search(&self, search: &ExtremeSearch, near: &[Extremes], shift: &[(usize, f64)]) -> Vec<Extremes> {
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-            values.copy_from_slice(&self.evaluate_shifted(points, shift));
-            Ok::<(), Infallible>(())
-        };
-        let Ok(found) = search.extremes(self.ensemble.outputs(), near, evaluate);
-        found
-    }
-
-    /// The largest errors of the independent coordinates' polynomials, and of their velocities', at validation samples.
+    /// The largest errors of the independent coordinates' polynomials, and of their velocities': those at validation samples, or what the
+    /// polynomials lack.
     fn coordinate_errors(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<(usize, f64)> {
         let expanded = self.expanded(points);
         let values = |line: usize| line * points.len()..(line + 1) * points.len();
-        self.of_independent(|line| surrogate_error(&expanded[values(line)], &motion[values(line)]))
+        let basis = self.surrogate.basis();
+        self.of_independent(|line| {
+            let tail = truncation(basis, &self.coefficients[line * basis.len()..][..basis.len()]);
+            largest([surrogate_error(&expanded[values(line)], &motion[values(line)]), tail])
+        })
     }
 
     /// Lines of the independent coordinates and their velocities, pairwise, each with its error.
@@ -334,14 +466,5 @@ impl<'r> Row<'r> {
             .flat_map(|parameter| points.iter().map(move |xi| self.domain.value(parameter, xi[parameter])))
             .collect();
         self.closure.outputs(self.time, points.len(), parameters, motion)
-    }
-}
-
-/// What a search found, which it may have missed by its tolerance.
-fn extent(found: Extremes) -> Extent {
-    Extent {
-        range: found.range,
-        gap: ExtremeSearch::TOLERANCE * found.range.width(),
-        places: [found.lowest, found.highest],
     }
 }

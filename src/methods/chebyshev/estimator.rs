@@ -1,6 +1,7 @@
 //! What is estimated of the outputs in a row: range, errors and sensitivity.
 
-use super::composition::{Previous, RangeSearch, Row};
+use super::composition::Row;
+use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
 use crate::methods::result::{Estimate, Sensitivity};
 use crate::methods::validation::ValidationTable;
@@ -22,14 +23,20 @@ impl RangeEstimator<'_> {
         let errors = row.errors(self.search, self.validation, place, &found);
         let step_errors = match self.halved {
             Some(halved) => row.step_errors(self.search, halved, place, &found),
-            None => vec![f64::NAN; found.len()],
+            None => vec![f64::NAN; errors.len()],
         };
         let sensitivities: Vec<Option<Sensitivity>> = match &self.sensitivity {
-            Some(analysis) => analysis.of_row(row, &found).into_iter().map(Some).collect(),
-            None => vec![None; found.len()],
+            Some(analysis) => analysis.of_row(row, &found.extents).into_iter().map(Some).collect(),
+            None => vec![None; errors.len()],
         };
-        let estimate = |(((range, error), step_error), sensitivity)| Estimate { range, error, step_error, sensitivity };
-        let ranges = found.iter().map(|found| found.range);
+        let ranges = found.extents.iter().map(|found| found.range).zip(found.expanded);
+        let estimate = |((((range, is_expanded), error), step_error), sensitivity)| Estimate {
+            range,
+            error,
+            step_error,
+            sensitivity,
+            is_expanded,
+        };
         ranges.zip(errors).zip(step_errors).zip(sensitivities).map(estimate).collect()
     }
 }

@@ -6,6 +6,7 @@
 mod adaptive;
 mod composition;
 mod estimator;
+mod range_search;
 mod sensitivity;
 mod sub_box;
 
@@ -18,11 +19,14 @@ use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, PolynomialRange, RangeKind, SparseWork, Surrogate, SurrogateWork, largest};
+use crate::numerics::{
+    ParameterBox, PolynomialRange, RangeKind, SparseWork, Surrogate, SurrogateWork, largest, truncation,
+};
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
-use composition::{Composer, Previous, RangeSearch, Row};
+use composition::{Composer, Row};
 use estimator::RangeEstimator;
+use range_search::{Previous, RangeSearch};
 use sensitivity::SensitivityAnalysis;
 
 /// The least share of a tolerance that is left to the surrogate, whatever the steps take.
@@ -241,6 +245,13 @@ impl BoundingMethod for Chebyshev {
         }
     }
 
+    fn degree(&self) -> usize {
+        match &self.degree {
+            Degree::Fixed { order, .. } => order.iter().copied().max().unwrap_or(0),
+            Degree::Adaptive => 0,
+        }
+    }
+
     fn observes(&self, problem: &Problem) -> Observed {
         if self.expand == Expand::Coordinates && problem.composes { Observed::Motion } else { Observed::Outputs }
     }
@@ -349,7 +360,8 @@ fn expanded(
                     let mut at_validation = vec![0.0; validation.points.len()];
                     surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
                     let enclosed = range.enclose(&coefficients);
-                    PolynomialEstimate { range: enclosed.outer, excess: enclosed.excess(), at_validation }
+                    let truncation = truncation(surrogate.basis(), &coefficients);
+                    PolynomialEstimate { range: enclosed.outer, excess: enclosed.excess(), truncation, at_validation }
                 },
             )
             .collect();

@@ -1,6 +1,7 @@
 //! Which tolerance matters: Sobol indices of every parameter for every output, row by row.
 
 use super::composition::Row;
+use super::range_search::intervals;
 use crate::methods::result::Sensitivity;
 use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate, SurrogateWork, extremes};
 
@@ -58,7 +59,8 @@ impl SensitivityAnalysis {
         if self.fine.is_some() {
             let insert = |xi: &Vec<f64>| [&xi[..axis], &[self.nominal[axis]], &xi[axis..]].concat();
             let evaluate = |points: &[Vec<f64>]| row.evaluate(&points.iter().map(insert).collect::<Vec<_>>());
-            let ranges = extremes(self.nominal.len() - 1, row.resolution(), evaluate);
+            let others: Vec<usize> = (0..self.nominal.len()).filter(|&other| other != axis).collect();
+            let ranges = extremes(found.len(), &intervals(row.degrees(), &others, false), evaluate);
             return ranges.into_iter().map(|found| found.range.width()).collect();
         }
         let replaced = |place: &Vec<f64>| {

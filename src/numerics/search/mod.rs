@@ -64,7 +64,7 @@ impl ExtremeSearch {
 
     /// Extremes of `outputs` functions. `evaluate` is given points and writes the values there, those of the first
     /// function at all points, then of the second, …; it is called with many points a few times. `neighbours` are the
-    /// extremes of similar functions, as many, or none.
+    /// extremes of similar functions, as many, or none; `places` are where some function is known to be large or small.
     ///
     /// # Errors
     /// The first of `evaluate`.
@@ -72,6 +72,7 @@ impl ExtremeSearch {
         &self,
         outputs: usize,
         neighbours: &[Extremes],
+        places: &[Vec<f64>],
         mut evaluate: impl FnMut(&[Vec<f64>], &mut [f64]) -> Result<(), E>,
     ) -> Result<Vec<Extremes>, E> {
         let mut seen = Evaluations { values: vec![Vec::new(); outputs], ..Evaluations::default() };
@@ -80,7 +81,7 @@ impl ExtremeSearch {
         let known = known.cloned();
         let spared = if neighbours.is_empty() { 0 } else { (SCATTERED.0 - SCATTERED.1) * self.dimension };
         let design = &self.design[..self.design.len() - spared];
-        seen.look(design.iter().cloned().chain(known).collect(), &mut evaluate)?;
+        seen.look(design.iter().chain(places).cloned().chain(known).collect(), &mut evaluate)?;
         let goals = || (0..outputs).flat_map(|output| [1.0, -1.0].map(|sign| Goal { output, sign }));
         let separable = goals().map(|goal| self.separable_maximum(&seen, goal)).collect();
         seen.look(separable, &mut evaluate)?;

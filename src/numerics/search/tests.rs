@@ -17,7 +17,7 @@ fn search(k: usize, warm: &[Extremes], functions: &[Function]) -> (Vec<Extremes>
         }
         Ok::<(), ()>(())
     };
-    (ExtremeSearch::new(k).extremes(functions.len(), warm, evaluate).unwrap(), count)
+    (ExtremeSearch::new(k).extremes(functions.len(), warm, &[], evaluate).unwrap(), count)
 }
 
 fn weighted(xi: &[f64], weight: impl Fn(f64) -> f64) -> f64 {

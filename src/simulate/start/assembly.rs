@@ -28,6 +28,9 @@ pub fn allowed_residual(scale: &[f64]) -> f64 {
     CLOSED * scale.iter().copied().fold(1.0, f64::min)
 }
 
+/// Corrections towards rest, relative to the coordinates' scales, that are not shortened.
+const REACH: f64 = 0.3;
+
 /// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
 const FAR: f64 = 0.25;
 
@@ -153,6 +156,27 @@ impl<'p> Assembly<'p> {
         Err(best.expect("at least one guess was tried"))
     }
 
+    /// Assembles the one lane nearest to rest, from an assembled state.
+    ///
+    /// # Errors
+    /// The largest residual, where the corrections do not end at one.
+    pub fn assemble_nearest(&mut self, nominal: &[f64]) -> Result<(), ConstraintResidual> {
+        self.set_state(nominal);
+        self.tile.run(self.program.given());
+        let (q, correction) = (self.program.layout.q.clone(), self.program.layout.correction.start);
+        for _ in 0..MAX_NOMINAL_CORRECTIONS {
+            self.tile.run(self.program.position());
+            let changes = self.tile.values()[correction..][..q.len()].to_vec();
+            let largest = changes.iter().zip(&self.scale).map(|(c, s)| (c / s).abs()).fold(0.0, f64::max);
+            if largest <= REACH {
+                break;
+            }
+            let share = REACH / largest;
+            q.clone().zip(changes).for_each(|(register, change)| self.tile.lane_mut(register)[0] += share * change);
+        }
+        self.assemble().into_iter().next().map_or(Ok(()), Err)
+    }
+
     /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the largest residual of each lane that
     /// cannot be assembled, lane by lane.
     pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<ConstraintResidual> {
@@ -189,6 +213,11 @@ impl<'p> Assembly<'p> {
         }
         self.accelerate();
         open
+    }
+
+    /// Corrects the velocities of a motion at the tile's positions and time. Returns which lanes have settled.
+    pub fn project_velocities(&mut self) -> Vec<bool> {
+        self.correct_until_settled(self.program.projection(), self.program.layout.v.start)
     }
 
     /// Accelerations and multipliers at the tile's positions, velocities and time. Returns which lanes have settled.

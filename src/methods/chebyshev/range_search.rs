@@ -1,0 +1,194 @@
+//! Ranges of the outputs in a row over the box: apart for parameters that do not act together, on a lattice for up to three that do, by
+//! climbs for more.
+
+use std::convert::Infallible;
+
+use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, spread};
+
+/// For so many parameters that act together ranges are found on a lattice.
+const MOST_PARAMETERS: usize = 3;
+
+/// Fewest intervals of the first lattice along an axis, by the number of its axes.
+const LEAST_INTERVALS: [usize; MOST_PARAMETERS] = [16, 8, 6];
+
+/// Intervals for each degree: of what is composed of polynomials, which is looked at more closely where it asks for it, and of
+/// polynomials.
+const COMPOSED: [usize; MOST_PARAMETERS] = [2, 2, 1];
+const POLYNOMIAL: [usize; MOST_PARAMETERS] = [4, 4, 2];
+
+/// Points for each parameter at which the result of climbs is checked.
+const CHECKS: usize = 16;
+/// What a check may find beyond the range, as a share of it, before the search begins anew.
+const BEYOND: f64 = 1e-3;
+
+/// The extremes of each output in the row before, where they were searched for by climbs.
+pub(super) type Previous = Vec<Option<Extremes>>;
+
+/// Values of the outputs of these numbers, one after the other, at some ξ.
+pub(super) type Evaluate<'f> = dyn Fn(&[usize], &[Vec<f64>]) -> Vec<f64> + 'f;
+
+/// Functions of the parameters whose ranges are sought.
+pub(super) struct Functions<'f> {
+    /// Numbers of the outputs.
+    pub outputs: Vec<usize>,
+    /// Highest degree along each axis.
+    pub degrees: &'f [u8],
+    /// Whether they are polynomials of these degrees; else they are composed of such.
+    pub are_polynomials: bool,
+    /// Where some of them are known to be large or small.
+    pub places: &'f [Vec<f64>],
+    /// Their values.
+    pub evaluate: &'f Evaluate<'f>,
+}
+
+/// How ranges over a box are found.
+pub(super) struct RangeSearch {
+    separation: Separation,
+    climbs: Option<ExtremeSearch>,
+    /// What climbs are checked by.
+    checks: Vec<Vec<f64>>,
+}
+
+impl RangeSearch {
+    /// For k parameters.
+    pub fn new(k: usize) -> Self {
+        // Mirrored, they are apart from the search's own.
+        let checks = spread(k, CHECKS * k).into_iter().map(|xi| xi.into_iter().rev().map(|xi| -xi).collect()).collect();
+        let climbs = (k > MOST_PARAMETERS).then(|| ExtremeSearch::new(k));
+        Self { separation: Separation::new(k), climbs, checks }
+    }
+
+    /// The search by climbs, for more parameters than a lattice can take.
+    pub fn climbs(&self) -> Option<&ExtremeSearch> {
+        self.climbs.as_ref()
+    }
+
+    /// Where functions have to be known before their ranges are sought.
+    pub fn points(&self) -> &[Vec<f64>] {
+        self.separation.points()
+    }
+
+    /// Ranges of functions, given their values at [`points`](Self::points).
+    pub fn range(&self, functions: &Functions, values: &[Vec<f64>], previous: &mut Previous) -> Vec<Extent> {
+        let k = functions.degrees.len();
+        // Outputs that come apart in the same way are searched together.
+        let mut alike: Vec<(Vec<Vec<usize>>, Vec<usize>)> = Vec::new();
+        let mut defects = Vec::with_capacity(values.len());
+        for (place, values) in values.iter().enumerate() {
+            let of_output = |points: &[Vec<f64>]| (functions.evaluate)(&functions.outputs[place..=place], points);
+            let separated = self.separation.of(values, of_output);
+            defects.push(separated.defect);
+            match alike.iter_mut().find(|(groups, _)| *groups == separated.groups) {
+                Some((_, places)) => places.push(place),
+                None => alike.push((separated.groups, vec![place])),
+            }
+        }
+        let mut found = vec![Extent::unknown(k); values.len()];
+        for (groups, places) in &alike {
+            let outputs: Vec<usize> = places.iter().map(|&place| functions.outputs[place]).collect();
+            let extents = if groups.len() == 1 && groups[0].len() == k {
+                self.together(functions, &outputs, previous)
+            } else {
+                let anchored: Vec<f64> = places.iter().map(|&place| values[place][0]).collect();
+                self.apart(functions, &outputs, groups, &anchored)
+            };
+            for (&place, mut extent) in places.iter().zip(extents) {
+                extent.gap += defects[place];
+                found[place] = extent;
+            }
+        }
+        found
+    }
+
+    /// Ranges of outputs on which all parameters act together.
+    fn together(&self, functions: &Functions, outputs: &[usize], previous: &mut Previous) -> Vec<Extent> {
+        let evaluate = |points: &[Vec<f64>]| (functions.evaluate)(outputs, points);
+        let Some(search) = &self.climbs else {
+            let all: Vec<usize> = (0..functions.degrees.len()).collect();
+            return extremes(outputs.len(), &functions.intervals(&all), evaluate);
+        };
+        previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
+        // Of all, or of none.
+        let neighbours: Option<Vec<Extremes>> = outputs.iter().map(|&output| previous[output].clone()).collect();
+        let mut found = climb(search, outputs.len(), &neighbours.unwrap_or_default(), functions.places, &evaluate);
+        let checked = evaluate(&self.checks);
+        let lines = || checked.chunks_exact(self.checks.len());
+        let beyond = |(found, line): (&Extremes, &[f64])| {
+            line.iter().any(|&value| found.range.distance(value) > BEYOND * found.range.width())
+        };
+        if found.iter().zip(lines()).any(beyond) {
+            let places = [functions.places, &self.checks].concat();
+            found = climb(search, outputs.len(), &[], &places, &evaluate);
+        }
+        outputs.iter().zip(&found).for_each(|(&output, found)| previous[output] = Some(found.clone()));
+        let mut extents: Vec<Extent> = found.into_iter().map(extent).collect();
+        extents.iter_mut().zip(lines()).for_each(|(extent, line)| extent.include(&self.checks, line));
+        extents
+    }
+
+    /// Ranges of outputs that are sums over groups of parameters; `anchored` are their values where all parameters are at the anchor.
+    fn apart(&self, functions: &Functions, outputs: &[usize], groups: &[Vec<usize>], anchored: &[f64]) -> Vec<Extent> {
+        let anchor = self.separation.embed(&[], &[]);
+        let constant =
+            |&value: &f64| Extent::at(Range { lower: value, upper: value }, 0.0, [anchor.clone(), anchor.clone()]);
+        let mut sums: Vec<Extent> = anchored.iter().map(constant).collect();
+        for group in groups {
+            let evaluate = |points: &[Vec<f64>]| {
+                let whole: Vec<Vec<f64>> = points.iter().map(|xi| self.separation.embed(group, xi)).collect();
+                (functions.evaluate)(outputs, &whole)
+            };
+            let parts = if group.len() <= MOST_PARAMETERS {
+                extremes(outputs.len(), &functions.intervals(group), evaluate)
+            } else {
+                let search = ExtremeSearch::new(group.len());
+                climb(&search, outputs.len(), &[], &[], &evaluate).into_iter().map(extent).collect()
+            };
+            for ((sum, part), anchored) in sums.iter_mut().zip(&parts).zip(anchored) {
+                sum.range.lower += part.range.lower - anchored;
+                sum.range.upper += part.range.upper - anchored;
+                sum.gap += part.gap;
+                for end in 0..2 {
+                    for (place, &axis) in group.iter().enumerate() {
+                        sum.places[end][axis] = part.places[end][place];
+                        sum.spacing[end][axis] = part.spacing[end][place];
+                    }
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Functions<'_> {
+    fn intervals(&self, axes: &[usize]) -> Vec<usize> {
+        intervals(self.degrees, axes, self.are_polynomials)
+    }
+}
+
+/// Intervals of the first lattice along some axes, for polynomials or what is composed of them.
+pub(super) fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
+    let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
+    let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };
+    let along = |&axis: &usize| LEAST_INTERVALS[place].max(each * usize::from(degrees[axis])).next_multiple_of(2);
+    axes.iter().map(along).collect()
+}
+
+fn climb(
+    search: &ExtremeSearch,
+    outputs: usize,
+    neighbours: &[Extremes],
+    places: &[Vec<f64>],
+    evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>,
+) -> Vec<Extremes> {
+    let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+        values.copy_from_slice(&evaluate(points));
+        Ok::<(), Infallible>(())
+    };
+    let Ok(found) = search.extremes(outputs, neighbours, places, evaluate);
+    found
+}
+
+/// What a search found, which it may have missed by its tolerance.
+pub(super) fn extent(found: Extremes) -> Extent {
+    Extent::at(found.range, ExtremeSearch::TOLERANCE * found.range.width(), [found.lowest, found.highest])
+}

@@ -1,0 +1,136 @@
+//! A lattice of Chebyshev extrema, ξᵢ = −cos(π l/Nᵢ), and what the values on it say of the function between its points.
+//!
+//! In θ, ξ = cos θ, the lattice is even, and a function is even and periodic: differences need no exception at the box's faces.
+
+use std::f64::consts::PI;
+
+use super::samples::TensorGrid;
+use super::tensor::cos_pi;
+
+/// Least spacing over that in the middle of the box.
+const AT_FACE: f64 = 0.3;
+
+/// The points, with Nᵢ intervals along each axis.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice {
+    intervals: Vec<usize>,
+    axes: Vec<Vec<f64>>,
+    grid: TensorGrid,
+}
+
+impl Lattice {
+    pub(super) fn new(intervals: &[usize]) -> Self {
+        let axis = |&count: &usize| (0..=count).map(|l| 0.0 - cos_pi(l, count.max(1))).collect();
+        let axes: Vec<Vec<f64>> = intervals.iter().map(axis).collect();
+        Self { intervals: intervals.to_vec(), grid: TensorGrid::new(axes.clone()), axes }
+    }
+
+    pub(super) fn points(&self) -> Vec<Vec<f64>> {
+        (0..self.grid.len()).map(|place| self.grid.sample(place)).collect()
+    }
+
+    pub(super) fn point(&self, place: usize) -> Vec<f64> {
+        self.grid.sample(place)
+    }
+
+    /// Distances to the neighbours of a point along each axis, the larger of both; near a face not less than some share of that in the
+    /// middle.
+    pub(super) fn spacing(&self, place: usize) -> Vec<f64> {
+        let of_axis = |axis: usize, at: usize| {
+            let points = &self.axes[axis];
+            let before = at.checked_sub(1).map_or(0.0, |before| points[at] - points[before]);
+            let after = points.get(at + 1).map_or(0.0, |after| after - points[at]);
+            before.max(after).max(AT_FACE * PI / self.intervals[axis] as f64)
+        };
+        self.indices(place).into_iter().enumerate().map(|(axis, at)| of_axis(axis, at)).collect()
+    }
+
+    /// Place along each axis.
+    fn indices(&self, place: usize) -> Vec<usize> {
+        let mut rest = place;
+        let mut indices: Vec<usize> = (0..self.intervals.len())
+            .rev()
+            .map(|axis| {
+                let points = self.intervals[axis] + 1;
+                let at = rest % points;
+                rest /= points;
+                at
+            })
+            .collect();
+        indices.reverse();
+        indices
+    }
+
+    /// The values at a point and at those one and two further along an axis, mirrored at the faces: two before, before, here, after,
+    /// two after.
+    fn along(&self, values: &[f64], place: usize, (axis, at): (usize, usize)) -> [f64; 5] {
+        let count = self.intervals[axis] as isize;
+        let stride: usize = self.intervals[axis + 1..].iter().map(|count| count + 1).product();
+        [-2, -1, 0, 1, 2].map(|away| {
+            let index = (at as isize + away).rem_euclid(2 * count);
+            let mirrored = index.min(2 * count - index) as usize;
+            values[place + stride * mirrored - stride * at]
+        })
+    }
+
+    /// Along each axis, how far at most a value is from what those beside it tell: a sixth of the fourth difference.
+    pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
+        let mut residuals = vec![0.0_f64; self.intervals.len()];
+        for place in 0..values.len() {
+            for (axis, at) in self.indices(place).into_iter().enumerate() {
+                residuals[axis] = residuals[axis].max(residual(self.along(values, place, (axis, at))));
+            }
+        }
+        residuals
+    }
+
+    /// Points that are at least as high as their neighbours along each axis, and how high the function may be beside each.
+    pub(super) fn peaks(&self, values: &[f64], sign: f64) -> Vec<(usize, f64)> {
+        let mut peaks = Vec::new();
+        for place in 0..values.len() {
+            let mut height = sign * values[place];
+            let is_peak = self.indices(place).into_iter().enumerate().all(|(axis, at)| {
+                let line = self.along(values, place, (axis, at));
+                let [_, before, here, after, _] = line;
+                height += (before - 2.0 * here + after).abs() / 8.0 + residual(line);
+                sign * here >= sign * before && sign * here >= sign * after
+            });
+            if is_peak {
+                peaks.push((place, height));
+            }
+        }
+        peaks
+    }
+}
+
+/// How far the middle one of five values is from the cubic through the others.
+fn residual([a, b, c, d, e]: [f64; 5]) -> f64 {
+    (a - 4.0 * b + 6.0 * c - 4.0 * d + e).abs() / 6.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_and_middle_are_points_and_spacings_are_those_between_them() {
+        let lattice = Lattice::new(&[4, 8]);
+        let points = lattice.points();
+        assert_eq!((points.len(), &points[0], &points[22]), (45, &vec![-1.0, -1.0], &vec![0.0, 0.0]));
+        let spacing = lattice.spacing(22);
+        assert!((spacing[0] - 0.5_f64.sqrt()).abs() < 1e-15 && spacing[1] < 0.383);
+        assert!(lattice.spacing(0)[0] < 0.293 && lattice.spacing(0)[1] > 0.117);
+    }
+
+    #[test]
+    fn what_is_resolved_has_small_residuals_and_peaks_are_found_on_faces_too() {
+        let lattice = Lattice::new(&[32, 16]);
+        let f = |xi: &Vec<f64>| (4.0 * xi[0]).cos() + 0.2 * xi[1];
+        let values: Vec<f64> = lattice.points().iter().map(f).collect();
+        let residuals = lattice.residuals(&values);
+        assert!(residuals[0] < 0.03 && residuals[0] > 1e-3 && residuals[1] < 1e-3, "{residuals:?}");
+        let peaks: Vec<Vec<f64>> = lattice.peaks(&values, 1.0).iter().map(|peak| lattice.point(peak.0)).collect();
+        assert_eq!(peaks, [[-1.0, 1.0], [0.0, 1.0], [1.0, 1.0]]);
+        assert_eq!(lattice.peaks(&values, -1.0).len(), 2);
+    }
+}
