@@ -2,6 +2,8 @@
 //! and where some samples touch some of the time. Medians of the ratios to the bare model, with
 //! the quartiles.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod paired;
 
 use mbint::inner::model::{Description, load_str};

@@ -3,6 +3,8 @@
 //!
 //! The median of the pairs' ratios is told, with the quartiles.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod paired;
 
 use std::fmt::Write as _;

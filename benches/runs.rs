@@ -1,5 +1,7 @@
 //! Whole runs: the study of the paper, method by method, on one thread and on all; and model compilation.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod models;
 
 use divan::{Bencher, bench};

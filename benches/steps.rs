@@ -1,5 +1,7 @@
 //! Whole steps of HHT-I3, Newton's iteration included. Divan's items are samples.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod models;
 
 use divan::counter::ItemsCount;

@@ -1,6 +1,8 @@
 //! Times and errors of mbint and of the plain scalar implementation, for `benches/peers/run`, as JSON. With a number N:
 //! the model file of the N-four-bar.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 #[path = "../models/mod.rs"]
 mod models;
 mod scalar;

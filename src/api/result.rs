@@ -65,7 +65,7 @@ impl StudyResult {
     /// # Errors
     /// [`Error::Write`]: the folder or a file cannot be written.
     pub fn write(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
-        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary)?)
+        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, false)?)
     }
 
     /// The data behind the outputs.

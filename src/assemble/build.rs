@@ -1,5 +1,7 @@
 //! The equations of motion of a description.
 
+use std::sync::Arc;
+
 use symdiff::taylor_model::encloses;
 use symdiff::{Builder, Graph, Scalar};
 
@@ -8,7 +10,7 @@ use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::mechanism::Mechanism;
 use super::recursion;
-use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, System};
+use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, System};
 use crate::model::{Description, Formulation};
 use crate::multibody::BuildError;
 
@@ -67,7 +69,10 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let (applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs(description)?;
-    let start = m.start(description)?;
+    let mut start = m.start(description)?;
+    // The equations' graph stays what it is without the distances; coordinates of joints are in it.
+    let of_equations = (!m.has_distances()).then(|| m.g.graph().clone());
+    let distances = m.distances(description, length, &start)?;
     let coordinates = m.coordinates.iter().zip(&m.coordinate_names).map(|(owner, name)| CoordinateInfo {
         name: name.clone(),
         scale: if owner.is_length() { length } else { 1.0 },
@@ -83,6 +88,11 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
     let (active_condition, constraints) = (balance.active_condition.map(Scalar::expr), constraints.infos);
     Ok(move |graph| {
+        let (graph, with_distances) = match of_equations {
+            Some(of_equations) => (of_equations, Some(graph)),
+            None => (graph, None),
+        };
+        start.nearest = (!distances.is_empty()).then(|| Arc::new(Nearest { graph: with_distances, distances }));
         let mut system = System {
             graph,
             parameters,

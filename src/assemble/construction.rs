@@ -80,7 +80,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
         Ok(())
     }
 
-    fn is_time_independent(&self, mobilizer: &Mobilizer) -> bool {
+    pub fn is_time_independent(&self, mobilizer: &Mobilizer) -> bool {
         mobilizer.formulas().all(|formula| self.formula(formula, Context::Parameters).is_ok())
     }
 

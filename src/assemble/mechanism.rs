@@ -42,7 +42,7 @@ impl Owner {
     }
 
     /// The coordinate's name among its owner's.
-    fn suffix(self) -> &'static str {
+    pub fn suffix(self) -> &'static str {
         match self {
             Self::Body(_, Coordinate::X) => "x",
             Self::Body(_, Coordinate::Y) => "y",

@@ -2,7 +2,7 @@
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `construction`), constraints
 //! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`), outputs (`symbols`), and where the motion starts (`start`, `placement` in the plane,
-//! `pose` in space).
+//! `pose` in space, `nearest` where it is open); how large the model is (`extent`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|
@@ -20,12 +20,14 @@ mod child;
 mod constraints;
 mod construction;
 mod coordinates;
+mod extent;
 mod flexible;
 mod formulation;
 mod joints;
 mod mechanism;
 mod merging;
 mod names;
+mod nearest;
 mod placement;
 mod pose;
 mod reaction;
@@ -39,4 +41,4 @@ mod tree;
 
 pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use system::{ConstraintInfo, FormulationInfo, ResidualUnit, StartCondition, System};
+pub use system::{ConstraintInfo, Distance, FormulationInfo, ResidualUnit, StartCondition, System};

@@ -14,7 +14,7 @@
 
 use std::collections::VecDeque;
 
-use symdiff::Scalar;
+use symdiff::{Scalar, math};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Orientation, Separation};
@@ -107,7 +107,7 @@ impl PlanarPoses {
                 let [a, b] = between.map(|point| at(self.pose(point.body), local(m, point)));
                 let axis = kind.axis_of(coordinate).and_then(|axis| m.vector(axis, Context::Time).ok());
                 let [x, y, _] = axis.map_or([1.0, 0.0, 0.0], |axis| m.nominal(axis.components()));
-                let along = at([0.0, 0.0, first[ANGLE] + y.atan2(x)], [1.0, 0.0]);
+                let along = at([0.0, 0.0, first[ANGLE] + math::atan2(y, x)], [1.0, 0.0]);
                 along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1])
             }
         }
@@ -192,26 +192,26 @@ impl PlanarPoses {
         let (near_side, far_side) = (distance(link.there, next.here), distance(next.there, far.here));
         let base = distance(anchor, goal);
         let cosine = (near_side * near_side + base * base - far_side * far_side) / (2.0 * near_side * base);
-        let opening = cosine.clamp(-1.0, 1.0).acos();
+        let opening = math::acos(cosine.clamp(-1.0, 1.0));
         let towards = direction(anchor, goal)?;
-        let higher = if (towards + opening).sin() >= (towards - opening).sin() { opening } else { -opening };
+        let higher = if math::sin(towards + opening) >= math::sin(towards - opening) { opening } else { -opening };
         Some(towards + higher - direction(link.there, next.here)?)
     }
 }
 
 /// A point of a body in the ground's frame.
 fn at([x, y, angle]: [f64; DEGREES_OF_FREEDOM], [a, b]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = math::sin_cos(angle);
     [x + cos * a - sin * b, y + sin * a + cos * b]
 }
 
 fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
-    (to[0] - from[0]).hypot(to[1] - from[1])
+    math::hypot(to[0] - from[0], to[1] - from[1])
 }
 
 /// Angle of the line between two points; `None` where they coincide.
 fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
-    (distance(from, to) > 0.0).then(|| (to[1] - from[1]).atan2(to[0] - from[0]))
+    (distance(from, to) > 0.0).then(|| math::atan2(to[1] - from[1], to[0] - from[0]))
 }
 
 /// The joints of each body, and the elements of beams, straight.

@@ -276,7 +276,7 @@ fn known_of<'g>(m: &Mechanism<'g, '_>, body: &Body<'g>, values: &[Option<f64>]) 
 /// Angle of the part of a rotation about an axis, between −π and π.
 fn angle_about(rotation: &UnitQuaternion<f64>, axis: &Vector3<f64>) -> f64 {
     let (sin, cos) = (rotation.imag().dot(axis), rotation.w);
-    if cos < 0.0 { 2.0 * (-sin).atan2(-cos) } else { 2.0 * sin.atan2(cos) }
+    if cos < 0.0 { 2.0 * symdiff::math::atan2(-sin, -cos) } else { 2.0 * symdiff::math::atan2(sin, cos) }
 }
 
 /// The frame at a point against its body's.

@@ -14,6 +14,8 @@ pub struct Reaction<'g> {
     pub magnitude: Scalar<'g>,
     /// About the second point, N m.
     pub torque: Vector<'g>,
+    /// About the joint's axis, N m, where there is no other torque and no force: of a motor and a gear.
+    pub about_axis: Option<Scalar<'g>>,
 }
 
 impl<'g> Reaction<'g> {
@@ -37,6 +39,13 @@ impl<'g> Reaction<'g> {
             (_, _, [lambda]) => lambda.abs(),
             _ => force.norm(),
         };
-        Self { force, magnitude, torque }
+        // A coupling's row pushes against its coordinate: its vector is the opposite of the axis.
+        let about_axis = match kept {
+            &[(row, lambda)] if row.force.is_zero() && !row.torque.is_zero() && joint.between().is_none() => {
+                Some(-lambda)
+            }
+            _ => None,
+        };
+        Self { force, magnitude, torque, about_axis }
     }
 }

@@ -1,4 +1,4 @@
-//! What is known at the start, and the model's size.
+//! What is known at the start.
 
 use symdiff::{Formula, Scalar};
 
@@ -6,7 +6,6 @@ use super::mechanism::{Mechanism, Owner, dof};
 use super::placement::PlanarPoses;
 use super::pose::Poses;
 use super::system::Start;
-use crate::elements::joints::{Placement, Separation};
 use crate::grammar::JointCoordinate;
 use crate::model::{Coordinate, Description, StartValue, TimeOrder};
 use crate::multibody::{BuildError, Context, EULER, Quaternion};
@@ -28,14 +27,19 @@ impl<'g> Mechanism<'g, '_> {
     pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
         let position = self.values_at_start(description, &description.initial, TimeOrder::Position)?;
         let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
-        let guessed = self.values_at_start(description, &description.guess, TimeOrder::Position)?;
+        let guessed = self.guessed(description)?;
         let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
         let placed = self.placed(&known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
         let guess = guess.map(Scalar::expr).collect();
         let conditions = self.start_of_beams(description)?;
         let exprs = |values: Vec<Option<Scalar>>| values.into_iter().map(|value| value.map(Scalar::expr)).collect();
-        Ok(Start { position: exprs(position), velocity: exprs(velocity), guess, conditions })
+        Ok(Start { position: exprs(position), velocity: exprs(velocity), guess, conditions, nearest: None })
+    }
+
+    /// Positions that `guess` names.
+    pub fn guessed(&self, description: &Description) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
+        self.values_at_start(description, &description.guess, TimeOrder::Position)
     }
 
     /// Where the joints put the coordinates.
@@ -126,47 +130,5 @@ impl<'g> Mechanism<'g, '_> {
                 found[index] = Some(value);
             }
         }
-    }
-
-    /// The largest length that the model names, m, at its nominal parameters: coordinates of points, distances,
-    /// prescribed and initial positions; 1 where it names none.
-    pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
-        let mut lengths: Vec<Scalar> = Vec::new();
-        for body in &self.bodies {
-            lengths.extend(body.points.iter().flat_map(|point| point.components()));
-            lengths.extend(body.center.components());
-            // A coordinate's symbol counts as zero here.
-            lengths.extend(&body.position[..3]);
-        }
-        for joint in self.joints {
-            if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
-                lengths.push(self.formula(length, Context::Time)?);
-            }
-        }
-        lengths.push(self.length_of_beams()?);
-        let starts = description.initial.iter().chain(&description.guess);
-        let formulas: Vec<&Formula> = starts
-            .filter_map(|value| match value {
-                StartValue::Coordinate { coordinate, order: TimeOrder::Position, value, .. }
-                    if coordinate.is_length() =>
-                {
-                    Some(value)
-                }
-                StartValue::Joint {
-                    coordinate: JointCoordinate::Displacement,
-                    order: TimeOrder::Position,
-                    value,
-                    ..
-                } => Some(value),
-                _ => None,
-            })
-            .collect();
-        for formula in formulas {
-            lengths.push(self.formula(formula, Context::Parameters)?);
-        }
-        let values = self.sample(&lengths, 0.0, |parameter| parameter.nominal);
-        let largest = values.into_iter().map(f64::abs).filter(|length| length.is_finite());
-        let largest = largest.fold(0.0, f64::max);
-        Ok(if largest > 0.0 { largest } else { 1.0 })
     }
 }

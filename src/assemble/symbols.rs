@@ -4,7 +4,7 @@ use symdiff::{Formula, Scalar};
 
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
-use crate::grammar::{EnergyKind, OnJoint, ReactionComponent, Sensor, Symbol, TimeOrder};
+use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, ReactionComponent, Sensor, Symbol, TimeOrder};
 use crate::model::{Description, Rotation};
 use crate::multibody::{BuildError, Context, Quaternion, Vector, rotation};
 
@@ -82,16 +82,7 @@ impl<'g> Mechanism<'g, '_> {
                 };
                 vector[dof(coordinate)]
             }
-            Symbol::Reaction { joint, component } => {
-                let reaction = &self.reactions[joint];
-                match component {
-                    ReactionComponent::Force => reaction.magnitude,
-                    ReactionComponent::ForceAlong(axis) => reaction.force[axis],
-                    ReactionComponent::Torque if self.is_spatial => reaction.torque.norm(),
-                    ReactionComponent::Torque => reaction.torque[2],
-                    ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
-                }
-            }
+            Symbol::Reaction { joint, component } => self.reaction(joint, component),
             Symbol::Sensor { effect, measure } => {
                 self.sensors.get(&(effect, measure)).copied().unwrap_or_else(|| g.number(0.0))
             }
@@ -99,6 +90,40 @@ impl<'g> Mechanism<'g, '_> {
             Symbol::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
             Symbol::Energy(EnergyKind::Total) => self.kinetic_energy() + g.sum(self.potentials.iter().copied()),
         }
+    }
+
+    fn reaction(&self, joint: usize, component: ReactionComponent) -> Scalar<'g> {
+        let reaction = &self.reactions[joint];
+        match component {
+            ReactionComponent::Force => reaction.magnitude,
+            ReactionComponent::ForceAlong(axis) => reaction.force[axis],
+            ReactionComponent::Torque if self.is_spatial => {
+                reaction.about_axis.unwrap_or_else(|| reaction.torque.norm())
+            }
+            ReactionComponent::Torque => reaction.torque[2],
+            ReactionComponent::TorqueAbout(axis) => reaction.torque[axis],
+            ReactionComponent::Axial => reaction.force.dot(self.axis_of(joint)),
+            ReactionComponent::Radial => {
+                let axis = self.axis_of(joint);
+                if !self.is_spatial && axis[2].is_zero() {
+                    return reaction.force.dot(axis.perpendicular());
+                }
+                (reaction.force - reaction.force.dot(axis) * axis).norm()
+            }
+            ReactionComponent::AxialTorque => reaction.torque.dot(self.axis_of(joint)),
+        }
+    }
+
+    /// The unit vector of a joint's own axis in the ground's axes, of a coupling that of what it drives; zero where it has none.
+    fn axis_of(&self, joint: usize) -> Vector<'g> {
+        let kind = &self.joints[joint].kind;
+        let own =
+            [JointCoordinate::Angle, JointCoordinate::Displacement].map(|coordinate| OnJoint { joint, coordinate });
+        let driven = kind.coordinates(joint);
+        let has_axis = |on: &&OnJoint| self.joints[on.joint].kind.axis_of(on.coordinate).is_some();
+        let on = if kind.between().is_some() { own.iter().find(has_axis) } else { driven.iter().rfind(has_axis) };
+        // An axis is a formula of parameters and t, as its joint's rows needed it.
+        on.and_then(|&on| self.axis_in_ground(on).ok()).unwrap_or_else(|| Vector::zero(self.g))
     }
 
     /// All outputs of a description.

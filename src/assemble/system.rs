@@ -1,5 +1,7 @@
 //! The equations of motion as expressions: q̇ = v, M v̇ = Q − Φ_qᵀλ, Φ = 0 (design: index-3 form).
 
+use std::sync::Arc;
+
 use symdiff::{Expr, Graph};
 
 use crate::model::Space;
@@ -150,7 +152,7 @@ pub struct OutputInfo {
 }
 
 /// What is known at the start; expressions over the parameters.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Start {
     /// Positions that are kept, n; `None` where assembly finds them.
     pub position: Vec<Option<Expr>>,
@@ -160,6 +162,32 @@ pub struct Start {
     pub guess: Vec<Expr>,
     /// What must hold then besides the constraints.
     pub conditions: Vec<StartCondition>,
+    /// What decides where all this leaves the start open; `None` where nothing does.
+    pub nearest: Option<Arc<Nearest>>,
+}
+
+/// Distances of which the sum of squares is least at the start.
+#[derive(Clone, Debug)]
+pub struct Nearest {
+    /// Holds the system's expressions and those of the distances; `None` where the system's own does.
+    pub graph: Option<Graph>,
+    /// Over t, q and the parameters.
+    pub distances: Vec<Distance>,
+}
+
+/// Ψ(q, t), a joint's coordinate or that of a body which no joint carries, from where it is at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distance {
+    /// E.g. `elbow.angle`.
+    pub name: String,
+    /// Ψ
+    pub value: Expr,
+    /// Typical size.
+    pub scale: f64,
+    /// Whether the start leaves the position open.
+    pub position: bool,
+    /// Whether it leaves the velocity open.
+    pub velocity: bool,
 }
 
 /// Ψ(q, t), which is zero at the start, or has the rate zero there, and is free afterwards.
@@ -189,9 +217,18 @@ impl System {
 
     /// Whether an output depends on accelerations or multipliers.
     pub fn observes_accelerations(&self) -> bool {
+        self.observes(&self.w) || self.observes(&self.lambda)
+    }
+
+    /// Whether an output depends on velocities.
+    pub fn observes_velocities(&self) -> bool {
+        self.observes(&self.v)
+    }
+
+    fn observes(&self, symbols: &[Expr]) -> bool {
         let outputs: Vec<Expr> = self.outputs.iter().map(|output| output.expr).collect();
         let used = self.graph.symbols_of(&outputs);
-        self.w.iter().chain(&self.lambda).any(|symbol| used.binary_search(symbol).is_ok())
+        symbols.iter().any(|symbol| used.binary_search(symbol).is_ok())
     }
 
     /// They are noted as left out.

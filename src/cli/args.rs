@@ -89,6 +89,14 @@ pub(super) struct RunArgs {
     /// Write computing times into summary.json, which then differs from run to run.
     #[arg(long)]
     pub timings: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute.
+    #[arg(short, long)]
+    pub yes: bool,
+
+    /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.

@@ -1,6 +1,6 @@
 //! `mbint check`: errors of models, and their coordinates, constraints and degrees of freedom.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -9,7 +9,9 @@ use super::console::{BOLD, Console, count, to_json};
 use super::{Failure, Status, tree};
 use crate::model::{self, Description};
 use crate::reduce::{Choices, Reduction};
+use crate::simulate::Assembled;
 use crate::study::{self, RunError};
+use crate::syntax::Diagnostics;
 
 /// Result for a model; an element of the JSON output.
 #[derive(Serialize)]
@@ -28,10 +30,30 @@ struct Checked {
     scenes: Vec<CheckedScene>,
     /// `diagnostics` for people.
     #[serde(skip)]
-    rendered: String,
+    found: Diagnostics,
     /// The tree of a robot's links, for people.
     #[serde(skip)]
     tree: String,
+    /// Whether `error` is one of this program.
+    #[serde(skip)]
+    is_internal: bool,
+}
+
+impl Checked {
+    /// Of a file of which nothing is known.
+    fn nothing(path: &Path) -> Self {
+        Self {
+            file: model::shown(path),
+            ok: false,
+            counts: None,
+            diagnostics: Vec::new(),
+            error: None,
+            scenes: Vec::new(),
+            found: Diagnostics::default(),
+            tree: String::new(),
+            is_internal: false,
+        }
+    }
 }
 
 /// Result for a scene.
@@ -54,6 +76,8 @@ struct Counts {
     uncertain_parameters: Vec<String>,
     redundant_constraints: Vec<String>,
     singular_at_start: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
     /// Parts that no output depends on.
@@ -62,11 +86,15 @@ struct Counts {
 }
 
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
-    let checked: Vec<Checked> = args.models.iter().map(|path| check_one(path, console.color())).collect();
+    let check = |path: &PathBuf| match study::caught("check", || check_one(path)) {
+        Ok(checked) => checked,
+        Err(error) => Checked { error: Some(error.to_string()), is_internal: true, ..Checked::nothing(path) },
+    };
+    let checked: Vec<Checked> = args.models.iter().map(check).collect();
     match args.format {
         Format::Text => {
             for model in &checked {
-                console.report(&model.rendered);
+                console.diagnostics(&model.found);
                 if let Some(error) = &model.error {
                     console.error(&format!("{}: {error}", model.file));
                 }
@@ -87,26 +115,18 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
         }
         Format::Json => console.print(&to_json(&checked)?)?,
     }
-    let all = checked.iter().all(|model| model.ok);
-    Ok(if all { Status::Done } else { Status::Wrong })
+    let status = |model: &Checked| match model.ok {
+        true => Status::Done,
+        false if model.is_internal => Status::Failed,
+        false => Status::Wrong,
+    };
+    Ok(checked.iter().map(status).max().unwrap_or(Status::Done))
 }
 
-fn check_one(path: &Path, color: bool) -> Checked {
-    let file = model::shown(path);
-    let nothing = Checked {
-        file,
-        ok: false,
-        counts: None,
-        diagnostics: Vec::new(),
-        error: None,
-        scenes: Vec::new(),
-        rendered: String::new(),
-        tree: String::new(),
-    };
+fn check_one(path: &Path) -> Checked {
     let reading = model::read(path, &[]);
-    let diagnostics = &reading.diagnostics;
-    let rendered = if diagnostics.is_empty() { String::new() } else { diagnostics.render(color) };
-    let read = Checked { diagnostics: diagnostics.records(), rendered, ..nothing };
+    let (diagnostics, found) = (reading.diagnostics.records(), reading.diagnostics.clone());
+    let read = Checked { diagnostics, found, ..Checked::nothing(path) };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
     if !reading.scenes.is_empty() {
         // Only the scenes are run.
@@ -131,17 +151,19 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let explanation = study::explain_whole(model)?;
+        let Assembled { system, mobility, undetermined, shared, .. } = study::assemble_whole(model)?;
+        let constraints = |numbers: &[usize]| numbers.iter().map(|&k| system.constraints[k].name.clone()).collect();
         Ok(Self {
-            model: explanation.model,
-            coordinates: explanation.coordinates.len(),
-            constraints: explanation.constraints.len(),
-            degrees_of_freedom: explanation.degrees_of_freedom,
-            uncertain_parameters: explanation.parameters,
-            redundant_constraints: explanation.redundant_constraints,
-            singular_at_start: explanation.singular_at_start,
-            undetermined_outputs: explanation.undetermined_outputs,
-            outputs: explanation.outputs,
+            model: model.name.clone(),
+            coordinates: system.coordinates.len(),
+            constraints: system.constraints.len(),
+            degrees_of_freedom: mobility.degrees_of_freedom,
+            uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            redundant_constraints: constraints(&mobility.redundant),
+            singular_at_start: constraints(&mobility.singular_at_start),
+            shared_start: shared,
+            undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+            outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             not_simulated: Reduction::of(model, Choices::default()).left_out,
         })
     }
@@ -164,10 +186,11 @@ impl Counts {
             names => format!(", {what} {}", names.join(", ")),
         };
         let singular = others(&self.singular_at_start, "a singular start, at which other constraints imply");
+        let shared = others(&self.shared_start, "a start that the model leaves open, nearest to rest in");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
         let left_out = others(&self.not_simulated, "not simulated because no output depends on it:");
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{undetermined}{left_out}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}\n",
             self.model,
             count(self.coordinates, "coordinate", "coordinates"),
             count(self.constraints, "constraint", "constraints"),
@@ -191,11 +214,12 @@ mod tests {
             uncertain_parameters: vec!["l1".into(), "tau".into()],
             redundant_constraints: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
             not_simulated: vec![],
         };
-        let plain = |counts: &Counts| anstream::adapter::strip_str(&counts.line()).to_string();
+        let plain = |counts: &Counts| crate::cli::console::plain(&counts.line());
         insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
         counts.redundant_constraints = vec!["pin.x".into(), "pin.y".into()];
         counts.uncertain_parameters.clear();

@@ -1,5 +1,9 @@
 //! Standard output and standard error: text for people, JSON, errors.
+//!
+//! This is the one way to the terminal. Texts hold names from files, which could hold what a terminal obeys; they are made harmless here.
+//! Styles are therefore not in a text as the terminal's own sequences but as marks, which become those afterwards.
 
+use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
@@ -7,17 +11,58 @@ use clap::builder::styling::{AnsiColor, Style};
 use serde::Serialize;
 
 use super::Failure;
+use crate::syntax::{Diagnostics, harmless, is_harmful};
+
+/// A style within a text: `{BOLD}` begins it, `{BOLD:#}` ends it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark(char);
+
+/// Ends every style. Marks are code points that Unicode keeps free of characters.
+const END: char = '\u{fdd0}';
 
 /// Headings.
-pub(super) const BOLD: Style = Style::new().bold();
-const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
-const RED: Style = AnsiColor::Red.on_default().bold();
+pub(super) const BOLD: Mark = Mark('\u{fdd1}');
+const YELLOW: Mark = Mark('\u{fdd2}');
+const RED: Mark = Mark('\u{fdd3}');
+
+impl fmt::Display for Mark {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Write::write_char(formatter, if formatter.alternate() { END } else { self.0 })
+    }
+}
+
+/// A text as the terminal gets it: harmless, marks as styles.
+fn styled(text: &str) -> String {
+    let mut styled = String::with_capacity(text.len());
+    for c in harmless(text).chars() {
+        let style = match Mark(c) {
+            Mark(END) => Some(format!("{:#}", Style::new().bold())),
+            Mark(mark) if mark == BOLD.0 => Some(Style::new().bold().to_string()),
+            Mark(mark) if mark == YELLOW.0 => Some(AnsiColor::Yellow.on_default().bold().to_string()),
+            Mark(mark) if mark == RED.0 => Some(AnsiColor::Red.on_default().bold().to_string()),
+            Mark(_) => None,
+        };
+        match style {
+            Some(style) => styled += &style,
+            None => styled.push(c),
+        }
+    }
+    styled
+}
+
+/// A text without its marks.
+#[cfg(test)]
+pub(super) fn plain(text: &str) -> String {
+    text.replace([END, BOLD.0, YELLOW.0, RED.0], "")
+}
 
 /// Standard output and standard error.
 #[derive(Debug, Default)]
 pub(super) struct Console {
     /// Whether the reader of standard output has closed the pipe (`mbint … | head -1`).
     closed: bool,
+    /// Whether something could not be written.
+    failed: bool,
 }
 
 impl Console {
@@ -27,13 +72,25 @@ impl Console {
             return Ok(());
         }
         let mut stdout = anstream::stdout().lock();
-        match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        match stdout.write_all(styled(text).as_bytes()).and_then(|()| stdout.flush()) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => {
                 self.closed = true;
                 Ok(())
             }
-            result => result.map_err(|error| Failure::Failed(format!("cannot write to standard output: {error}"))),
+            Err(error) => {
+                // The models that follow run nevertheless.
+                self.closed = true;
+                self.failed = true;
+                self.error(&format!("cannot write to standard output: {error}"));
+                Ok(())
+            }
+            Ok(()) => Ok(()),
         }
+    }
+
+    /// Whether standard output could not take what was to be written.
+    pub fn has_failed(&self) -> bool {
+        self.failed
     }
 
     /// Writes an error in one line to standard error.
@@ -46,14 +103,16 @@ impl Console {
         self.report(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
     }
 
-    /// Writes text to standard error; if that is closed, nobody can be told.
-    pub fn report(&self, text: &str) {
-        let _ = anstream::stderr().lock().write_all(text.as_bytes());
+    /// Writes errors and warnings of a file to standard error.
+    pub fn diagnostics(&self, diagnostics: &Diagnostics) {
+        let color = anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never;
+        // They are harmless, and have colours of their own.
+        let _ = anstream::stderr().lock().write_all(diagnostics.render(color).as_bytes());
     }
 
-    /// Whether standard error shows colours.
-    pub fn color(&self) -> bool {
-        anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never
+    /// Writes text to standard error; if that is closed, nobody can be told.
+    fn report(&self, text: &str) {
+        let _ = anstream::stderr().lock().write_all(styled(text).as_bytes());
     }
 }
 
@@ -72,8 +131,36 @@ pub(super) fn count(n: usize, one: &str, many: &str) -> String {
     }
 }
 
-/// Indented JSON with a line end.
+/// Indented JSON with a line end; what a terminal could obey is escaped.
 pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n").map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))
+    let text = text.map_err(|error| Failure::Failed(format!("cannot write JSON: {error}")))?;
+    let mut escaped = String::with_capacity(text.len() + 1);
+    for c in text.chars() {
+        match c {
+            // These stand within strings only, and are below U+10000.
+            c if is_harmful(c) => escaped += &format!("\\u{:04x}", u32::from(c)),
+            c => escaped.push(c),
+        }
+    }
+    Ok(escaped + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_marks_become_styles() {
+        let text = styled(&format!("{BOLD}a\u{1b}[31m{BOLD:#}\n"));
+        assert_eq!(text, "\u{1b}[1ma\u{fffd}[31m\u{1b}[0m\n");
+        assert_eq!(plain(&format!("{RED}error{RED:#}: x")), "error: x");
+    }
+
+    #[test]
+    fn json_keeps_names() {
+        let text = to_json(&"a\u{9b}\u{202e}\u{1b}").unwrap();
+        assert_eq!(text, "\"a\\u009b\\u202e\\u001b\"\n");
+        assert_eq!(serde_json::from_str::<String>(&text).unwrap(), "a\u{9b}\u{202e}\u{1b}");
+    }
 }

@@ -33,6 +33,8 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         interrupted: &interrupt::asked,
     };
     interrupt::listen();
+    // A study says itself what there is to keep.
+    interrupt::keep_results(true);
     let study = match study::cost(&model, &options) {
         Ok(study) => study,
         Err(_) if interrupt::asked() => {
@@ -257,7 +259,7 @@ mod tests {
     }
 
     fn plain(text: &str) -> String {
-        anstream::adapter::strip_str(text).to_string()
+        crate::cli::console::plain(text)
     }
 
     #[test]

@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn an_effect_reads_well() {
-        let plain = anstream::adapter::strip_str(&text().unwrap()).to_string();
+        let plain = crate::cli::console::plain(&text().unwrap());
         let stop = plain.split("\n\n").find(|part| part.starts_with("stop ")).unwrap();
         insta::assert_snapshot!(stop, @r"
         stop  Stops at the ends of a joint's range.

@@ -61,6 +61,9 @@ fn text(explanation: &Explanation) -> String {
     if !e.undetermined_outputs.is_empty() {
         section("outputs of reactions that are not unique".into(), list(&e.undetermined_outputs));
     }
+    if !e.shared_start.is_empty() {
+        section("coordinates that share what the model leaves open of the start".into(), list(&e.shared_start));
+    }
     if !e.singular_at_start.is_empty() {
         section("constraints that lose their independence at the start only".into(), list(&e.singular_at_start));
     }
@@ -178,6 +181,7 @@ mod tests {
             degrees_of_freedom: 1,
             redundant_constraints: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             undetermined_outputs: vec![],
             parameters: names("l1 tau"),
             effects: vec![
@@ -212,7 +216,7 @@ mod tests {
                 saves: Some(Saving { instructions: 120, each: Each::Step }),
             }],
         };
-        let plain = anstream::adapter::strip_str(&text(&explanation)).to_string();
+        let plain = crate::cli::console::plain(&text(&explanation));
         insta::assert_snapshot!(plain, @r"
         slider_crank
         planar: nothing leaves the plane

@@ -26,7 +26,7 @@ mod tests {
 
     #[test]
     fn every_joint_says_all_that_there_is() {
-        let plain = anstream::adapter::strip_str(&text()).to_string();
+        let plain = crate::cli::console::plain(&text());
         for joint in JointKind::docs() {
             let docs = &joint.element;
             assert!(plain.contains(docs.description), "{}", docs.keyword);
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn a_joint_reads_well() {
-        let plain = anstream::adapter::strip_str(&text()).to_string();
+        let plain = crate::cli::console::plain(&text());
         let gear = plain.split("\n\n").find(|part| part.starts_with("gear ")).unwrap();
         insta::assert_snapshot!(gear, @r"
         gear  Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.

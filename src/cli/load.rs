@@ -5,9 +5,19 @@ use std::path::{Path, PathBuf};
 use super::Failure;
 use super::console::Console;
 use crate::model::{self, Description, Override, Reading};
+use crate::study;
+
+/// The models that could be read.
+pub(super) struct Loaded {
+    pub models: Vec<Model>,
+    /// Whether these are all: reading may fail by an error of this program.
+    pub is_complete: bool,
+}
 
 /// A model to be run, alone or as scenes.
 pub(super) struct Model {
+    /// Its file.
+    pub path: PathBuf,
     /// Its name, which is also that of its folder.
     pub name: String,
     /// Its scenes with their names; one without a name if the model has none.
@@ -24,18 +34,28 @@ pub(super) fn load_all(
     overrides: &[Override],
     scenes: &[String],
     console: &Console,
-) -> Result<Option<Vec<Model>>, Failure> {
-    let read: Vec<Option<Reading>> = models.iter().map(|path| read(path, overrides, console)).collect();
+) -> Result<Option<Loaded>, Failure> {
+    let mut is_complete = true;
+    let mut readings: Vec<(&PathBuf, Option<Reading>)> = Vec::new();
+    for path in models {
+        match study::caught("reading", || read(path, overrides, console)) {
+            Ok(reading) => readings.push((path, reading)),
+            Err(error) => {
+                is_complete = false;
+                console.error(&format!("{}: {error}", model::shown(path)));
+            }
+        }
+    }
     let chosen = |(path, reading): (&PathBuf, Reading)| {
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
         let scenes =
             reading.chosen(scenes).map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
-        Ok(Model { name, scenes })
+        Ok(Model { path: path.clone(), name, scenes })
     };
-    match read.into_iter().collect::<Option<Vec<Reading>>>() {
-        Some(readings) => models.iter().zip(readings).map(chosen).collect::<Result<_, _>>().map(Some),
-        None => Ok(None),
-    }
+    let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
+    let Some(readings) = readings.collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let models = readings.into_iter().map(chosen).collect::<Result<_, _>>()?;
+    Ok(Some(Loaded { models, is_complete }))
 }
 
 /// Reads a model, or a scene of it, and reports its errors and warnings.
@@ -58,8 +78,6 @@ pub(super) fn load(
 /// Reads a file and reports its errors and warnings; `None` if it has errors.
 fn read(path: &Path, overrides: &[Override], console: &Console) -> Option<Reading> {
     let reading = model::read(path, overrides);
-    if !reading.diagnostics.is_empty() {
-        console.report(&reading.diagnostics.render(console.color()));
-    }
+    console.diagnostics(&reading.diagnostics);
     reading.description.is_some().then_some(reading)
 }

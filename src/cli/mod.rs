@@ -29,6 +29,7 @@ use clap::{ColorChoice, CommandFactory, FromArgMatches};
 use self::args::{Cli, Color, Command};
 use self::console::Console;
 use self::status::Status;
+use crate::study;
 
 /// Why a command ended early, in words for the user.
 #[derive(Debug)]
@@ -41,6 +42,7 @@ enum Failure {
 
 /// The program: reads the process' arguments, executes the command and returns its exit code.
 pub fn main() -> ExitCode {
+    study::record_panics();
     let arguments: Vec<OsString> = std::env::args_os().collect();
     // Before the arguments are read, because errors and help texts are coloured too.
     let color = color(&arguments);
@@ -58,7 +60,9 @@ pub fn main() -> ExitCode {
     };
 
     let mut console = Console::default();
-    let status = execute(cli.command, &mut console).unwrap_or_else(|failure| {
+    let executed = study::caught("the command", || execute(cli.command, &mut console));
+    let executed = executed.unwrap_or_else(|error| Err(Failure::Failed(error.to_string())));
+    let status = executed.unwrap_or_else(|failure| {
         let (message, status) = match failure {
             Failure::Wrong(message) => (message, Status::Wrong),
             Failure::Failed(message) => (message, Status::Failed),
@@ -66,6 +70,7 @@ pub fn main() -> ExitCode {
         console.error(&message);
         status
     });
+    let status = if console.has_failed() { status.max(Status::Failed) } else { status };
     ExitCode::from(status)
 }
 

@@ -71,10 +71,16 @@ fn rounded(time: f64) -> f64 {
     (1e9 * time).round() / 1e9
 }
 
-/// Singular configurations, and reactions that equilibrium does not determine.
+/// A start that is a choice, singular configurations, and reactions that equilibrium does not determine.
 fn singular(summary: &Summary) -> String {
     const MOST: usize = 4;
     let mut text = String::new();
+    if !summary.shared_start.is_empty() {
+        text += &format!(
+            "  the model leaves the start open: {} are as near to 0 as joints allow; name them under `initial`\n",
+            named(&summary.shared_start)
+        );
+    }
     let passes = &summary.singular_configurations;
     if !passes.is_empty() {
         let times: Vec<String> = passes.iter().take(MOST).map(|pass| format!("{:.6}", pass.time)).collect();
@@ -195,6 +201,7 @@ mod tests {
             redundant_constraints: vec![],
             undetermined_outputs: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             singular_configurations: vec![],
             alpha: -0.1,
             duration: 2.0,
@@ -217,7 +224,7 @@ mod tests {
         };
         let files = ["bounds.csv", "x3.svg"].map(|name| Path::new("results/slider_crank").join(name));
         let text = overview(&summary, Path::new("results/slider_crank"), &files);
-        let plain = anstream::adapter::strip_str(&text).to_string();
+        let plain = crate::cli::console::plain(&text);
         insta::assert_snapshot!(plain, @r"
         slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
 

@@ -14,7 +14,7 @@ impl Progress {
     /// A bar labelled with `name`, or none.
     pub fn new(name: &str, visible: bool) -> Self {
         let target = if visible { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(Some(PARTS), target).with_prefix(name.to_owned());
+        let bar = ProgressBar::with_draw_target(Some(PARTS), target).with_prefix(crate::syntax::harmless(name));
         let style = ProgressStyle::with_template("{prefix}  [{bar:40}] {percent:>3} %  {eta} left");
         if let Ok(style) = style {
             bar.set_style(style.progress_chars("=> "));

@@ -1,7 +1,7 @@
 //! `mbint run`: computes bounds of models and writes them to files.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::args::RunArgs;
 use super::console::Console;
@@ -13,14 +13,21 @@ use crate::assemble;
 use crate::export::{file_stem, prepare_folder};
 use crate::methods::Certified;
 use crate::model::shown;
+use crate::study;
+
+/// What is to be done of a file.
+struct Work {
+    path: PathBuf,
+    kind: Kind,
+}
 
 /// The model, or its scenes.
-enum Work {
+enum Kind {
     Alone(Box<Job>),
     Scenes(Scenes),
 }
 
-impl Work {
+impl Kind {
     fn jobs(&self) -> Vec<&Job> {
         match self {
             Self::Alone(job) => vec![job.as_ref()],
@@ -31,34 +38,37 @@ impl Work {
 
 pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failure> {
     let request = Request::check(args)?;
-    let Some(models) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
+    let Some(loaded) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
         return Ok(Status::Wrong);
     };
-    let work = work(models, &request)?;
+    let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };
+    let work = work(loaded.models, &request)?;
     // Every model is checked before the first run, which may take hours.
-    for (work, path) in work.iter().zip(&request.models) {
-        for job in work.jobs() {
-            let wrong = |error| match work {
-                Work::Alone(_) => Failure::Wrong(format!("{}: {error}", shown(path))),
-                Work::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
+    for Work { path, kind } in &work {
+        for job in kind.jobs() {
+            let wrong = |error| match kind {
+                Kind::Alone(_) => Failure::Wrong(format!("{}: {error}", shown(path))),
+                Kind::Scenes(_) => Failure::Wrong(format!("{}: {}: {error}", shown(path), job.model.name)),
             };
-            assemble::build(&job.model).map_err(wrong)?;
+            // A panic is reported by the run.
+            if let Ok(built) = study::caught("the model", || assemble::build(&job.model)) {
+                built.map_err(wrong)?;
+            }
         }
     }
-    for job in work.iter().flat_map(Work::jobs) {
+    for job in work.iter().flat_map(|work| work.kind.jobs()) {
         prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     }
 
     interrupt::listen();
-    let mut status = Status::Done;
     for (i, work) in work.iter().enumerate() {
         if i > 0 && !request.quiet {
             console.print("\n")?;
         }
         // The other models run even if one fails.
-        let done = match work {
-            Work::Alone(job) => run_and_report(job, &request, console),
-            Work::Scenes(scenes) => scenes.run(&request, console),
+        let done = match &work.kind {
+            Kind::Alone(job) => run_and_report(job, &request, console),
+            Kind::Scenes(scenes) => scenes.run(&request, console),
         };
         match done {
             Ok(done) => status = status.max(done),
@@ -78,7 +88,7 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
 fn run_and_report(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
     let done = run_one(job, request)?;
     if !request.quiet {
-        console.print(&overview(&done.summary, &job.folder, &done.files))?;
+        console.print(&overview(&done.summary, &done.folder, &done.files))?;
     }
     report(&done, console);
     Ok(done.status)
@@ -91,13 +101,13 @@ pub(super) fn results_of(name: &str) -> PathBuf {
 
 /// Gives every model a folder of its own.
 fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failure> {
-    let several = models.len() > 1;
-    let mut taken: HashMap<String, &Path> = HashMap::new();
+    let several = request.models.len() > 1;
+    let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for (load::Model { name, scenes }, path) in models.into_iter().zip(&request.models) {
+    for load::Model { path, name, scenes } in models {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
-        if let Some(other) = taken.insert(stem.to_lowercase(), path) {
+        if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
             let (first, second) = (other.display(), path.display());
             let message = format!("{first} and {second} would both write the results of `{name}`");
             return Err(Failure::Wrong(format!("{message}: run them separately, each with its own --output")));
@@ -119,12 +129,12 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {
             Some((scene, job)) if alone || scene.is_none() => {
-                work.push(Work::Alone(Box::new(job)));
+                work.push(Work { path, kind: Kind::Alone(Box::new(job)) });
                 continue;
             }
             first => first.into_iter().chain(jobs).filter_map(|(scene, job)| Some((scene?, job))).collect(),
         };
-        work.push(Work::Scenes(Scenes::new(name, folder, scenes)));
+        work.push(Work { path, kind: Kind::Scenes(Scenes::new(name, folder, scenes)) });
     }
     Ok(work)
 }

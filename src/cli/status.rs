@@ -43,7 +43,7 @@ impl Status {
             // 128 and SIGINT's number, as a shell reports it.
             Self::Interrupted => (
                 130,
-                "interrupted by Ctrl-C; a second Ctrl-C ends the program at once",
+                "interrupted by Ctrl-C, SIGTERM or SIGHUP; a second one ends the program at once",
                 "finished results; the rest is `NaN`",
             ),
         };

@@ -4,6 +4,34 @@ use symdiff::{Expr, Graph, SparseMatrix};
 
 use crate::assemble::System;
 
+/// A row of the closure: what positions have to fulfil.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClosureRow {
+    /// A constraint, by its number.
+    Constraint(usize),
+    /// A condition of the start, by its number among all of them.
+    Condition(usize),
+}
+
+/// An equation of a start or of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Equation {
+    /// Of the motion, by the number of its coordinate.
+    Motion(usize),
+    /// Of the closure.
+    Closure(ClosureRow),
+}
+
+impl Equation {
+    /// Of the rows of a system of n coordinates: the equations of motion, then the constraints.
+    pub fn of_row(row: usize, n: usize) -> Self {
+        match row.checked_sub(n) {
+            None => Self::Motion(row),
+            Some(constraint) => Self::Closure(ClosureRow::Constraint(constraint)),
+        }
+    }
+}
+
 /// M w + Φ_qᵀ λ − Q, n rows, and Φ_q, over the system's symbols.
 pub fn equations_of_motion(system: &System, graph: &mut Graph) -> (Vec<Expr>, SparseMatrix) {
     let n = system.q.len();

@@ -4,24 +4,33 @@
 //! - `scheme`: the integration schemes' coefficients;
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start; `equation_tapes`: the equations alone;
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`), `nearest` what decides where it is
+//!   open; `equation_tapes`: the equations alone;
+//! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 
 mod elimination;
 mod equation_tapes;
 mod equations;
 mod layout;
+mod nearest;
 mod newton_matrix;
 mod program;
 mod scheme;
 mod sparse_lu;
 mod start;
+mod start_equations;
 mod step;
+mod switches;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};
+pub use equations::{ClosureRow, Equation, time_derivative};
 pub use layout::Layout;
+pub use nearest::OpenStart;
 pub use program::{PivotSample, Program, Watched};
 pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
-pub use start::{StartProgram, compile_start};
+pub use start::{StartProgram, compile_nearest_start, compile_start};
+pub use start_equations::Residual;
 pub use step::compile;
+pub use switches::{SwitchProgram, compile_switches};

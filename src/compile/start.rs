@@ -8,10 +8,15 @@
 //!                 [ Φ_q     −ε    ] [δλ] = − [ Φ̈(q, v, w, t)    ]
 //! ```
 //!
+//! Velocities of a motion, which nothing gives, are corrected with M in place of D: by what constraint forces do to them.
+//!
 //! Q_λ is nonzero where friction depends on reactions; the corrections are then Newton's.
 //!
-//! A massless coordinate has no pivot in M. Where a constraint k defines it by others, both sides are augmented: μ
-//! Φ_kᵀ Φ_k is added to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0.
+//! A massless coordinate has no pivot in M. Where a constraint k defines it by massive ones, and its derivative by it cannot vanish (the
+//! angle of a joint), the two are eliminated as a pair, without ε. Where it may vanish, both sides are augmented: μ Φ_kᵀ Φ_k is added
+//! to M and μ Φ_kᵀ Φ̈_k to the equations of motion, which changes nothing where Φ̈ = 0, but couples what k couples.
+//!
+//! Where positions or velocities are left open, D gives way to the least squares of [`super::nearest`].
 //!
 //! For positions and velocities, Φ has further rows: the conditions of the start ([`crate::assemble::StartCondition`]).
 //!
@@ -22,10 +27,12 @@
 
 use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
 
-use super::equations::{equations_of_motion, time_derivative};
+use super::equations::Equation;
 use super::layout::Layout;
+use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
-use crate::assemble::{StartCondition, System};
+use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, Residual, named, residuals};
+use crate::assemble::System;
 
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
@@ -38,14 +45,16 @@ const RELAXATION: f64 = 1e6;
 pub struct StartProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Registers of Φ, m and those of conditions on positions, after [`StartProgram::position`].
-    pub constraint: Vec<usize>,
-    /// Registers of Φ̇, m and those of conditions on velocities, after [`StartProgram::velocity`].
-    pub constraint_rate: Vec<usize>,
+    /// Φ, m, and the conditions on positions, after [`StartProgram::position`].
+    pub constraint: Vec<Residual>,
+    /// Φ̇, m, and the conditions on velocities, after [`StartProgram::velocity`].
+    pub constraint_rate: Vec<Residual>,
     /// Registers of the outputs after [`StartProgram::observe`].
     pub outputs: Vec<usize>,
     /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
     pub jacobian_entries: Vec<(usize, usize, usize)>,
+    /// What is nearest to rest.
+    pub open: OpenStart,
     lowered: Lowered,
 }
 
@@ -56,6 +65,7 @@ const VELOCITY: usize = 3;
 const ACCELERATION: usize = 4;
 const JACOBIAN: usize = 5;
 const OBSERVE: usize = 6;
+const PROJECTION: usize = 7;
 
 impl StartProgram {
     /// Number of registers of a tile.
@@ -98,6 +108,12 @@ impl StartProgram {
         &self.lowered.kernels[ACCELERATION]
     }
 
+    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
+    /// consistent.
+    pub fn projection(&self) -> &Tape {
+        &self.lowered.kernels[PROJECTION]
+    }
+
     /// Outputs of the state.
     pub fn observe(&self) -> &Tape {
         &self.lowered.kernels[OBSERVE]
@@ -116,15 +132,34 @@ type Target = (Expr, Option<u32>);
 /// the start (values of the layout's registers).
 ///
 /// # Errors
-/// Where the equations have no finite values at the sample (rows: motion, constraints, then start conditions), and where
-/// the graph is full.
-pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Result<StartProgram, NoFactors> {
+/// Where the equations have no finite values at the sample, and where the graph is full.
+pub fn compile_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+) -> Result<StartProgram, NoFactors<Equation>> {
+    compile_nearest_start(system, redundant, sample, OpenStart::default())
+}
+
+/// The same where the start is left open: it is then the one nearest to rest.
+///
+/// # Errors
+/// As for [`compile_start`].
+pub fn compile_nearest_start(
+    system: &System,
+    redundant: &[usize],
+    sample: &[f64],
+    open: OpenStart,
+) -> Result<StartProgram, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
-    let mut graph = system.graph.clone();
+    let mut graph = match &system.start.nearest {
+        Some(nearest) if open.is_any() => nearest.graph.as_ref().unwrap_or(&system.graph).clone(),
+        _ => system.graph.clone(),
+    };
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
-    let [position, velocity, acceleration] = builder.corrections(&equations)?;
+    let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
@@ -145,6 +180,7 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
         with(&acceleration, &[]),
         jacobian.entries().map(|(_, _, value)| (value, None)).collect(),
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
+        with(&projection[..n], &[]),
     ];
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
@@ -153,10 +189,11 @@ pub fn compile_start(system: &System, redundant: &[usize], sample: &[f64]) -> Re
     let jacobian_entries =
         jacobian.entries().zip(tail(JACOBIAN, 0)).map(|((row, column, _), register)| (row, column, register)).collect();
     Ok(StartProgram {
-        constraint: tail(POSITION, n),
-        constraint_rate: tail(VELOCITY, n),
+        constraint: residuals(system, OF_POSITION, tail(POSITION, n)),
+        constraint_rate: residuals(system, OF_VELOCITY, tail(VELOCITY, n)),
         outputs: tail(OBSERVE, 0),
         jacobian_entries,
+        open,
         layout,
         lowered,
     })
@@ -173,67 +210,6 @@ fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
     given
 }
 
-/// The equations that hold at the start.
-struct Equations {
-    /// M w + Φ_qᵀ λ − Q.
-    motion: Vec<Expr>,
-    /// Φ_q.
-    jacobian: SparseMatrix,
-    /// Φ, then the conditions on positions; and its derivatives by q.
-    closure: Vec<Expr>,
-    closure_jacobian: SparseMatrix,
-    /// Φ̇, then the rates of the conditions on velocities; and its derivatives by v.
-    closure_rate: Vec<Expr>,
-    closure_rate_jacobian: SparseMatrix,
-    /// Φ̈.
-    rate_of_rate: Vec<Expr>,
-}
-
-/// Conditions on positions.
-const OF_POSITION: Kind = |condition| condition.position;
-/// Conditions on velocities.
-const OF_VELOCITY: Kind = |condition| condition.velocity;
-
-impl Equations {
-    fn new(system: &System, graph: &mut Graph) -> Self {
-        let (motion, jacobian) = equations_of_motion(system, graph);
-        let rate = time_derivative(system, graph, &system.constraint);
-        let rate_of_rate = time_derivative(system, graph, &rate);
-        let (further, closure_jacobian) = with_conditions(system, graph, &jacobian, OF_POSITION);
-        let closure = [&system.constraint[..], &further].concat();
-        let (further, closure_rate_jacobian) = with_conditions(system, graph, &jacobian, OF_VELOCITY);
-        let closure_rate = [rate, time_derivative(system, graph, &further)].concat();
-        Self { motion, jacobian, closure, closure_jacobian, closure_rate, closure_rate_jacobian, rate_of_rate }
-    }
-}
-
-/// Conditions on positions, or those on velocities.
-type Kind = fn(&StartCondition) -> bool;
-
-/// Renumbers the rows of conditions of a kind, which follow the constraints, by their numbers among all conditions.
-fn numbered(system: &System, none: NoFactors, kind: Kind) -> NoFactors {
-    let NoFactors::Singular { rows } = none else { return none };
-    let first = system.q.len() + system.constraint.len();
-    let conditions: Vec<usize> =
-        (0..system.start.conditions.len()).filter(|&place| kind(&system.start.conditions[place])).collect();
-    let row = |row: usize| if row < first { row } else { first + conditions[row - first] };
-    NoFactors::Singular { rows: rows.into_iter().map(row).collect() }
-}
-
-/// The conditions of a kind, and Φ_q with their derivatives below it.
-fn with_conditions(
-    system: &System,
-    graph: &mut Graph,
-    jacobian: &SparseMatrix,
-    kind: Kind,
-) -> (Vec<Expr>, SparseMatrix) {
-    let conditions = system.start.conditions.iter().filter(|condition| kind(condition));
-    let values: Vec<Expr> = conditions.map(|condition| condition.value).collect();
-    let mut all = jacobian.clone();
-    all.rows.extend(graph.jacobian(&values, &system.q).rows);
-    (values, all)
-}
-
 struct Builder<'s> {
     system: &'s System,
     graph: Graph,
@@ -243,39 +219,66 @@ struct Builder<'s> {
 }
 
 impl Builder<'_> {
-    /// The corrections of positions, of velocities, and of accelerations with multipliers.
-    fn corrections(&mut self, equations: &Equations) -> Result<[Vec<Expr>; 3], NoFactors> {
+    /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
+    fn corrections(
+        &mut self,
+        equations: &Equations,
+        open: OpenStart,
+    ) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
-        let metric: Vec<f64> = system.coordinates.iter().map(|coordinate| coordinate.scale.powi(-2)).collect();
-        let diagonal: Vec<(usize, usize, Expr)> =
-            metric.iter().enumerate().map(|(i, &weight)| (i, i, self.graph.constant(weight))).collect();
+        let smallest = LeastSquares::smallest_change(system, &mut self.graph);
+        let positions = open.positions.then(|| LeastSquares::of_positions(system, &mut self.graph));
+        let velocities = open.velocities.then(|| LeastSquares::of_velocities(system, &mut self.graph));
+        let [positions, velocities] = [&positions, &velocities].map(|open| open.as_ref().unwrap_or(&smallest));
         let given = |values: &[Option<Expr>]| values.iter().map(Option::is_some).collect::<Vec<bool>>();
-        let zero = vec![self.graph.constant(0.0); n];
         let none = SparseMatrix::zero(n, system.lambda.len());
         let Equations { closure, closure_jacobian, closure_rate, closure_rate_jacobian, .. } = equations;
         let position = self
-            .correction(&diagonal, &none, closure_jacobian, &given(&system.start.position), &zero, closure)
-            .map_err(|none| numbered(system, none, OF_POSITION))?;
+            .correction(
+                &positions.metric,
+                &none,
+                closure_jacobian,
+                (&given(&system.start.position), &[]),
+                &positions.gradient,
+                closure,
+            )
+            .map_err(|none| named(system, none, OF_POSITION))?;
         let velocity = self
-            .correction(&diagonal, &none, closure_rate_jacobian, &given(&system.start.velocity), &zero, closure_rate)
-            .map_err(|none| numbered(system, none, OF_VELOCITY))?;
+            .correction(
+                &velocities.metric,
+                &none,
+                closure_rate_jacobian,
+                (&given(&system.start.velocity), &[]),
+                &velocities.gradient,
+                closure_rate,
+            )
+            .map_err(|none| named(system, none, OF_VELOCITY))?;
         let by_multiplier = self.graph.jacobian(&system.force, &system.lambda);
         let Equations { jacobian, rate_of_rate, .. } = equations;
-        let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate);
+        let pairs = self.pairs(jacobian);
+        let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
-        let acceleration = self.correction(&mass, &by_multiplier, jacobian, &free, &motion, rate_of_rate)?;
-        Ok([position, velocity, acceleration])
+        let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
+        let acceleration = self
+            .correction(&mass, &by_multiplier, jacobian, (&free, &pairs), &motion, rate_of_rate)
+            .map_err(of_motion)?;
+        let rate = &closure_rate[..system.lambda.len()];
+        let zero = vec![self.graph.constant(0.0); n];
+        let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
+        let projection =
+            self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
+        Ok([position, velocity, acceleration, projection])
     }
 
     /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have
-    /// δ = 0.
+    /// δ = 0. `pairs` are coordinates and the constraints that define them.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
         by_multiplier: &SparseMatrix,
         jacobian: &SparseMatrix,
-        given: &[bool],
+        (given, pairs): (&[bool], &[(usize, usize)]),
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, NoFactors> {
@@ -300,8 +303,10 @@ impl Builder<'_> {
         let mut scale = vec![1.0; n + m];
         for (constraint, size) in sizes.into_iter().enumerate() {
             let relaxed = self.redundant.contains(&constraint);
-            let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
-            matrix.add(&mut self.graph, n + constraint, n + constraint, value);
+            if pairs.iter().all(|&(_, paired)| paired != constraint) {
+                let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
+                matrix.add(&mut self.graph, n + constraint, n + constraint, value);
+            }
             scale[n + constraint] = size.sqrt().recip();
         }
         let numbers = self.numbers(&matrix);
@@ -311,12 +316,46 @@ impl Builder<'_> {
             }
         }
         let stages = Stages::new(self.inputs);
-        let factors =
-            factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, Pivoting::Diagonal { constraints: n })?;
+        let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
+        let pivoting = Pivoting::Diagonal { constraints: n, pairs: &pairs };
+        let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, pivoting)?;
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);
         given.iter().zip(&mut right).filter(|(given, _)| **given).for_each(|(_, value)| *value = zero);
         Ok(factors.solve(&mut self.graph, &right))
+    }
+
+    /// The diagonal of M at the sample.
+    fn masses(&self) -> Vec<f64> {
+        let mut diagonal = vec![0.0; self.system.q.len()];
+        let entries: Vec<Expr> = self.system.mass.iter().map(|&(_, _, value)| value).collect();
+        for (&(row, column, _), value) in self.system.mass.iter().zip(self.at_sample(&entries)) {
+            if row == column {
+                diagonal[row] = value;
+            }
+        }
+        diagonal
+    }
+
+    /// Massless coordinates with the constraints that define them by massive ones, where the derivative by them cannot vanish.
+    fn pairs(&self, jacobian: &SparseMatrix) -> Vec<(usize, usize)> {
+        let diagonal = self.masses();
+        let mut taken = vec![false; diagonal.len()];
+        let mut pairs = Vec::new();
+        for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
+            let mut massless = derivatives.iter().filter(|&&(column, _)| diagonal[column] == 0.0);
+            let (Some(&(column, derivative)), None) = (massless.next(), massless.next()) else { continue };
+            // A joint's coordinate and the constraint that measures it have one name; the derivative is −1 wherever that is closed.
+            let names = (&self.system.constraints[constraint].name, &self.system.coordinates[column].name);
+            let is_measured = names.0 == names.1;
+            let is_number = self.graph.as_constant(derivative).is_some_and(|number| number != 0.0);
+            let may_be_pivot = is_number || is_measured;
+            let is_defined = derivatives.len() > 1 && may_be_pivot && !self.redundant.contains(&constraint);
+            if is_defined && !std::mem::replace(&mut taken[column], true) {
+                pairs.push((column, constraint));
+            }
+        }
+        pairs
     }
 
     /// M and the equations of motion, augmented by the constraints that define massless coordinates. μ gives the defined
@@ -326,16 +365,14 @@ impl Builder<'_> {
         jacobian: &SparseMatrix,
         mut motion: Vec<Expr>,
         rate_of_rate: &[Expr],
+        pairs: &[(usize, usize)],
     ) -> (Vec<(usize, usize, Expr)>, Vec<Expr>) {
         let mut mass = self.system.mass.clone();
-        let mut diagonal = vec![0.0; self.system.q.len()];
-        let entries: Vec<Expr> = mass.iter().map(|&(_, _, value)| value).collect();
-        for (&(row, column, _), value) in mass.iter().zip(self.at_sample(&entries)) {
-            if row == column {
-                diagonal[row] = value;
-            }
-        }
-        for (constraint, derivatives) in jacobian.rows.iter().enumerate() {
+        let diagonal = self.masses();
+        let mut paired = vec![false; jacobian.rows.len()];
+        pairs.iter().for_each(|&(_, constraint)| paired[constraint] = true);
+        for (constraint, derivatives) in jacobian.rows.iter().enumerate().filter(|(constraint, _)| !paired[*constraint])
+        {
             let defines = derivatives.iter().any(|&(column, _)| diagonal[column] == 0.0);
             let weight = derivatives.iter().fold(0.0, |largest: f64, &(column, _)| largest.max(diagonal[column]));
             if !defines || weight == 0.0 {

@@ -3,6 +3,7 @@
 use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where};
 
 use super::elimination::{Elimination, PivotChoice, Version, is_worthwhile};
+use super::equations::Equation;
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::program::{FACTOR, MATRIX, OBSERVE, PivotSample, Program};
@@ -22,12 +23,13 @@ pub fn compile(
     scheme: Scheme,
     redundant: &[usize],
     samples: &[PivotSample; PIVOT_SAMPLES],
-) -> Result<Program, NoFactors> {
+) -> Result<Program, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
-    let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)?;
+    let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)
+        .map_err(|none| none.named(|row| Equation::of_row(row, system.q.len())))?;
     let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);

@@ -50,7 +50,7 @@ impl Axis {
 
     /// The ticks: their places, and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let decimals = (-self.step.log10().floor()).clamp(0.0, 17.0) as usize;
+        let decimals = (-symdiff::math::log10(self.step).floor()).clamp(0.0, 17.0) as usize;
         // Multiples of the step, counted in whole numbers so that no rounding adds up.
         let first = (self.min / self.step - 1e-9).ceil();
         let count = ((self.max / self.step + 1e-9).floor() - first).clamp(0.0, 100.0) as usize;
@@ -80,7 +80,7 @@ fn exponent(size: f64) -> i32 {
     if size == 0.0 || (1e-2..1e4).contains(&size) {
         return 0;
     }
-    let thousands = (size.log10() / 3.0).floor() as i32;
+    let thousands = (symdiff::math::log10(size) / 3.0).floor() as i32;
     (3 * thousands).clamp(*EXPONENTS.start(), *EXPONENTS.end())
 }
 
@@ -91,7 +91,7 @@ fn scaled(x: f64, exponent: i32) -> f64 {
 
 /// The one of 1, 2, 5 times a power of ten that is nearest to `step` in ratio.
 fn round_step(step: f64) -> f64 {
-    let power = 10f64.powf(step.log10().floor());
+    let power = symdiff::math::pow(10.0, symdiff::math::log10(step).floor());
     // Halfway between 1 and 2 is √2, and so on.
     let factor = match step / power {
         x if x < 2f64.sqrt() => 1.0,

@@ -3,6 +3,8 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use serde::{Deserialize, Serialize};
+
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
 use crate::export::{bounds_csv, contributions_csv, contributions_svg, plot_svg};
@@ -12,12 +14,17 @@ use crate::results::Summary;
 /// Writes `bounds.csv`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.
 ///
-/// The files appear when all are written, `summary.json` last: where it exists, the others do. Returns the files written, in
-/// that order.
+/// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files that the summary
+/// of an older run lists and this run does not write are removed. Returns the files written, in that order.
 ///
 /// # Errors
 /// At the first file that cannot be written; older results then stay unchanged.
-pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<Vec<PathBuf>, ExportError> {
+pub fn write_results(
+    dir: &Path,
+    bounds: &Bounds,
+    summary: &Summary,
+    interrupted: bool,
+) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
     if !bounds.contributions.is_empty() {
@@ -35,10 +42,50 @@ pub fn write_results(dir: &Path, bounds: &Bounds, summary: &Summary) -> Result<V
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
-    let mut json = serde_json::to_vec_pretty(summary)?;
+    let owned = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
+    let mut json = serde_json::to_vec_pretty(&Written { summary, interrupted, files: owned })?;
     json.push(b'\n');
-    files.add("summary.json", &json)?;
+    files.add(SUMMARY, &json)?;
+    files.without(Earlier::of(dir).files);
     files.put_in_place()
+}
+
+/// The summary's file.
+const SUMMARY: &str = "summary.json";
+
+/// The summary as it is written.
+#[derive(Serialize)]
+struct Written<'s> {
+    #[serde(flatten)]
+    summary: &'s Summary,
+    /// Whether the run was interrupted before it was done.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    interrupted: bool,
+    /// All files of this run, which the next one replaces.
+    files: Vec<String>,
+}
+
+/// What an older run says of itself.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Earlier {
+    model: String,
+    interrupted: bool,
+    files: Vec<String>,
+}
+
+impl Earlier {
+    /// Nothing where there is no summary that can be read.
+    fn of(dir: &Path) -> Self {
+        let text = std::fs::read(dir.join(SUMMARY)).unwrap_or_default();
+        serde_json::from_slice(&text).unwrap_or_default()
+    }
+}
+
+/// Whether a folder holds the results of a run that was not interrupted.
+pub fn holds_complete_results(dir: &Path) -> bool {
+    let earlier = Earlier::of(dir);
+    !earlier.model.is_empty() && !earlier.interrupted
 }
 
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
@@ -104,6 +151,7 @@ mod tests {
             redundant_constraints: vec![],
             undetermined_outputs: vec![],
             singular_at_start: vec![],
+            shared_start: vec![],
             singular_configurations: vec![],
             alpha: -0.1,
             duration: 1.0,
@@ -132,7 +180,7 @@ mod tests {
         let place = dir.path().join("results/crank");
         let (bounds, summary) = results();
         for _ in 0..2 {
-            let written = write_results(&place, &bounds, &summary).unwrap();
+            let written = write_results(&place, &bounds, &summary, false).unwrap();
             let written: Vec<_> = written.iter().map(|path| path.strip_prefix(&place).unwrap()).collect();
             assert_eq!(written, ["bounds.csv", "x3.svg", "a_b.svg", "A_b-2.svg", "summary.json"].map(Path::new));
         }
@@ -147,7 +195,7 @@ mod tests {
         let place = dir.path().join("taken");
         fs::write(&place, "mine").unwrap();
         let (bounds, summary) = results();
-        let error = write_results(&place, &bounds, &summary).unwrap_err();
+        let error = write_results(&place, &bounds, &summary, false).unwrap_err();
         assert!(matches!(&error, ExportError::Folder { path, .. } if *path == place), "{error}");
         assert!(
             error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
@@ -162,7 +210,7 @@ mod tests {
         // A folder stands where a file should.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();
         let (bounds, summary) = results();
-        let error = write_results(dir.path(), &bounds, &summary).unwrap_err();
+        let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
         assert!(!error.to_string().contains(".mbint-"), "{error}");
@@ -178,7 +226,7 @@ mod tests {
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).unwrap();
         // The superuser may write anywhere: nothing to see then.
         if fs::write(dir.path().join("probe"), "").is_err() {
-            let error = write_results(dir.path(), &bounds, &summary).unwrap_err();
+            let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
             let path = dir.path().display().to_string();
             assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: perm")), "{error}");
         }

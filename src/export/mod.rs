@@ -21,7 +21,7 @@ pub use self::csv::bounds_csv;
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
 pub use error::ExportError;
-pub use files::{file_stem, write_results};
+pub use files::{file_stem, holds_complete_results, write_results};
 pub use folder::prepare_folder;
 pub use overlay::SceneBounds;
 pub use plot::plot_svg;

@@ -169,7 +169,9 @@ fn product(
 
 fn power(base: Kind, exponent: Option<f64>) -> Result<Kind, String> {
     match base {
-        Kind::Number(value) => Ok(Kind::Number(value.zip(exponent).map(|(value, exponent)| value.powf(exponent)))),
+        Kind::Number(value) => {
+            Ok(Kind::Number(value.zip(exponent).map(|(value, exponent)| symdiff::math::pow(value, exponent))))
+        }
         Kind::Any => Ok(Kind::Any),
         Kind::Known { dimension, .. } if dimension.fits(Dimension::NUMBER) => Ok(Kind::Number(None)),
         Kind::Known { dimension, motion } => {

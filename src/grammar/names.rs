@@ -161,6 +161,15 @@ fn joint_motion(table: &impl SymbolTable, joint: &str, member: &str) -> Option<S
 
 fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&str>) -> Option<Symbol> {
     let joint = table.joint(joint)?;
+    let of_axis = match (member, part) {
+        ("axial", None) | ("force", Some("axial")) => Some(ReactionComponent::Axial),
+        ("radial", None) | ("force", Some("radial")) => Some(ReactionComponent::Radial),
+        ("torque", Some("axial")) => Some(ReactionComponent::AxialTorque),
+        _ => None,
+    };
+    if let Some(component) = of_axis {
+        return table.has_axis(joint).then_some(Symbol::Reaction { joint, component });
+    }
     let axis = match part {
         Some(part) => Some(AXES.iter().position(|axis| *axis == part)?),
         None => None,
@@ -235,7 +244,10 @@ pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
         Symbol::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
         Symbol::RollPitchYaw { .. } => Dimension::ANGLE,
         Symbol::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
-        Symbol::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. }
+        Symbol::Reaction {
+            component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_) | ReactionComponent::AxialTorque,
+            ..
+        }
         | Symbol::Energy(_) => Dimension::TORQUE,
         Symbol::Reaction { .. } => Dimension::FORCE,
         Symbol::Sensor { .. } => return Kind::Any,

@@ -177,12 +177,21 @@ fn joint_outputs() -> Vec<OutputDocs> {
         let meaning = format!("reaction force on the second body along the ground's {axis}");
         reaction(&format!("force.{axis}"), &force, &meaning)
     }));
-    let meaning = "reaction torque on the second body about its point: about z in the plane, the magnitude in space";
+    let meaning = "reaction torque on the second body about its point: about z in the plane; in space, of a motor or gear about \
+                   the joint's axis, with its sign, of other joints the magnitude";
     outputs.push(reaction("torque", &torque, meaning));
     outputs.extend(AXES.map(|axis| {
         let meaning =
             format!("reaction torque on the second body about its point, along the ground's {axis}; in space");
         reaction(&format!("torque.{axis}"), &torque, &meaning)
     }));
+    let (axial, radial) = (
+        "reaction force on the second body along the joint's own axis, for a motor, gear or rack along that of what it drives",
+        "reaction force on the second body across that axis: the magnitude, or where the axis is one of the plane the \
+         component along the axis turned by +90°",
+    );
+    outputs.push(reaction("axial", &force, axial));
+    outputs.push(reaction("radial", &force, radial));
+    outputs.push(reaction("torque.axial", &torque, "reaction torque on the second body about that axis"));
     outputs
 }

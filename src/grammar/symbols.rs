@@ -35,6 +35,8 @@ pub trait SymbolTable {
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
     /// Which of a joint's motions friction resists; nothing where friction does not act in it.
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
+    /// Whether a joint has an axis of its own, or drives a joint that has one.
+    fn has_axis(&self, joint: usize) -> bool;
     /// What a joint that is an equation sets equal to something else.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
@@ -199,10 +201,17 @@ pub enum ReactionComponent {
     Force,
     /// Along an axis (0 to 2: x, y, z), N.
     ForceAlong(usize),
-    /// About the second point, N m: in the plane the component about z, in space the magnitude.
+    /// About the second point, N m: in the plane the component about z; in space that about its axis where the joint has a
+    /// torque about its axis alone, else the magnitude.
     Torque,
     /// About an axis (0 to 2: x, y, z) through the second point, N m.
     TorqueAbout(usize),
+    /// Force along the joint's own axis, N.
+    Axial,
+    /// Force across the joint's own axis, N: the magnitude; along a direction of the plane, with a sign.
+    Radial,
+    /// Torque about the joint's own axis, N m.
+    AxialTorque,
 }
 
 /// Which energy.

@@ -33,9 +33,15 @@ impl Unit {
     /// # Errors
     /// What is wrong, and where in the text.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
-        let mut parser = UnitParser { text, position: 0, depth: 0 };
+        let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false };
         let unit = parser.product()?;
         match parser.peek() {
+            // A frequency: of what, is not said.
+            None if unit.dimension == Dimension::NUMBER.per(Dimension::TIME) && parser.minutes => Err(UnitError {
+                message: format!("`{}` may be revolutions or radians", suggest::clip(text.trim())),
+                span: 0..text.len(),
+                help: Some("write `rpm` for revolutions, `rad/min` for radians a minute".to_owned()),
+            }),
             None => Ok(unit),
             Some(_) => Err(parser.unexpected()),
         }
@@ -65,7 +71,7 @@ pub struct UnitError {
 }
 
 /// Name, and what one of it is in SI: a product and a divisor.
-const UNITS: [(&str, f64, f64, Dimension); 53] = [
+const UNITS: [(&str, f64, f64, Dimension); 63] = [
     ("m", 1.0, 1.0, Dimension::LENGTH),
     ("km", 1e3, 1.0, Dimension::LENGTH),
     ("dm", 1.0, 10.0, Dimension::LENGTH),
@@ -77,6 +83,10 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("nm", 1.0, 1e9, Dimension::LENGTH),
     ("in", 0.0254, 1.0, Dimension::LENGTH),
     ("ft", 0.3048, 1.0, Dimension::LENGTH),
+    ("mil", 0.0254, 1e3, Dimension::LENGTH),
+    ("thou", 0.0254, 1e3, Dimension::LENGTH),
+    ("l", 1.0, 1e3, Dimension::VOLUME),
+    ("L", 1.0, 1e3, Dimension::VOLUME),
     ("kg", 1.0, 1.0, Dimension::MASS),
     ("g", 1.0, 1e3, Dimension::MASS),
     ("mg", 1.0, 1e6, Dimension::MASS),
@@ -93,6 +103,8 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("deg", PI, 180.0, Dimension::ANGLE),
     ("°", PI, 180.0, Dimension::ANGLE),
     ("rev", 2.0 * PI, 1.0, Dimension::ANGLE),
+    ("arcmin", PI, 10_800.0, Dimension::ANGLE),
+    ("arcsec", PI, 648_000.0, Dimension::ANGLE),
     ("rpm", 2.0 * PI, 60.0, Dimension::ANGULAR_VELOCITY),
     ("N", 1.0, 1.0, Dimension::FORCE),
     ("mN", 1.0, 1e3, Dimension::FORCE),
@@ -100,6 +112,7 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("kN", 1e3, 1.0, Dimension::FORCE),
     ("MN", 1e6, 1.0, Dimension::FORCE),
     ("lbf", 4.448_221_615_260_5, 1.0, Dimension::FORCE),
+    ("kgf", 9.806_65, 1.0, Dimension::FORCE),
     ("Nm", 1.0, 1.0, Dimension::TORQUE),
     ("Nmm", 1.0, 1e3, Dimension::TORQUE),
     ("kNm", 1e3, 1.0, Dimension::TORQUE),
@@ -111,6 +124,8 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("mW", 1.0, 1e3, Dimension::POWER),
     ("kW", 1e3, 1.0, Dimension::POWER),
     ("MW", 1e6, 1.0, Dimension::POWER),
+    // 550 ft·lbf/s.
+    ("hp", 550.0 * 0.3048 * 4.448_221_615_260_5, 1.0, Dimension::POWER),
     ("Pa", 1.0, 1.0, Dimension::PRESSURE),
     ("hPa", 100.0, 1.0, Dimension::PRESSURE),
     ("kPa", 1e3, 1.0, Dimension::PRESSURE),
@@ -118,6 +133,9 @@ const UNITS: [(&str, f64, f64, Dimension); 53] = [
     ("GPa", 1e9, 1.0, Dimension::PRESSURE),
     ("bar", 1e5, 1.0, Dimension::PRESSURE),
     ("mbar", 100.0, 1.0, Dimension::PRESSURE),
+    // lbf/in².
+    ("psi", 4.448_221_615_260_5, 0.000_645_16, Dimension::PRESSURE),
+    ("ppm", 1.0, 1e6, Dimension::NUMBER),
     ("1", 1.0, 1.0, Dimension::NUMBER),
 ];
 
@@ -130,6 +148,8 @@ struct UnitParser<'t> {
     text: &'t str,
     position: usize,
     depth: usize,
+    /// Whether minutes or hours are part of the unit.
+    minutes: bool,
 }
 
 impl UnitParser<'_> {
@@ -221,6 +241,7 @@ impl UnitParser<'_> {
         let name = &rest[..length];
         let span = self.position..self.position + length;
         self.position += length;
+        self.minutes |= matches!(name, "min" | "h");
         if let Some((_, times, over, dimension)) = UNITS.iter().find(|(known, ..)| *known == name) {
             return Ok(Unit { times: *times, over: *over, dimension: *dimension });
         }
@@ -287,6 +308,40 @@ mod tests {
         assert_eq!(si(3.0, "1/s"), (3.0, "1/s".into()));
         assert_eq!(si(1.0, "N*m/rad").1, "N*m/rad");
         assert_eq!(si(1.0, "m^3/s").1, "m^3/s");
+    }
+
+    /// By their definitions: NIST SP 811, appendix B.
+    #[test]
+    fn units_of_the_trade_are_exact() {
+        let close = |unit: &str, value: f64| {
+            let found = si(1.0, unit).0;
+            assert!((found - value).abs() <= 4.0 * f64::EPSILON * value, "{unit}: {found:e}, not {value:e}");
+        };
+        close("psi", 6_894.757_293_168_361);
+        close("hp", 745.699_871_582_270_2);
+        close("kgf", 9.806_65);
+        close("lbf", 4.448_221_615_260_5);
+        close("ft*lbf", 1.355_817_948_331_400_4);
+        close("ft·lbf", 1.355_817_948_331_400_4);
+        close("arcmin", PI / 180.0 / 60.0);
+        close("arcsec", PI / 180.0 / 3600.0);
+        close("l/min", 1e-3 / 60.0);
+        close("ppm", 1e-6);
+        close("mil", 25.4e-6);
+        close("thou", 25.4e-6);
+        assert_eq!(si(1.0, "l/min").1, "m^3/s");
+        assert_eq!(si(1.0, "ft*lbf").1, "N*m");
+    }
+
+    #[test]
+    fn a_number_a_minute_is_refused() {
+        for unit in ["1/min", "min^-1", "1 / min", "1/h"] {
+            let error = Unit::parse(unit).unwrap_err();
+            assert!(error.help.unwrap().contains("`rpm`"), "{unit}");
+        }
+        for unit in ["rev/min", "rad/min", "1/s", "l/min", "m/min", "deg/min"] {
+            assert!(Unit::parse(unit).is_ok(), "{unit}");
+        }
     }
 
     #[test]

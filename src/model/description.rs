@@ -1,6 +1,7 @@
 //! The typed model: what a file says, checked, with every name resolved and every number in SI units.
 
 mod body;
+mod index;
 mod robot;
 mod simulation;
 mod start;
@@ -11,6 +12,7 @@ use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
 use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
+use index::NameIndex;
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, Simulation, Stepping};
 pub use start::StartValue;
@@ -49,6 +51,16 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+    /// Where parameters, bodies and joints are by name.
+    pub places: Places,
+}
+
+/// Where what has a name is.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    pub(crate) parameters: NameIndex,
+    pub(crate) bodies: NameIndex,
+    pub(crate) joints: NameIndex,
 }
 
 /// In how many dimensions a mechanism moves.
@@ -150,6 +162,7 @@ impl Description {
                 formulation: Formulation::Auto,
             },
             bounds: BoundsRequest::default(),
+            places: Places::default(),
         }
     }
 

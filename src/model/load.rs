@@ -9,11 +9,12 @@ use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text};
 use super::urdf::{self, Urdf};
-use super::{bodies, bounds, effects, joints, parameters, requests, space, tables};
+use super::{bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
+use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{self, Entry, Node};
@@ -91,7 +92,7 @@ pub fn load_str(name: &str, text: &str, overrides: &[Override]) -> Result<Descri
 
 /// A path as it is shown: on one line, and saying nothing to the terminal.
 pub fn shown(path: &Path) -> String {
-    path.display().to_string().replace(char::is_control, "\u{fffd}")
+    harmless(&path.display().to_string()).replace(['\n', '\t'], "\u{fffd}")
 }
 
 /// Like [`load`], with the warnings of a model that can be used.
@@ -227,12 +228,14 @@ fn describe(
     effects::read(&mut reader, effect_entries);
     reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
     reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
-    requests::outputs(&mut reader, output_entries);
     let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
     match &robot {
         Some(robot) => robot.finish(&mut reader, &variant.robot, limits, output_entries.is_empty()),
         None => no_limits(&mut reader, limits),
     }
+    // A robot's own effects have names, too.
+    requests::outputs(&mut reader, output_entries);
+    teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     if let Some(node) = reader.required(&fields, "simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }

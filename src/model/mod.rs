@@ -21,6 +21,7 @@ mod requests;
 mod scenes;
 mod space;
 mod tables;
+mod teeth;
 #[cfg(test)]
 mod tests;
 mod text_file;

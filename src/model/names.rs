@@ -42,6 +42,21 @@ impl SymbolTable for Description {
         self.joints.iter().map(|joint| joint.name.as_str())
     }
 
+    fn parameter(&self, name: &str) -> Option<usize> {
+        let list = &self.parameters;
+        self.places.parameters.find(name, list.len(), |place| &list[place].name)
+    }
+
+    fn body(&self, name: &str) -> Option<usize> {
+        let list = &self.bodies;
+        self.places.bodies.find(name, list.len(), |place| &list[place].name)
+    }
+
+    fn joint(&self, name: &str) -> Option<usize> {
+        let list = &self.joints;
+        self.places.joints.find(name, list.len(), |place| &list[place].name)
+    }
+
     fn effects(&self) -> usize {
         self.effects.len()
     }
@@ -68,6 +83,13 @@ impl SymbolTable for Description {
 
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool {
         self.joints[joint].kind.axis_of(coordinate).is_some()
+    }
+
+    fn has_axis(&self, joint: usize) -> bool {
+        let kind = &self.joints[joint].kind;
+        let own = [JointCoordinate::Angle, JointCoordinate::Displacement];
+        let drives = || kind.coordinates(joint).iter().any(|on| self.has_coordinate(on.joint, on.coordinate));
+        own.into_iter().any(|coordinate| self.has_coordinate(joint, coordinate)) || kind.between().is_none() && drives()
     }
 
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode> {

@@ -152,9 +152,10 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
     let [(symdiff::formula::Term::Name(name), _)] = formula.terms() else { return None };
     match reader.model.symbol(name)? {
         Symbol::Energy(_) => Some("J".to_owned()),
-        Symbol::Reaction { component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_), .. } => {
-            Some("N*m".to_owned())
-        }
+        Symbol::Reaction {
+            component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_) | ReactionComponent::AxialTorque,
+            ..
+        } => Some("N*m".to_owned()),
         Symbol::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
         _ => None,
     }

@@ -141,7 +141,8 @@ impl ExtremaGrid {
         for (&n, &count) in orders.iter().zip(intervals) {
             phases = phases.iter().flat_map(|&phase| (0..=n).map(move |j| phase + j as f64 * spacing(count))).collect();
         }
-        let factors = orders.iter().zip(intervals).map(|(&n, &count)| 1.0 / (n as f64 * spacing(count)).cos());
+        let factors =
+            orders.iter().zip(intervals).map(|(&n, &count)| 1.0 / symdiff::math::cos(n as f64 * spacing(count)));
         let operations: usize = orders.iter().map(|n| n + 4).sum();
         Self {
             leading: Separable::new(axes),

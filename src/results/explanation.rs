@@ -24,6 +24,9 @@ pub struct Explanation {
     pub redundant_constraints: Vec<String>,
     /// Names of constraints that depend on others at the start only: it is a singular configuration.
     pub singular_at_start: Vec<String>,
+    /// Coordinates that share what the model leaves open of the start.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shared_start: Vec<String>,
     /// Outputs that hang on reactions which equilibrium does not determine.
     pub undetermined_outputs: Vec<String>,
     /// Uncertain parameters; the others were folded into the instructions as numbers.

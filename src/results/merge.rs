@@ -50,6 +50,7 @@ impl Summary {
             whole.redundant_constraints.extend(other.redundant_constraints);
             whole.undetermined_outputs.extend(other.undetermined_outputs);
             whole.singular_at_start.extend(other.singular_at_start);
+            whole.shared_start.extend(other.shared_start);
             whole.singular_configurations.extend(other.singular_configurations);
             whole.add_methods(&other.methods);
             whole
@@ -208,6 +209,7 @@ impl Explanation {
         self.degrees_of_freedom += other.degrees_of_freedom;
         self.redundant_constraints.extend(other.redundant_constraints);
         self.singular_at_start.extend(other.singular_at_start);
+        self.shared_start.extend(other.shared_start);
         self.undetermined_outputs.extend(other.undetermined_outputs);
         for parameter in other.parameters {
             if !self.parameters.contains(&parameter) {

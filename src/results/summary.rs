@@ -26,6 +26,9 @@ pub struct Summary {
     /// Names of constraints that others imply at the start only.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_at_start: Vec<String>,
+    /// Coordinates that share what the model leaves open of the start.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shared_start: Vec<String>,
     /// Singular configurations that the nominal motion passes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub singular_configurations: Vec<SingularSummary>,

@@ -79,11 +79,8 @@ impl<'s> Closure<'s> {
         system.start.conditions.clear();
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
             .map_err(|none| no_factors(&simulator.system, &none))?;
-        let outputs: Vec<symdiff::Expr> = system.outputs.iter().map(|output| output.expr).collect();
-        let used = system.graph.symbols_of(&outputs);
-        let velocities = system.v.iter().any(|symbol| used.binary_search(symbol).is_ok());
         let accelerations = system.observes_accelerations();
-        let needs = (accelerations || velocities, accelerations);
+        let needs = (accelerations || system.observes_velocities(), accelerations);
         Ok(Self { simulator, independent, program, needs })
     }
 
@@ -148,8 +145,8 @@ impl<'s> Closure<'s> {
     fn closed(&self, assembly: &Assembly) -> Vec<bool> {
         let allowed = allowed_residual(&self.simulator.program.scale);
         let mut closed = vec![true; WIDTH];
-        for &register in &self.program.constraint {
-            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(register)) {
+        for residual in &self.program.constraint {
+            for (closed, gap) in closed.iter_mut().zip(assembly.tile().lane(residual.register)) {
                 *closed &= gap.abs() <= allowed;
             }
         }

@@ -1,8 +1,8 @@
 //! Reasons why a mechanism cannot be simulated, in words for the user.
 
 use super::start::ConstraintResidual;
-use crate::assemble::{ConstraintInfo, ResidualUnit, StartCondition, System};
-use crate::compile::NoFactors;
+use crate::assemble::{ConstraintInfo, ResidualUnit, System};
+use crate::compile::{ClosureRow, Equation, NoFactors};
 
 /// Parameters of a sample: name and value in SI units.
 pub type NamedValues = Vec<(String, f64)>;
@@ -29,6 +29,16 @@ pub enum SimulationError {
     Singular {
         /// Names of the equations without a pivot.
         equations: Vec<String>,
+    },
+    /// A term of the equations has no finite value.
+    #[error("{term} is not a finite number at t = {time} s ({})", parameter_list(parameters))]
+    NotFinite {
+        /// The term, and where it stands.
+        term: String,
+        /// s
+        time: f64,
+        /// The sample.
+        parameters: NamedValues,
     },
     /// The program would have more operations than allowed.
     #[error("the equations take too many operations")]
@@ -123,23 +133,23 @@ fn assembly_message(
     }
 }
 
-/// Names of a step's equations: equations of motion, then constraints, then conditions of the start.
-pub(super) fn equation_names(system: &System, equations: &[usize]) -> Vec<String> {
-    let n = system.q.len();
-    let name = |&equation: &usize| match equation.checked_sub(n) {
-        None => format!("motion of {}", system.coordinates[equation].name),
-        Some(row) => match row.checked_sub(system.constraints.len()) {
-            None => system.constraints[row].name.clone(),
-            Some(condition) => format!("start of {}", system.start.conditions[condition].info.name),
-        },
-    };
-    equations.iter().map(name).collect()
+/// An equation's name.
+pub(super) fn equation_name(system: &System, equation: Equation) -> String {
+    match equation {
+        Equation::Motion(coordinate) => format!("motion of {}", system.coordinates[coordinate].name),
+        Equation::Closure(ClosureRow::Constraint(constraint)) => system.constraints[constraint].name.clone(),
+        Equation::Closure(ClosureRow::Condition(condition)) => {
+            format!("start of {}", system.start.conditions[condition].info.name)
+        }
+    }
 }
 
 /// Why a matrix of this system has no factors.
-pub(super) fn no_factors(system: &System, none: &NoFactors) -> SimulationError {
+pub(super) fn no_factors(system: &System, none: &NoFactors<Equation>) -> SimulationError {
     match none {
-        NoFactors::Singular { rows } => SimulationError::Singular { equations: equation_names(system, rows) },
+        NoFactors::Singular { rows } => {
+            SimulationError::Singular { equations: rows.iter().map(|&row| equation_name(system, row)).collect() }
+        }
         NoFactors::TooLong => SimulationError::TooLong,
     }
 }
@@ -147,18 +157,13 @@ pub(super) fn no_factors(system: &System, none: &NoFactors) -> SimulationError {
 /// Why a sample with these parameters cannot be assembled.
 pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parameters: &[f64]) -> SimulationError {
     let names = system.parameters.iter().map(|parameter| parameter.name.clone());
-    let (owner, info) = match worst.constraint.checked_sub(system.constraints.len()) {
-        None => {
-            let info = &system.constraints[worst.constraint];
+    let (owner, info) = match worst.row {
+        ClosureRow::Constraint(constraint) => {
+            let info = &system.constraints[constraint];
             (format!("joint `{}`", info.joint), info)
         }
-        Some(place) => {
-            let of_kind = |condition: &&StartCondition| {
-                if worst.of_velocities { condition.velocity } else { condition.position }
-            };
-            let info = system.start.conditions.iter().filter(of_kind).nth(place).map(|condition| &condition.info);
-            // Rows of a residual beyond the constraints are those of the conditions of its kind.
-            let info = info.expect("a residual belongs to a row");
+        ClosureRow::Condition(condition) => {
+            let info = &system.start.conditions[condition].info;
             let (how, names) = match worst.of_velocities {
                 false => ("straight", "x, y and angle"),
                 true => ("as a rigid body", "vx, vy and angular_velocity"),
@@ -191,7 +196,7 @@ pub(super) fn residual_text(residual: f64, constraint: &ConstraintInfo, of_veloc
 
 /// A positive number in so many significant digits, without trailing zeros.
 fn significant(value: f64, digits: i32) -> String {
-    let before_point = value.log10().floor() as i32 + 1;
+    let before_point = symdiff::math::log10(value).floor() as i32 + 1;
     let decimals = (digits - before_point).max(0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

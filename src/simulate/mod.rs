@@ -20,10 +20,10 @@ mod start;
 mod step;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use control::{Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use control::{Controller, Schedule, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
 pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
 pub use error::SimulationError;
-pub use simulator::Simulator;
+pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};

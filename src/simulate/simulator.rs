@@ -1,18 +1,96 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
+use std::sync::OnceLock;
+
 use symdiff::{Tile, WIDTHS};
 
-use super::diagnostics::undetermined_outputs;
-use super::error::{SimulationError, assembly_error, equation_names, no_factors};
-use super::start::{Assembly, ConstraintResidual, Mobility, guess_state, mobility, pivot_samples};
+use super::diagnostics::{not_finite, undetermined_outputs};
+use super::error::{SimulationError, assembly_error, equation_name, no_factors};
+use super::start::{
+    Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
+};
 use crate::assemble::System;
-use crate::compile::{Layout, NoFactors, Program, Scheme, StartProgram, compile, compile_start};
+use crate::compile::{
+    Equation, Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
+    compile_start, compile_switches,
+};
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
 
 /// Steps from the nominal parameters to those of a sample that is far from them.
 const CONTINUATION_STEPS: usize = 16;
+
+/// A mechanism that is assembled at its nominal parameters.
+#[derive(Clone, Debug)]
+pub struct Assembled {
+    /// The equations.
+    pub system: System,
+    /// Tapes for the start.
+    pub start: StartProgram,
+    /// The nominal start: values of the layout's registers.
+    pub nominal: Vec<f64>,
+    /// Degrees of freedom and redundant constraints.
+    pub mobility: Mobility,
+    /// Outputs that depend on reactions which equilibrium does not determine.
+    pub undetermined: Vec<usize>,
+    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    pub shared: Vec<String>,
+}
+
+impl Assembled {
+    /// Assembles for steps of `h`, with a limit on the number of operations that the start may take. The system keeps the limit.
+    ///
+    /// # Errors
+    /// Where no consistent start exists, the equations are singular there, or the limit is exceeded.
+    pub fn within(
+        mut system: System,
+        scheme: Scheme,
+        h: f64,
+        operations: Option<usize>,
+    ) -> Result<Self, SimulationError> {
+        system.graph.limit(operations.map(|operations| system.graph.len() + operations));
+        let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
+        let guess = guess_state(&system, &layout, &parameters);
+        let no_number = |state: &[f64]| {
+            let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+            let named = || names.zip(parameters.iter().copied()).collect();
+            let term = not_finite(&system, &layout, state, 0.0)?;
+            Some(SimulationError::NotFinite { term, time: 0.0, parameters: named() })
+        };
+        let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
+        let assembled = |start: &StartProgram| {
+            let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
+            assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;
+            assembly.shift_accelerations(scheme.coefficients().shift() * h);
+            Ok(assembly.tile().values()[..layout.registers()].to_vec())
+        };
+        let mut start = compile_start(&system, &[], &guess).map_err(singular)?;
+        let mut nominal = assembled(&start)?;
+        let mobility = mobility(&system, &start, &nominal);
+        if !mobility.redundant.is_empty() {
+            start = compile_start(&system, &mobility.redundant, &guess).map_err(singular)?;
+            nominal = assembled(&start)?;
+        }
+        if let Some(error) = no_number(&nominal) {
+            return Err(error);
+        }
+        let open = open_start(&system, &start, &nominal);
+        if open.is_any() {
+            let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open).map_err(singular)?;
+            let mut assembly = Assembly::new(&nearest, &system, 1, |parameter, _| parameters[parameter]);
+            if assembly.assemble_nearest(&nominal).is_ok() {
+                assembly.shift_accelerations(scheme.coefficients().shift() * h);
+                nominal = assembly.tile().values()[..layout.registers()].to_vec();
+                start = nearest;
+            }
+        }
+        let shared = shared_coordinates(&system, &start, &nominal);
+        let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
+        Ok(Self { system, start, nominal, mobility, undetermined, shared })
+    }
+}
 
 /// A mechanism that can be simulated.
 #[derive(Clone, Debug)]
@@ -29,6 +107,10 @@ pub struct Simulator {
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
     pub undetermined: Vec<usize>,
+    /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
+    pub shared: Vec<String>,
+    /// Compiled where steps are controlled.
+    switches: OnceLock<Option<SwitchProgram>>,
 }
 
 impl Simulator {
@@ -44,35 +126,14 @@ impl Simulator {
     ///
     /// # Errors
     /// Also where the limit is exceeded.
-    pub fn within(
-        mut system: System,
-        scheme: Scheme,
-        h: f64,
-        operations: Option<usize>,
-    ) -> Result<Self, SimulationError> {
-        system.graph.limit(operations.map(|operations| system.graph.len() + operations));
-        let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
-        let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
-        let singular = |none: NoFactors| no_factors(&system, &none);
-        let guess = guess_state(&system, &layout, &parameters);
-        let assembled = |start: &StartProgram| {
-            let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
-            assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;
-            assembly.shift_accelerations(scheme.coefficients().shift() * h);
-            Ok(assembly.tile().values()[..layout.registers()].to_vec())
-        };
-        let mut start = compile_start(&system, &[], &guess).map_err(singular)?;
-        let mut nominal = assembled(&start)?;
-        let mobility = mobility(&system, &start, &nominal);
-        if !mobility.redundant.is_empty() {
-            start = compile_start(&system, &mobility.redundant, &guess).map_err(singular)?;
-            nominal = assembled(&start)?;
-        }
-        let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
-        let samples = pivot_samples(&system, &layout, &nominal, h);
-        let program = compile(&system, scheme, &mobility.redundant, &samples).map_err(singular)?;
+    pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
+        let Assembled { mut system, start, nominal, mobility, undetermined, shared } =
+            Assembled::within(system, scheme, h, operations)?;
+        let samples = pivot_samples(&system, &start.layout, &nominal, h);
+        let program = compile(&system, scheme, &mobility.redundant, &samples);
+        let program = program.map_err(|none| no_factors(&system, &none))?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined })
+        Ok(Self { system, start, program, nominal, mobility, undetermined, shared, switches: OnceLock::new() })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -148,8 +209,18 @@ impl Simulator {
         !self.system.lambda.is_empty() && self.system.observes_accelerations()
     }
 
+    /// Whether rows of output make their velocities consistent where steps are controlled.
+    pub(super) fn projects_row_velocities(&self) -> bool {
+        !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// Where the equations switch, if they do.
+    pub(super) fn switches(&self) -> Option<&SwitchProgram> {
+        self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
+    }
+
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
     pub fn equation_name(&self, equation: usize) -> String {
-        equation_names(&self.system, &[equation]).remove(0)
+        equation_name(&self.system, Equation::of_row(equation, self.system.q.len()))
     }
 }

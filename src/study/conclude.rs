@@ -1,13 +1,15 @@
 //! From what methods found under one schedule to bounds and a summary.
 
-use super::single::{Outcome, Ran, Results, Study};
+use super::internal::{InternalError, caught};
+use super::outcome::{Outcome, Ran, Results};
+use super::single::Study;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::{BandError, time_error, time_error_certified};
 use crate::results::{
     Band, Bounds, Contribution, ContributionSummary, ErrorSummary, MethodSummary, OutputBounds, ParameterSummary,
     SingularSummary, Summary,
 };
-use crate::simulate::{OpenConstraint, SimulationError};
+use crate::simulate::{EnsembleRun, Observed, OpenConstraint, Schedule, SimulationError};
 
 /// Said of results that the user did not wait for.
 const INTERRUPTED: &str =
@@ -35,8 +37,13 @@ impl Study<'_> {
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
         let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
-        let stopped = stop.map(|(stop, sample)| failure(study, &stop, &sample));
-        let failure = stopped.or(note).or_else(interrupted).or_else(notes);
+        let stopped = stop.map(|(stop, sample)| {
+            caught("a message", || failure(study, &results.schedule, &stop, &sample))
+                .unwrap_or_else(|error| error.to_string())
+        });
+        let internal = results.internal.iter().map(InternalError::to_string);
+        let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
+        let failure = (!failures.is_empty()).then(|| failures.join("; "));
         let whole = results.whole().min(rows);
         let summary = summary(study, results, &bounds, failure);
         Ran { bounds, summary, whole }
@@ -98,8 +105,8 @@ fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Ba
 }
 
 /// What happened where a sample stopped, for people.
-fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
-    let parameters = study.simulator.with_names(sample);
+fn failure(study: &Study, schedule: &Schedule, stop: &Stop, values: &[f64]) -> String {
+    let parameters = study.simulator.with_names(values);
     let Stop { sample, time, cause, .. } = *stop;
     match cause {
         StopCause::SingularJet => {
@@ -110,6 +117,10 @@ fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
             format!("{locked}; results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {
+            if let Some(term) = no_number(study, schedule, stop.row, values) {
+                let failed = SimulationError::NotFinite { term, time, parameters };
+                return format!("{failed}; results up to that time are kept");
+            }
             let equation = study.simulator.equation_name(equation);
             let failed = SimulationError::NotConverged { sample, time, equation, parameters };
             format!(
@@ -117,6 +128,13 @@ fn failure(study: &Study, stop: &Stop, sample: &[f64]) -> String {
             )
         }
     }
+}
+
+/// The term that is no finite number where a sample stops, if there is one: the sample runs once more, alone.
+fn no_number(study: &Study, schedule: &Schedule, row: usize, sample: &[f64]) -> Option<String> {
+    let mut run = EnsembleRun::start(&study.simulator, &[sample.to_vec()], schedule.first_step()).ok()?;
+    let stops = run.advance(schedule, 0..row + 1, None, Observed::Outputs, &mut Vec::new());
+    run.not_finite(stops.first()?)
 }
 
 fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
@@ -134,6 +152,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         redundant_constraints: names(&mobility.redundant),
         undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         singular_at_start: names(&mobility.singular_at_start),
+        shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,

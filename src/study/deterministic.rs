@@ -4,18 +4,19 @@
 use std::time::Instant;
 
 use super::ensemble::Progress;
-use super::single::{Outcome, Results, Study, simulation_error, timed, validation_summary};
+use super::outcome::{Outcome, Results};
+use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Method, MethodResult, Simulated, Validation};
 use crate::numerics::Range;
-use crate::simulate::{Schedule, SimulationError};
+use crate::simulate::{Controller, Schedule, SimulationError};
 
 impl Study<'_> {
     /// Every sampled method's bounds are the nominal motion.
     pub(super) fn deterministic(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
         let mut steps = StepSearch::new(schedule);
@@ -31,13 +32,14 @@ impl Study<'_> {
                 validation: None,
                 methods: Vec::new(),
                 halved: Vec::new(),
+                internal: Vec::new(),
             };
             if self.request.is_empty() {
                 return Ok(results);
             }
             let begun = Instant::now();
             let nominal = &results.nominal.result;
-            let finer = self.motions(&halved, None, &progress);
+            let finer = self.motions(&halved, tolerance.map(|tolerance| tolerance.for_parts(2)), &progress);
             let validation = Validation::of_nominal(&motions, &finer, (&nominal.bands, nominal.reached))
                 .map_err(simulation_error)?;
             if let Some(allowed) = self.request.tolerance
@@ -51,7 +53,9 @@ impl Study<'_> {
                 if method.about().is_sampled {
                     results.methods.push((method, same(&schedule, &results.nominal.result, method)?));
                 } else {
-                    results.methods.extend(self.bound(&motions, &schedule, &validation, |wanted| wanted == method)?);
+                    let of_method = |wanted| wanted == method;
+                    let found = self.bound(&motions, &schedule, &validation, &mut results.internal, of_method)?;
+                    results.methods.extend(found);
                 }
             }
             results.validation = Some((validation, summary));

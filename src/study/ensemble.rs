@@ -12,8 +12,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range};
 use crate::simulate::{
-    Certifier, Closure, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint, Points,
-    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
+    Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -51,9 +51,11 @@ pub(super) struct Motions<'a> {
     domain: &'a ParameterBox,
     schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
-    tolerance: Option<f64>,
+    tolerance: Option<Controller>,
     progress: &'a Progress<'a>,
     interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Simulations that are over: at the end, or where they stopped.
+    over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
 }
@@ -64,11 +66,17 @@ impl<'a> Motions<'a> {
         simulator: &'a Simulator,
         domain: &'a ParameterBox,
         schedule: &'a Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &'a Progress<'a>,
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, certifier: OnceLock::new() }
+        let over = AtomicUsize::new(0);
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier: OnceLock::new() }
+    }
+
+    /// Simulations that are over: at the end, or where they stopped.
+    pub fn over(&self) -> usize {
+        self.over.load(Ordering::Relaxed)
     }
 
     /// The nominal motion as bands without width, and the singular configurations that it passes. It is run to its end even
@@ -118,6 +126,9 @@ impl<'a> Motions<'a> {
             reduce(rows.clone(), &values);
             self.progress.advance(samples.len() * rows.len());
             next = rows.end;
+        }
+        if next == self.schedule.rows || !goes_on(&stop) {
+            self.over.fetch_add(samples.len(), Ordering::Relaxed);
         }
         let reached = match &stop {
             Some(stop) if until == Until::FirstStop => stop.row,
@@ -201,6 +212,9 @@ impl Ensemble for Motions<'_> {
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
         let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
+        if self.tolerance.is_some() {
+            jet = jet.controlled();
+        }
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
@@ -210,6 +224,9 @@ impl Ensemble for Motions<'_> {
             reduce(rows.clone(), &values);
             self.progress.advance(JET_WORK * (space.monomials().order() + 1) * rows.len());
             next = rows.end;
+        }
+        if next == self.schedule.rows || stop.is_some() {
+            self.over.fetch_add(1, Ordering::Relaxed);
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
         let stop = stop.map(|stop| (stopped_at(&stop), center));

@@ -1,9 +1,9 @@
 //! `mbint explain`: what a model is compiled to.
 
+use super::RunError;
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::subsystems::{Prepared, prepare};
-use super::{RunError, prepare_whole};
 use crate::compile::Program;
 use crate::model::Description;
 use crate::reduce::Choices;
@@ -46,14 +46,6 @@ fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
     (0..uncertain.len()).filter(|number| !reached(number)).collect()
 }
 
-/// What a whole model is compiled to, with the parts on which no output depends, and nothing merged.
-///
-/// # Errors
-/// Where it cannot be built or assembled.
-pub fn explain_whole(description: &Description) -> Result<Explanation, RunError> {
-    Ok(of_simulator(&description.name, &prepare_whole(description)?))
-}
-
 /// What one subsystem is compiled to.
 fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
     let (system, program) = (&simulator.system, &simulator.program);
@@ -70,6 +62,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,
         redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+        shared_start: simulator.shared.clone(),
         singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
         undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
         parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),

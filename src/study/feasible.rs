@@ -8,7 +8,8 @@
 use std::fmt;
 
 use super::RunError;
-use super::single::{Ran, Study, Tried};
+use super::outcome::{Ran, Tried};
+use super::single::Study;
 use crate::numerics::{ParameterBox, Range, spread, validation};
 use crate::results::{self, Bounds, ErrorSummary, PieceSummary, Summary};
 use crate::simulate::SimulationError;

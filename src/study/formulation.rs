@@ -6,9 +6,9 @@
 //! joints close loops, absolute coordinates are kept: joint ones may be shorter there too, but lose their way where a loop
 //! passes a position in which it can branch off (a flat parallelogram), and absolute ones do not.
 
-use crate::assemble::{self, FormulationInfo, System};
+use crate::assemble::{self, BuildError, FormulationInfo, System};
 use crate::model::{Description, Formulation};
-use crate::simulate::{SimulationError, Simulator};
+use crate::simulate::{Assembled, SimulationError, Simulator};
 
 use super::{RunError, first_step, scheme};
 
@@ -23,26 +23,43 @@ const GIVEN_UP: usize = 10;
 /// Operations that are compiled in a moment.
 const SOON: usize = 100_000;
 
-/// Builds and compiles a model in the formulation that it asks for, or in the shorter one.
+/// Most operations of the start's eliminations, or of the step's: in about a minute, and in 1 GB.
+const MOST: usize = 8_000_000;
+
+/// The same in joint coordinates where only the start is wanted: in a second or two.
+const MOST_TO_CHECK: usize = 1_000_000;
+
+/// Most bodies for which a whole model is compiled to be checked; what is larger is only assembled.
+const FEW_BODIES: usize = 50;
+
+/// Builds and compiles a model in the formulation that it asks for, or in the shorter one. A formulation that takes too many operations
+/// is given up for the other.
 ///
 /// # Errors
-/// Where the mechanism cannot be built or assembled.
+/// Where the mechanism cannot be built or assembled, or takes too many operations in both formulations.
 pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError> {
-    let within = |system: System, operations: Option<usize>| {
-        Simulator::within(system, scheme(description), first_step(description), operations)
+    let within = |system: System, operations: usize| {
+        Simulator::within(system, scheme(description), first_step(description), Some(operations))
     };
-    let compile = |system: System| within(system, None);
+    let compile = |system: System| within(system, MOST);
     if description.simulation.formulation != Formulation::Auto {
-        return Ok(compile(assemble::build(description)?)?);
+        return within_budget(description, &|system| Ok(compile(system)?));
     }
     let absolute = assemble::in_absolute_coordinates(description)?;
     let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
         Ok(joint) => joint,
-        Err(why) => return Ok(compile(because(absolute, why))?),
+        Err(why) => {
+            return match compile(because(absolute, why)) {
+                Err(SimulationError::TooLong) => {
+                    other_way(description, Formulation::Joint, &|joint| Ok(compile(joint)?))
+                }
+                compiled => Ok(compiled?),
+            };
+        }
     };
     // What is singular in one formulation may be regular in the other.
     let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
-    let absolute = match within(absolute, Some((GIVEN_UP * instructions(&joint)).max(SOON))) {
+    let absolute = match within(absolute, (GIVEN_UP * instructions(&joint)).clamp(SOON, MOST)) {
         Ok(absolute) => absolute,
         Err(why) => {
             if why == SimulationError::TooLong {
@@ -56,6 +73,63 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     let (mut chosen, (least, most)) = if few < many { (joint, (few, many)) } else { (absolute, (many, few)) };
     chosen.system.formulation.why = format!("{least} instructions a step instead of {most}");
     Ok(chosen)
+}
+
+/// Builds and assembles a model, without its steps' program where that is not needed to choose the formulation.
+///
+/// # Errors
+/// As for [`compiled`].
+pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError> {
+    let within = |system: System, operations: usize| {
+        Ok(Assembled::within(system, scheme(description), first_step(description), Some(operations))?)
+    };
+    let of_system = |system: System| {
+        let operations = if system.formulation.joint { MOST_TO_CHECK } else { MOST };
+        within(system, operations)
+    };
+    if description.simulation.formulation != Formulation::Auto {
+        return within_budget(description, &of_system);
+    }
+    if description.bodies.len() <= FEW_BODIES {
+        let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = compiled(description)?;
+        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared });
+    }
+    match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
+        // Shallow trees are short in joint coordinates.
+        Ok(joint) => of_system(joint),
+        Err(why) => of_system(because(assemble::in_absolute_coordinates(description)?, why)),
+    }
+}
+
+/// What a model asks for; where that takes too many operations, the other formulation.
+fn within_budget<T>(
+    description: &Description,
+    of_system: &dyn Fn(System) -> Result<T, RunError>,
+) -> Result<T, RunError> {
+    let asked = description.simulation.formulation;
+    match of_system(assemble::build(description)?) {
+        Err(RunError::Simulation(SimulationError::TooLong)) => {
+            let other = if asked == Formulation::Joint { Formulation::Absolute } else { Formulation::Joint };
+            other_way(description, other, of_system)
+        }
+        found => found,
+    }
+}
+
+/// A formulation in place of one that takes too many operations.
+fn other_way<T>(
+    description: &Description,
+    formulation: Formulation,
+    of_system: &dyn Fn(System) -> Result<T, RunError>,
+) -> Result<T, RunError> {
+    let mut description = description.clone();
+    description.simulation.formulation = formulation;
+    let system = match assemble::build(&description) {
+        Err(BuildError::NoJointCoordinates { .. }) => return Err(SimulationError::TooLong.into()),
+        built => built?,
+    };
+    let other = if formulation == Formulation::Joint { "absolute" } else { "joint" };
+    of_system(because(system, format!("{other} coordinates take too many instructions")))
 }
 
 /// A copy of the description with the formulation that was chosen for it.

@@ -4,9 +4,11 @@
 //! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to.
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
+//! panic to what panicked.
 
 mod conclude;
+mod controlled;
 mod cost;
 mod decisions;
 mod deterministic;
@@ -15,6 +17,9 @@ mod ensemble;
 mod explain;
 mod feasible;
 mod formulation;
+mod internal;
+mod outcome;
+mod price;
 mod single;
 mod step_search;
 mod subsystems;
@@ -25,14 +30,16 @@ use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
-use crate::simulate::{SimulationError, Simulator};
+use crate::simulate::{Assembled, SimulationError, Simulator};
 
 use subsystems::Prepared;
 
 pub use cost::{CostOptions, cost};
 pub use effect_costs::language_costs;
-pub use explain::{explain, explain_whole};
+pub use explain::explain;
 pub use feasible::Survey;
+pub use internal::{InternalError, caught, record_panics};
+pub use price::Price;
 
 /// How to run.
 pub struct Options<'a> {
@@ -44,6 +51,8 @@ pub struct Options<'a> {
     pub certify_time: bool,
     /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
+    /// Whether to run what takes long without being allowed by the model.
+    pub dear: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
@@ -58,6 +67,7 @@ impl Default for Options<'_> {
             threads: None,
             certify_time: false,
             skip_infeasible: false,
+            dear: true,
             progress: &|_| (),
             interrupted: &|| false,
         }
@@ -79,13 +89,19 @@ pub enum RunError {
     /// Some samples cannot be assembled: where these lie.
     #[error("{0}. Narrow the intervals, or bound the rest with --skip-infeasible")]
     Infeasible(Box<Survey>),
+    /// It would take long, and nobody has allowed it.
+    #[error(transparent)]
+    Dear(Price),
+    /// An error of this program.
+    #[error(transparent)]
+    Internal(#[from] InternalError),
     /// The threads could not be started.
     #[error("the threads could not be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
 /// Runs every method asked for. A sample that stops early ends the bounds there that need it: what was reached is returned, and
-/// the summary's `failure` says what happened.
+/// the summary's `failure` says what happened. So it does where a method panics: the other methods' bounds are kept.
 ///
 /// # Errors
 /// Where the mechanism cannot be built, assembled or stepped at all.
@@ -102,12 +118,20 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
     Ok(Prepared::new(Reduction::joined(description))?.simulator)
 }
 
-/// A whole model compiled, with the parts that no output depends on, and nothing merged: for checking it.
+/// A whole model compiled, with the parts that no output depends on, and nothing merged.
 ///
 /// # Errors
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
+}
+
+/// A whole model assembled, with the parts that no output depends on, and nothing merged: for checking it.
+///
+/// # Errors
+/// As for [`run`].
+pub fn assemble_whole(description: &Description) -> Result<Assembled, RunError> {
+    formulation::assembled(description)
 }
 
 /// The model's scheme.

@@ -1,22 +1,18 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
 use super::ensemble::{Motions, Progress};
+use super::internal::{InternalError, caught};
+use super::outcome::{Outcome, Ran, Results, Tried};
 use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::methods::{
-    BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Stop, Validation,
-    can_compose,
+    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
+    Stop, Validation, can_compose,
 };
 use crate::model::{Description, Stepping};
-use crate::numerics::{ParameterBox, corners, probes, validation};
-use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{Schedule, SimulationError, Simulator, SingularPass, ToleranceSchedule, schedule_for_tolerance};
-
-/// Corners of the box that join the nominal sample as controlling samples of the step size.
-const CONTROLLING_CORNERS: usize = 16;
-
-/// How often samples that turn out to need smaller steps may be added to the controlling samples.
-const CONTROL_ROUNDS: usize = 8;
+use crate::numerics::{ParameterBox, probes, validation};
+use crate::results::MethodSummary;
+use crate::simulate::{Controller, Schedule, SimulationError, Simulator, schedule_for_tolerance};
 
 /// A compiled subsystem, and what is asked of it.
 pub(super) struct Study<'a> {
@@ -29,70 +25,6 @@ pub(super) struct Study<'a> {
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
-}
-
-/// A method's result and its line in the summary.
-pub(super) struct Outcome {
-    pub result: MethodResult,
-    pub summary: MethodSummary,
-}
-
-/// What one schedule yields.
-pub(super) struct Results {
-    pub schedule: Schedule,
-    pub nominal: Outcome,
-    /// Singular configurations that the nominal motion passes.
-    pub singular: Vec<SingularPass>,
-    /// Absent where no method is asked for.
-    pub validation: Option<(Validation, MethodSummary)>,
-    pub methods: Vec<(Method, Outcome)>,
-    /// The same with halved steps, where asked for.
-    pub halved: Vec<(Method, Outcome)>,
-}
-
-impl Results {
-    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
-        std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
-    }
-
-    /// Samples that stopped.
-    pub fn stops(&self) -> impl Iterator<Item = &(Stop, Vec<f64>)> {
-        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.stop.as_ref());
-        self.outcomes().filter_map(|outcome| outcome.result.simulated.stop.as_ref()).chain(validation)
-    }
-
-    /// Rows that every sample of every method has reached, validation samples included.
-    pub fn whole(&self) -> usize {
-        let nominal = self.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
-        let stops = self.stops().filter(|(stop, _)| !stop.is_of_jet() && nominal != Some(stop));
-        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
-    }
-
-    /// The sample with the largest error ratio, where that is more than 1.
-    fn beyond_tolerance(&self) -> Option<(Vec<f64>, f64)> {
-        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
-        let ratios =
-            self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
-        ratios.filter(|(_, ratio)| *ratio > 1.0).max_by(|a, b| a.1.total_cmp(&b.1)).cloned()
-    }
-}
-
-/// What a study found.
-pub(super) struct Ran {
-    pub bounds: Bounds,
-    pub summary: Summary,
-    /// Rows that every sample of every method has reached.
-    pub whole: usize,
-}
-
-/// How far validation samples of a box came.
-pub(super) struct Tried {
-    /// Rows that all have reached.
-    pub reached: usize,
-    /// ξ of those that did not reach the end.
-    pub stopped: Vec<Vec<f64>>,
-    /// Whether any did.
-    pub any: bool,
 }
 
 /// What a subsystem is to its bounding methods.
@@ -144,7 +76,7 @@ impl<'a> Study<'a> {
     pub(super) fn motions<'s>(
         &'s self,
         schedule: &'s Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
@@ -197,76 +129,57 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The schedule of the controlling samples is tried on all samples; one that needs smaller steps becomes a controlling sample,
-    /// and all run again.
-    fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
-        let simulation = &self.description.simulation;
-        let mut samples = self.controlling_samples();
-        let mut round = 1;
-        loop {
-            let (duration, output_step) = (simulation.duration, simulation.output_step);
-            let ToleranceSchedule { schedule, failure, .. } =
-                schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
-            let failure = failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
-            let results = self.methods(&schedule, Some(tolerance))?;
-            match results.beyond_tolerance() {
-                None => return Ok(self.conclude(results, failure)),
-                Some((_, ratio)) if round == CONTROL_ROUNDS => {
-                    let note = format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance");
-                    return Ok(self.conclude(results, Some(note)));
-                }
-                Some((sample, _)) => samples.push(sample),
-            }
-            round += 1;
-        }
-    }
-
-    /// The nominal sample and corners of the box.
-    fn controlling_samples(&self) -> Vec<Vec<f64>> {
-        let mut samples = vec![self.domain.nominal.clone()];
-        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.point(xi)) {
-            if !samples.contains(&corner) {
-                samples.push(corner);
-            }
-        }
-        samples
-    }
-
     /// The nominal motion, the validation samples, then every method asked for. With a tolerance for the bounds, the
     /// validation samples decide how the schedule's steps are divided or joined.
-    fn methods(&self, schedule: &Schedule, tolerance: Option<f64>) -> Result<Results, SimulationError> {
+    pub(super) fn methods(
+        &self,
+        schedule: &Schedule,
+        mut tolerance: Option<Controller>,
+    ) -> Result<Results, SimulationError> {
         if self.domain.dimension() == 0 {
             return self.deterministic(schedule, tolerance);
         }
         let progress = Progress::new(self.total_work(schedule), self.progress);
+        let mut internal = Vec::new();
         let (schedule, validation) = if self.request.is_empty() {
             (schedule.clone(), None)
         } else {
-            let (schedule, validation) = self.balance(schedule, tolerance, &progress)?;
-            (schedule, Some(validation))
+            match caught("the validation samples", || self.balance(schedule, tolerance, &progress)) {
+                Ok(balanced) => {
+                    let (schedule, divided, validation) = balanced?;
+                    tolerance = divided;
+                    (schedule, Some(validation))
+                }
+                Err(error) => {
+                    internal.push(error);
+                    (schedule.clone(), None)
+                }
+            }
         };
         let motions = self.motions(&schedule, tolerance, &progress);
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some((validation, _)) = &validation {
-            methods = self.bound(&motions, &schedule, validation, |_| true)?;
+            methods = self.bound(&motions, &schedule, validation, &mut internal, |_| true)?;
             if self.certify_time && !(self.interrupted)() {
                 let schedule = schedule.refined(2);
-                let motions = self.motions(&schedule, None, &progress);
-                halved = self.bound(&motions, &schedule, validation, |method| method.about().is_sampled)?;
+                let halved_tolerance = tolerance.map(|tolerance| tolerance.for_parts(2));
+                let motions = self.motions(&schedule, halved_tolerance, &progress);
+                let sampled = |method: Method| method.about().is_sampled;
+                halved = self.bound(&motions, &schedule, validation, &mut internal, sampled)?;
             }
         }
         drop(motions);
-        Ok(Results { schedule, nominal, singular, validation, methods, halved })
+        Ok(Results { schedule, nominal, singular, validation, methods, halved, internal })
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
     fn balance(
         &self,
         schedule: &Schedule,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         progress: &Progress,
-    ) -> Result<(Schedule, (Validation, MethodSummary)), SimulationError> {
+    ) -> Result<(Schedule, Option<Controller>, (Validation, MethodSummary)), SimulationError> {
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
@@ -276,8 +189,9 @@ impl<'a> Study<'a> {
             let begun = std::time::Instant::now();
             let schedule = steps.schedule();
             let halved = schedule.refined(2);
+            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
             let direct = self.motions(&schedule, tolerance, progress);
-            let halved = self.motions(&halved, None, progress);
+            let halved = self.motions(&halved, tolerance.map(|tolerance| tolerance.for_parts(2)), progress);
             let validation =
                 Validation::run(&direct, &halved, observed, self.request.degree()).map_err(simulation_error)?;
             let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
@@ -288,17 +202,19 @@ impl<'a> Study<'a> {
             };
             drop((direct, halved));
             if enough {
-                return Ok((schedule, (validation, summary)));
+                return Ok((schedule, tolerance, (validation, summary)));
             }
         }
     }
 
-    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out.
+    /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that
+    /// panic nothing is known.
     pub(super) fn bound(
         &self,
         motions: &Motions,
         schedule: &Schedule,
         validation: &Validation,
+        internal: &mut Vec<InternalError>,
         wanted: impl Fn(Method) -> bool,
     ) -> Result<Vec<(Method, Outcome)>, SimulationError> {
         let mut outcomes = Vec::new();
@@ -307,10 +223,53 @@ impl<'a> Study<'a> {
                 break;
             }
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
-            let (outcome, ()) = timed(schedule, method.name(), || Ok((bound()?, ())))?;
+            let before = motions.over();
+            let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
+                Ok(timed) => timed?.0,
+                Err(error) => {
+                    internal.push(error);
+                    self.unknown(schedule, method.name())?
+                }
+            };
+            if (self.interrupted)() && method.about().is_sampled {
+                // Not those that were planned.
+                outcome.summary.simulations = motions.over() - before;
+            }
             outcomes.push((method, outcome));
         }
         Ok(outcomes)
+    }
+
+    /// Bounds of which nothing is known.
+    fn unknown(&self, schedule: &Schedule, method: &str) -> Result<Outcome, SimulationError> {
+        let bands = BandBuilder::new(self.simulator.program.outputs.len(), schedule.rows);
+        let missing = Simulated { missing: schedule.rows, ..Simulated::default() };
+        let (outcome, ()) = timed(schedule, method, || Ok((bands.finish(0, missing), ())))?;
+        Ok(outcome)
+    }
+
+    /// What is left of a subsystem whose study panicked.
+    pub(super) fn lost(&self, error: InternalError) -> Result<Ran, SimulationError> {
+        let simulation = &self.description.simulation;
+        let schedule = Schedule::fixed(simulation.duration, simulation.output_step, simulation.output_step);
+        let nominal = self.unknown(&schedule, "nominal")?;
+        let results = Results {
+            schedule,
+            nominal,
+            singular: Vec::new(),
+            validation: None,
+            methods: Vec::new(),
+            halved: Vec::new(),
+            internal: vec![error],
+        };
+        Ok(self.conclude(results, None))
+    }
+
+    /// Simulations of the methods whose samples are given; those that a tolerance decides are within the budget.
+    pub(super) fn planned_simulations(&self) -> f64 {
+        let parts = if self.certify_time { 3.0 } else { 1.0 };
+        let methods = self.request.methods();
+        parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
     }
 
     /// Samples × rows of all methods.

@@ -44,6 +44,11 @@ impl StepSearch {
         }
     }
 
+    /// Parts that each of the base's steps is divided into; 1 where steps of equal length are counted instead.
+    pub fn parts(&self) -> usize {
+        if self.per_row.is_some() { 1 } else { self.count }
+    }
+
     /// Takes in the error of the schedule tried last, over the tolerance; whether another is to be tried.
     pub fn adjust(&mut self, error: f64) -> bool {
         self.tried.push((self.count, error));

@@ -6,7 +6,10 @@
 
 use symdiff::Formula;
 
-use super::single::{Ran, Study};
+use super::internal::caught;
+use super::outcome::Ran;
+use super::price::Price;
+use super::single::Study;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Description, Formulation, ParameterValue};
@@ -99,13 +102,31 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
+    let price = Price::of(&studies);
+    if !options.dear && price.is_dear(description.bounds.budget.solves) {
+        return Err(RunError::Dear(price));
+    }
     let mut ran = Vec::with_capacity(count);
+    let mut lost = 0;
     for (subsystem, study) in subsystems.iter().zip(&studies) {
-        let (bounds, summary) = if options.skip_infeasible {
-            feasible::run(study)?
-        } else {
+        let found = caught("the run", || {
+            if options.skip_infeasible {
+                return feasible::run(study);
+            }
             let Ran { bounds, summary, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
-            (bounds, summary)
+            Ok((bounds, summary))
+        });
+        let (bounds, summary) = match found {
+            Ok(found) => found?,
+            Err(error) => {
+                lost += 1;
+                // Without any subsystem there is nothing to write.
+                if lost == count {
+                    return Err(error.into());
+                }
+                let Ran { bounds, summary, .. } = study.lost(error)?;
+                (bounds, summary)
+            }
         };
         ran.push(Done { subsystem, bounds, summary });
     }

@@ -1,9 +1,11 @@
 //! Text → a tree in which every node knows its place, and the diagnostics that point there.
 
 pub(crate) mod diagnostic;
+mod harmless;
 mod render;
 pub(crate) mod source;
 pub(crate) mod suggest;
 pub(crate) mod yaml;
 
 pub use diagnostic::{Diagnostics, Record};
+pub use harmless::{harmless, is_harmful};

@@ -5,10 +5,14 @@ use std::ops::Range;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
+use super::harmless::{harmless, is_harmful};
 use super::source::{Place, Source};
 
 /// Diagnostics shown; the others are counted.
 const MOST_SHOWN: usize = 50;
+
+/// Begins a colour; what comes from a file cannot hold it where it reaches the renderer.
+const ESCAPE: char = '\u{1b}';
 
 /// Places at most this many lines apart are shown in one piece.
 const LINES_TOGETHER: usize = 6;
@@ -20,17 +24,20 @@ const LONG_LINE: usize = 400;
 const LONG_HELP: usize = 100;
 
 impl Diagnostics {
-    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty.
+    /// All as text for people, each with its line and marker; in colour or plain. Ends with a newline unless empty. The only control
+    /// characters are those of the colours.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();
         for diagnostic in self.iter().take(MOST_SHOWN) {
-            let (report, moved) = self.report(diagnostic);
+            let diagnostic = diagnostic.harmless();
+            let (report, moved) = self.report(&diagnostic);
             let mut rendered = renderer.render(&report);
             for (shown, meant) in moved {
                 rendered = rendered.replacen(&shown, &meant, 1);
             }
-            text += &rendered;
+            // The renderer shows the control characters of an excerpt by pictures, but for some.
+            text += &rendered.replace(|c| is_harmful(c) && c != ESCAPE, "\u{fffd}");
             text += "\n\n";
         }
         let hidden = self.iter().count().saturating_sub(MOST_SHOWN);
@@ -80,6 +87,19 @@ impl Diagnostics {
             }
         }
         excerpts
+    }
+}
+
+impl Diagnostic {
+    /// The same in words that a terminal only shows.
+    fn harmless(&self) -> Self {
+        Self {
+            message: harmless(&self.message),
+            label: self.label.as_deref().map(harmless),
+            secondary: self.secondary.iter().map(|(span, label)| (span.clone(), harmless(label))).collect(),
+            help: self.help.as_deref().map(harmless),
+            ..self.clone()
+        }
     }
 }
 

@@ -5,13 +5,15 @@
 
 use std::ops::Range;
 
+use super::harmless::harmless;
+
 /// Bytes of the texts that were read.
 pub type Span = Range<usize>;
 
 /// A text and what it is called.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Path, or the command-line option that the text came with.
+    /// Path, or the command-line option that the text came with; harmless to a terminal.
     pub name: String,
     /// The text; empty where it could not be read.
     pub text: String,
@@ -49,7 +51,7 @@ impl Sources {
     /// Adds a text and gives the offset of its first byte. A text that is there already, as a file that several scenes name,
     /// is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
-        let (name, text) = (name.into(), text.into());
+        let (name, text) = (harmless(&name.into()).replace('\n', "\u{fffd}"), text.into());
         if let Some(known) = self.all.iter().find(|known| known.name == name && known.text == text) {
             return known.start;
         }

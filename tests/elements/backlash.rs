@@ -29,3 +29,24 @@ simulation: { duration: 0.1, step: 2e-5, output_step: 1e-3 }
 fn teeth_store_what_they_take() {
     assert_balance(&pair("", "  e: { backlash: { between: [a, b], ratio: -1.7, offset: 0.1, backlash: 0.02, stiffness: 20, transition: 0.3 } }", APART), "0");
 }
+
+/// Without play, teeth are a spring: x = θ₂ − ratio θ₁ oscillates with ω² = k (1/I₂ + ratio²/I₁).
+#[test]
+fn teeth_without_play_are_a_spring() {
+    let bounds = nominal(&read(
+        "
+bodies:
+  pinion: { inertia: 0.02, coordinates: [angle] }
+  wheel: { inertia: 0.05, coordinates: [angle] }
+effects: { mesh: { backlash: { between: [pinion, wheel], ratio: -0.5, backlash: 0, stiffness: 3 } } }
+initial: { pinion.angle: 0, wheel.angle: 0.02, pinion.angular_velocity: 0, wheel.angular_velocity: 0 }
+outputs: { x: wheel.angle + 0.5*pinion.angle, torque: mesh.torque }
+simulation: { duration: 1, step: 5e-4, output_step: 0.01 }
+",
+    ));
+    let omega = (3.0_f64 * (1.0 / 0.05 + 0.25 / 0.02)).sqrt();
+    let error = distance_from(&bounds.times, curve(&bounds, "x"), |t| 0.02 * (omega * t).cos());
+    assert!(error < 1e-6, "{error:e}");
+    let error = distance_from(&bounds.times, curve(&bounds, "torque"), |t| 0.06 * (omega * t).cos());
+    assert!(error < 1e-5, "{error:e}");
+}

@@ -2,6 +2,8 @@
 //!
 //! A new file is found by itself.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 #[path = "../common/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests of models")]
 mod common;

@@ -148,3 +148,40 @@ simulation: { duration: 2, step: 1e-3, output_step: 0.1 }
 fn its_power_is_torque_times_rate() {
     assert_balance(&pair("  j: { revolute: [a.P, b.P] }\n  drive: { motor: { on: j, position: 0.3 + sin(3*t) } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", ""), "drive.torque*j.angular_velocity");
 }
+
+/// A motor's torque and force in space have the sign of the joint's axis, and are those of Newton's law.
+#[test]
+fn its_torque_and_force_have_signs_in_space() {
+    let ask = |formulation: &str| {
+        nominal(&read(&format!(
+            "
+space: spatial
+bodies:
+  wheel: {{ mass: 1, inertia: [0.1, 0.3, 0.2] }}
+  slider: {{ mass: 2.5, inertia: [0.1, 0.1, 0.1] }}
+joints:
+  hinge: {{ revolute: {{ between: [ground, wheel], axis: [0, -1, 0] }} }}
+  slide: {{ prismatic: {{ between: [ground, slider], axis: [0, 0, 1] }} }}
+  drive: {{ motor: {{ on: hinge, position: 0.5*sin(3*t) }} }}
+  lift: {{ motor: {{ on: slide, position: 0.2*cos(2*t) }} }}
+outputs: {{ torque: drive.torque, about: drive.torque.axial, y: drive.torque.y, axial: lift.axial, force: lift.force }}
+simulation: {{ duration: 2, step: 1e-3, output_step: 0.1, formulation: {formulation} }}
+"
+        )))
+    };
+    for bounds in ["absolute", "joint"].map(ask) {
+        let torque = |t: f64| 0.3 * -4.5 * (3.0 * t).sin();
+        let force = |t: f64| 2.5 * -0.8 * (2.0 * t).cos();
+        let laws: [(&str, &dyn Fn(f64) -> f64); 5] = [
+            ("torque", &torque),
+            ("about", &torque),
+            ("y", &|t| -torque(t)),
+            ("axial", &force),
+            ("force", &|t| force(t).abs()),
+        ];
+        for (name, law) in laws {
+            let error = distance_from(&bounds.times, curve(&bounds, name), law);
+            assert!(error < 1e-4, "{name}: {error:e}");
+        }
+    }
+}

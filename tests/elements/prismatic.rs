@@ -3,7 +3,7 @@
 use crate::common::power::{assert_balance, pair, spatial_pair};
 use crate::common::adams::{Case, compared_with_adams};
 use crate::common::closed_forms::{assert_exact, assert_exact_force};
-use crate::common::{nominal, read};
+use crate::common::{curve, nominal, read};
 
 #[test]
 fn a_body_slides_down_an_incline() {
@@ -23,6 +23,8 @@ outputs:
   up: slide.force.y
   across: slide.force.x
   torque: slide.torque
+  axial: slide.axial
+  radial: slide.radial
 simulation: { duration: 1, step: 0.01, output_step: 0.1 }
 ",
     ));
@@ -34,6 +36,9 @@ simulation: { duration: 1, step: 0.01, output_step: 0.1 }
     assert_exact_force(&bounds, "up", |_| normal * beta.cos());
     assert_exact_force(&bounds, "across", |_| normal * beta.sin());
     assert_exact_force(&bounds, "torque", |_| 0.0);
+    assert_exact_force(&bounds, "axial", |_| 0.0);
+    // The axis turned by +90° points up from the slope.
+    assert_exact_force(&bounds, "radial", |_| normal);
 }
 
 const ADAMS: Case = Case {
@@ -52,4 +57,38 @@ compared_with_adams!(ADAMS);
 fn its_reactions_do_no_work() {
     assert_balance(&pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
     assert_balance(&spatial_pair("  j: { prismatic: { between: [a.P, b.P], axis: [1, 2, -0.5], angle: 0.3 } }", "  spring: { spring_damper: { between: [ground.O, b], stiffness: 30, free_length: 0.2 } }", "  j.displacement: 0.3\n  j.velocity: -0.8"), "0");
+}
+
+/// A named displacement is a coordinate without inertia: every placement of the joint starts in absolute coordinates, and
+/// moves as in joint coordinates.
+#[test]
+fn a_named_displacement_starts_with_dampers_and_drag() {
+    let acting = [
+        "d: { spring_damper: { between: [ground.q, slider], stiffness: 7, damping: 0.4, free_length: 0.1 } }",
+        "d: { drag: { on: slider.a, quadratic: 0.3 } }, g: { gravity: { acceleration: [1, 2, -3] } }",
+    ];
+    for (place, effect) in (0..6).flat_map(|place| acting.map(|effect| (place, effect))) {
+        let [a, b, c] = std::array::from_fn(|axis| (1.3 * f64::from(place) + 2.1 * axis as f64).sin());
+        let kind = if place % 2 == 0 { "prismatic" } else { "cylindrical" };
+        let turning = if place % 2 == 0 { "" } else { ", slide.angle: 0.3" };
+        let [absolute, joint] = ["absolute", "joint"].map(|formulation| {
+            let bounds = nominal(&read(&format!(
+                "
+bodies:
+  ground: {{ points: {{ p: {{ position: [{a}, 0.2, {b}], rotation: {{ rpy: [{b}, {c}, {a}] }} }}, q: [1, 0.5, 0.2] }} }}
+  slider: {{ mass: 1.5, inertia: [0.1, 0.2, 0.15], points: {{ a: [{c}, -0.2, {a}] }} }}
+joints: {{ slide: {{ {kind}: {{ between: [ground.p, slider.a], axis: x }} }} }}
+effects: {{ {effect} }}
+initial: {{ slide.displacement: 0.15, slide.velocity: -0.2{turning} }}
+outputs: {{ x: slider.x, y: slider.y, z: slider.z, s: slide.displacement }}
+simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.02, formulation: {formulation} }}
+"
+            )));
+            ["x", "y", "z", "s"].map(|name| curve(&bounds, name).to_vec())
+        });
+        for (found, expected) in absolute.iter().flatten().zip(joint.iter().flatten()) {
+            // The steps' errors, (ωh)², differ with the coordinates where the body turns.
+            assert!((found - expected).abs() < 1e-6, "{kind} {place}: {found}, not {expected}");
+        }
+    }
 }

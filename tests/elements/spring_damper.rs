@@ -99,3 +99,21 @@ fn a_spring_stores_and_a_damper_takes() {
     assert_balance(&pair("", "  e: { spring_damper: { between: [a.P, b.P], along: [3, 4], stiffness: 50, damping: 7, free_length: 0.4 } }", APART), "-7*(0.6*(b.P.vx - a.P.vx) + 0.8*(b.P.vy - a.P.vy))^2");
     assert_balance(&spatial_pair("", "  e: { spring_damper: { between: [a.P, b.P], stiffness: 50, damping: 7, free_length: 0.4 } }", APART_IN_SPACE), "-7*((b.P.x - a.P.x)*(b.P.vx - a.P.vx) + (b.P.y - a.P.y)*(b.P.vy - a.P.vy) + (b.P.z - a.P.z)*(b.P.vz - a.P.vz))^2/((b.P.x - a.P.x)^2 + (b.P.y - a.P.y)^2 + (b.P.z - a.P.z)^2)");
 }
+
+/// A spring and damper without free length begins where its points meet: x = v/ω e^(−δt) sin ωt.
+#[test]
+fn a_spring_without_free_length_may_begin_at_length_zero() {
+    let description = read(
+        "
+bodies: { bob: { mass: 0.5, coordinates: [x, y] } }
+effects: { mount: { spring_damper: { between: [ground, bob], stiffness: 50, damping: 0.8 } } }
+initial: { bob.x: 0, bob.y: 0, bob.vx: 0.6, bob.vy: -0.8 }
+outputs: { along: 0.6*bob.x - 0.8*bob.y, across: 0.8*bob.x + 0.6*bob.y }
+simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
+",
+    );
+    let (decay, omega) = (0.8_f64, (100.0 - 0.64_f64).sqrt());
+    assert_converges(&description, 1e-3, "along", 1e-6, |t| (-decay * t).exp() * (omega * t).sin() / omega);
+    let bounds = nominal(&description);
+    assert!(distance_from(&bounds.times, curve(&bounds, "across"), |_| 0.0) < 1e-12);
+}

@@ -6,9 +6,11 @@
 //! MBINT_FALSIFY_DRAWS=5000 MBINT_FALSIFY_SEED=1 cargo test --test falsify -- --ignored --nocapture
 //! ```
 //!
-//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that number,
-//! `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and method simple and prints them as models,
-//! `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
+//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that number;
+//! `MBINT_FALSIFY_SECONDS=600` begins no draw after ten minutes. `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and
+//! method simple and prints them as models; `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
+
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
 mod draw;
 mod families;
@@ -29,6 +31,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 use draw::Draw;
 use table::Table;
@@ -73,6 +76,7 @@ struct Findings {
 /// The draws of a seed with these numbers; of each family and method so many misses are simplified and shown.
 fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
     let family: Option<String> = asked("MBINT_FALSIFY_FAMILY");
+    let (begun, patience) = (Instant::now(), asked("MBINT_FALSIFY_SECONDS").unwrap_or(u64::MAX));
     let findings = Mutex::new(Findings::default());
     let next = AtomicU64::new(numbers.start);
     // Not by rayon, whose threads would begin another draw while one waits for its study.
@@ -81,7 +85,7 @@ fn falsify(seed: u64, numbers: Range<u64>, shown: usize) -> Table {
             scope.spawn(|| {
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= numbers.end {
+                    if number >= numbers.end || begun.elapsed().as_secs() >= patience {
                         break;
                     }
                     let draw = families::draw(seed, number, family.as_deref());

@@ -8,6 +8,8 @@
 //! cargo +nightly fuzz run model corpus models tests/bad_models -- -rss_limit_mb=1024 -timeout=10 -max_len=20000
 //! ```
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod mutate;
 mod targets;
 

@@ -165,3 +165,47 @@ simulation: {{ duration: 0.02, step: 1e-3 }}
         }
     }
 }
+
+/// A mechanism that a motor moves has no degree of freedom: its frame has no slow directions, and its start nothing to solve for
+/// where positions are given.
+#[test]
+fn a_mechanism_without_degrees_of_freedom_is_certified() {
+    let crank = read(
+        "
+parameters: { r: { value: 0.12, unit: m, tolerance: 1% }, L: { value: 0.41, unit: m } }
+bodies:
+  crank: { mass: 0.7, inertia: 1e-3, coordinates: [angle], points: { pin: [r, 0] } }
+  rod: { mass: 0.3, inertia: 4e-3, points: { a: [-L/2, 0], b: [L/2, 0] } }
+  piston: { mass: 0.5, coordinates: [x] }
+joints:
+  pin: { revolute: [crank.pin, rod.a] }
+  wrist: { revolute: [rod.b, piston] }
+  drive: { equation: crank.angle = 40*t }
+outputs: { x: piston.x, push: wrist.force }
+simulation: { duration: 0.02, step: 5e-4 }
+",
+    );
+    let direct = read(
+        "
+parameters: { r: { value: 0.3, unit: m, tolerance: 1% } }
+bodies: { arm: { mass: 2, inertia: 0.05, points: { pin: [-r, 0] } } }
+joints: { hinge: { revolute: [ground, arm.pin] }, drive: { motor: { on: hinge, position: 3*t } } }
+outputs: { x: arm.x, push: hinge.force }
+simulation: { duration: 0.02, step: 5e-4 }
+",
+    );
+    for description in [crank, direct] {
+        let (bounds, failure) = certify(description.scan(21));
+        assert_eq!(failure, None);
+        for output in &bounds.outputs {
+            let certified = band(output, Method::Certified);
+            assert!(certified.lower.iter().chain(&certified.upper).all(|value| value.is_finite()), "{}", output.name);
+        }
+        let x = output(&bounds, "x");
+        let (scan, certified) = (band(x, Method::Scan), band(x, Method::Certified));
+        for row in 0..bounds.times.len() {
+            assert!(certified.lower[row] <= scan.lower[row] + NEWTON, "row {row}");
+            assert!(certified.upper[row] >= scan.upper[row] - NEWTON, "row {row}");
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use mbint::inner::model::{Description, Formulation};
 
-use crate::common::{Findings, Vary, largest, model, nominal, order};
+use crate::common::{Findings, Vary, curve, largest, model, nominal, order, read};
 
 /// Models and the gaps of their joints: positions, then the velocities.
 const GAPS: [(&str, &[&str], &[&str]); 5] = [
@@ -105,4 +105,31 @@ fn what_the_motor_gives_is_stored_or_lost() {
     println!("balance {worst:.3e} of {:.3} J", given.last().unwrap());
     // The scheme's error at h = 1e-4: x3 is good to 1.8e-5 m, speeds to about 1e-4 of themselves.
     assert!(worst < 1e-4 * given.last().unwrap(), "{worst:e} J");
+}
+
+/// A point that nothing refers to, wherever it is and on whatever body, changes nothing: not a bit.
+#[test]
+fn unused_points_change_nothing() {
+    let run_with = |of_ground: &str, of_rod: &str, simulation: &str| {
+        nominal(&read(&format!(
+            "
+bodies:
+  ground: {{ points: {{ {of_ground} pin: [0.1, 0] }} }}
+  rod: {{ mass: 1.2, inertia: 0.03, points: {{ {of_rod} a: [0.2, 0], c: [-0.2, 0] }} }}
+  bob: {{ mass: 0.8, inertia: 0.01, points: {{ a: [0.15, 0.05] }} }}
+joints: {{ S: {{ revolute: [ground.pin, rod.a] }}, R: {{ revolute: [rod.c, bob.a] }} }}
+effects: {{ g: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+initial: {{ S.angle: 0.4, S.angular_velocity: 0, R.angle: 0.1, R.angular_velocity: 1.5 }}
+outputs: {{ y: bob.y, f: R.force, a: bob.ay }}
+simulation: {{ duration: 0.5, {simulation}, output_step: 0.05, formulation: absolute }}
+"
+        )))
+    };
+    for simulation in ["step: 1e-3", "tolerance: 1e-5"] {
+        let [without, with] =
+            [("", ""), ("far: [2e5, 0],", "off: [-3e4, 1e4],")].map(|(ground, rod)| run_with(ground, rod, simulation));
+        for name in ["y", "f", "a"] {
+            assert_eq!(curve(&without, name), curve(&with, name), "{simulation}: {name}");
+        }
+    }
 }

@@ -4,6 +4,8 @@
 //! One binary for all of them, so that the library is linked once. Every tolerance says where it comes from: rounding and
 //! Newton's tolerance (1e-11 of a position), the scheme's order (2), or a measurement that is written beside it.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 #[path = "../common/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests of elements")]
 mod common;
@@ -34,6 +36,7 @@ mod slider_crank;
 mod snapshots;
 mod spatial_linkages;
 mod step_control;
+mod switches;
 mod tables;
 mod tolerance;
 mod urdf;

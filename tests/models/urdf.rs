@@ -389,3 +389,55 @@ fn robots_of_a_collection_run() {
     println!("{count} robots");
     findings.none();
 }
+
+/// A formula of a documentation page as model files write it.
+fn from_page(formula: &str) -> String {
+    let written = [("−", "-"), ("·", "*"), ("√", "sqrt"), ("²", "^2"), ("v₀", "v0")];
+    written.iter().fold(formula.to_owned(), |text, (from, to)| text.replace(from, to))
+}
+
+/// Friction in a robot is the guide's formula with the guide's numbers, written as a torque and as a force.
+#[test]
+fn friction_is_the_documented_formula() {
+    let page = include_str!("../../docs/guides/urdf.md");
+    let row = page.lines().find(|line| line.starts_with("| `friction` |")).unwrap();
+    let law = row.split('|').nth(2).unwrap();
+    let (formula, numbers) = law.split_once(", v₀ = ").unwrap();
+    let mut numbers = numbers.split([' ', ';']).filter_map(|word| word.parse::<f64>().ok());
+    for (kind, rate) in [("revolute", "angular_velocity"), ("prismatic", "velocity")] {
+        let v0 = numbers.next().unwrap();
+        let files = |dynamics: &str| {
+            robot(&[
+                link("base", 1.0, "0 0 0", [0.1; 3]),
+                link("arm", 0.5, "0 0 0", [0.02; 3]),
+                joint(
+                    "hinge",
+                    kind,
+                    "base",
+                    "arm",
+                    &format!("<axis xyz='0 0 1'/><limit lower='-3' upper='3' effort='1' velocity='1'/>{dynamics}"),
+                ),
+            ])
+        };
+        // It starts at some times v₀ and ends far below it.
+        let start = format!("initial: {{ hinge.{rate}: {} }}\noutputs: {{ v: hinge.{rate} }}", 5.0 * v0);
+        let friction = 0.2 * v0;
+        let law = format!("({})", from_page(formula.trim()))
+            .replace('f', &friction.to_string())
+            .replace("v0", &v0.to_string())
+            .replace('v', &format!("hinge.{rate}"));
+        let acts = match kind {
+            "revolute" => format!("torque: {{ on: hinge, value: \"{law}\" }}"),
+            _ => format!("force: {{ on: arm, value: [0, 0, \"{law}\"] }}"),
+        };
+        let own = nominal(&files(&format!("<dynamics friction='{friction}'/>")).model(&start));
+        let written = nominal(&files("").model(&format!("{start}\neffects: {{ f: {{ {acts} }} }}")));
+        let slowed = curve(&own, "v").last().unwrap() / (5.0 * v0);
+        assert!(slowed < 0.9, "{kind}: friction hardly acts: {slowed}");
+        assert!(largest_distance(curve(&own, "v"), curve(&written, "v")) < 1e-12 * v0.max(1.0), "{kind}");
+    }
+}
+
+fn largest_distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

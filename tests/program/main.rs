@@ -1,5 +1,7 @@
 //! The program as users meet it: its command line, files and messages, what the documents show, and the order of the source.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 mod bad_models;
 mod book;
 mod cli;

@@ -488,7 +488,8 @@ fn a_ctrl_c_keeps_the_scenes_that_are_done() {
     let text = fs::read_to_string(&path).unwrap();
     let slow = "  slow: { simulation: { duration: 8, step: 1e-4 }, bounds: { scan: { points: 150 } } }\n  never: {}\n";
     fs::write(path, format!("{text}{slow}")).unwrap();
-    let run = place.command("run door.yaml -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let run =
+        place.command("run --yes door.yaml -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let summary = place.path().join("out/long/summary.json");
     // The scene before the slow one is done: now it is the slow one's turn.
     for _ in 0..600 {
@@ -553,4 +554,17 @@ fn the_examples_are_right() {
         let report = model::read_str("models/page.yaml", text, &[]).diagnostics;
         assert!(!report.has_errors(), "{}", report.render(false));
     }
+}
+
+/// An output that is called like an effect or a joint stays when that is left out.
+#[test]
+fn what_is_left_out_is_the_effect_and_not_the_output_of_its_name() {
+    let text = format!(
+        "{CRANK}{EFFECTS}outputs: {{ drive: slider.x, spring: rod.x }}\nwithout: [drive]\nscenes: {{ slack: {{ without: [spring] }} }}\n"
+    );
+    let simulation = "simulation: { duration: 0.1, step: 1e-3 }\n";
+    let description = scene(&format!("{text}{simulation}"), "slack");
+    let outputs: Vec<&str> = description.outputs.iter().map(|output| output.name.as_str()).collect();
+    assert_eq!(outputs, ["drive", "spring"]);
+    assert!(description.effects.iter().all(|effect| effect.name != "drive" && effect.name != "spring"));
 }

@@ -21,6 +21,8 @@
 //! assert_eq!(tile.lane(lowered.outputs[0][0] as usize), [0.0, 2.0, 4.0, 6.0]);
 //! ```
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
+
 pub mod eval;
 mod expr;
 pub mod formula;
@@ -30,7 +32,7 @@ pub use eval::interval::Interval;
 pub use eval::jet::JetMemory;
 pub use eval::taylor_model::ModelMemory;
 pub use eval::tile::{Tile, WIDTHS};
-pub use eval::{Vectorise, interval, jet, sincos, taylor_model, vectorised};
+pub use eval::{Vectorise, interval, jet, math, sincos, taylor_model, vectorised};
 pub use expr::{Binary, Builder, Expr, Graph, Node, Scalar, SparseMatrix, Spline, SplineError, Unary};
 pub use formula::{Formula, SyntaxError};
 pub use lower::{Guard, Input, Lowered, Op, Operands, Outputs, Stages, Tape, lower, lower_where};

@@ -1,6 +1,8 @@
 //! Symbolic derivatives against finite differences and against jets: three ways that share nothing but the functions'
 //! values.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 use proptest::prelude::*;
 use symdiff::jet::{JetScratch, JetSpace};
 use symdiff::{Binary, Expr, Graph, Node, Unary};

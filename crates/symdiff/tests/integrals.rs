@@ -1,5 +1,7 @@
 //! Antiderivatives: their derivatives are what they are of, and they are zero at zero.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 use symdiff::{Builder, Formula, Scalar};
 
 fn integral(text: &str) -> Option<[f64; 2]> {

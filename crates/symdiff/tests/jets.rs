@@ -1,5 +1,7 @@
 //! Jets against closed forms and identities.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 use proptest::prelude::*;
 use symdiff::jet::{JetScratch, JetSpace, Monomials};
 use symdiff::{Binary, Graph, Unary};

@@ -1,6 +1,8 @@
 //! Tapes against direct evaluation, bit for bit: random graphs with shared subexpressions, inputs of all stages, two
 //! kernels, results that replace inputs, blocks that may be skipped, every tile width.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
+
 use proptest::prelude::*;
 use symdiff::{Binary, Expr, Graph, Input, Tile, Unary, WIDTHS, lower};
 

@@ -9,16 +9,26 @@ use super::solve::Factors;
 
 /// Why a matrix has no factors.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoFactors {
+pub enum NoFactors<Row = usize> {
     /// The rows that are left have no acceptable pivot.
     #[error("the matrix is singular: {} of its rows have no pivot", rows.len())]
     Singular {
         /// Those rows.
-        rows: Vec<usize>,
+        rows: Vec<Row>,
     },
     /// The graph was full before the elimination was done ([`Graph::limit`]).
     #[error("the elimination takes too many operations")]
     TooLong,
+}
+
+impl NoFactors {
+    /// The same, with what its rows stand for.
+    pub fn named<Row>(self, row: impl FnMut(usize) -> Row) -> NoFactors<Row> {
+        match self {
+            Self::Singular { rows } => NoFactors::Singular { rows: rows.into_iter().map(row).collect() },
+            Self::TooLong => NoFactors::TooLong,
+        }
+    }
 }
 
 /// Factorises a square matrix.

@@ -33,8 +33,8 @@ pub enum Pivoting<'m> {
     /// Any entry, by cost and size.
     Any,
     /// Entries that cannot vanish wherever the mechanism moves, in a matrix [M Φᵀ; Φ 0] with M positive definite but for
-    /// massless coordinates: diagonal entries of M; a derivative of Φ that is constant or by a massless coordinate, twice,
-    /// which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
+    /// massless coordinates: diagonal entries of M; a derivative of Φ by a massless coordinate or, in a row of Φ without
+    /// one, a constant derivative, twice, which eliminates the coordinate and the multiplier together; and, where all coordinates of its row of Φ are
     /// eliminated, the diagonal entry −Φ M⁻¹ Φᵀ of a constraint.
     ///
     /// Bodies that rotate freely need it: each of their Euler parameters, and so each derivative by them, passes through
@@ -50,6 +50,9 @@ pub enum Pivoting<'m> {
     Diagonal {
         /// First row of the block that is nearly zero until the others are eliminated.
         constraints: usize,
+        /// Entries that are eliminated before, each with the one across the diagonal: a coordinate without inertia and a constraint
+        /// that defines it, whose derivative by it cannot vanish.
+        pairs: &'m [(usize, usize)],
     },
 }
 
@@ -72,7 +75,7 @@ impl Pivoting<'_> {
     pub fn first_late(self) -> usize {
         match self {
             Self::Any | Self::Symmetric { .. } => usize::MAX,
-            Self::Diagonal { constraints } => constraints,
+            Self::Diagonal { constraints, .. } => constraints,
         }
     }
 }
@@ -95,6 +98,8 @@ pub struct PivotSearch<'m> {
     ready: BTreeSet<usize>,
     /// The second pivot of a pair, to be taken next.
     second: Option<(usize, usize)>,
+    /// For [`Pivoting::Diagonal`], how many pairs have been taken.
+    paired: usize,
 }
 
 impl<'m> PivotSearch<'m> {
@@ -112,7 +117,7 @@ impl<'m> PivotSearch<'m> {
             Pivoting::Any | Pivoting::Diagonal { .. } => (Vec::new(), Vec::new()),
         };
         let in_order = order.iter().enumerate().map(|(row, &order)| (order, row)).collect();
-        Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None }
+        Self { pivoting, stages, costly, awaited, order, in_order, ready: BTreeSet::new(), second: None, paired: 0 }
     }
 
     /// The cheapest pivot that is large enough. Where the sparsest columns and rows have none, more are searched; where no
@@ -120,6 +125,13 @@ impl<'m> PivotSearch<'m> {
     pub fn choose(&mut self, graph: &Graph, active: &Active) -> Option<(usize, usize)> {
         if let Some(second) = self.second.take() {
             return Some(second);
+        }
+        if let Pivoting::Diagonal { pairs, .. } = self.pivoting
+            && let Some(&(row, column)) = pairs.get(self.paired)
+        {
+            self.paired += 1;
+            self.second = Some((column, row));
+            return Some((row, column));
         }
         self.stages.update(graph);
         let singular = self.pivoting.smallest();
@@ -216,9 +228,12 @@ impl<'m> PivotSearch<'m> {
                 let is_derivative = row < massive.len() && column >= massive.len();
                 let is_constant = |value: Expr| !self.is_costly(value);
                 let transposed = active.rows[column].get(&row).filter(|_| is_derivative);
+                let mut coordinates = active.rows[column].range(..massive.len()).map(|(&other, _)| other);
                 transposed.is_some_and(|transposed| {
+                    // A massless coordinate has no other pivot than the constraint that defines it.
                     !massive[row]
-                        || !active.rows[column].contains_key(&column)
+                        || coordinates.all(|other| massive[other])
+                            && !active.rows[column].contains_key(&column)
                             && is_constant(transposed.value)
                             && is_constant(active.rows[row][&column].value)
                 })

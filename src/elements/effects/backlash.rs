@@ -7,7 +7,7 @@
 //! ```
 //!
 //! p is the positive part with its corner rounded (`positive_part`): within the play nothing acts, and only x is
-//! computed. The reactions of the
+//! computed. Without play, b = 0, τ = k x + c ẋ. The reactions of the
 //! shafts on their frames (the ground, or the joints' first bodies) carry the difference of the torques, as of a rigid gear.
 
 use mbint_derive::Element;
@@ -21,6 +21,9 @@ use crate::multibody::BuildError;
 
 /// Angle over which teeth come to bear, over the play.
 const BEARING: f64 = 1e-2;
+
+/// The smallest such angle, rad.
+const SHARP: f64 = 1e-7;
 
 /// A gear pair whose teeth have play.
 #[derive(Clone, Debug, Element)]
@@ -41,7 +44,7 @@ pub struct Backlash {
     #[quantity(unit = "rad", constant, default = 0)]
     pub offset: Formula,
     /// Angle by which the second can turn while the first is held.
-    #[quantity(unit = "rad", constant, positive)]
+    #[quantity(unit = "rad", constant, nonnegative)]
     pub backlash: Formula,
     /// Of the teeth at the second.
     #[quantity(unit = "N*m/rad")]
@@ -54,7 +57,10 @@ pub struct Backlash {
         unit = "rad",
         constant,
         positive,
-        default_with("a hundredth of `backlash`", Formula::number(BEARING).combined(Binary::Mul, &backlash))
+        default_with(
+            "a hundredth of `backlash`, at least 1e-7 rad",
+            Formula::number(BEARING).combined(Binary::Mul, &backlash).combined(Binary::Max, &Formula::number(SHARP))
+        )
     )]
     pub transition: Formula,
 }
@@ -85,6 +91,14 @@ impl ForceElement for Backlash {
         let place = place - offset;
         let half = 0.5 * play;
         let (ahead, behind) = (place - half, -place - half);
+        if play.is_zero() {
+            let torque = stiffness * place + damping * rate;
+            forces.torque_about(self.between[0], ratio * torque)?;
+            forces.torque_about(self.between[1], -torque)?;
+            forces.potential(&[stiffness, ratio, offset], 0.5 * stiffness * (place * place));
+            forces.sensors([(Sensor::ANGLE, place), (Sensor::RATE, rate), (Sensor::TORQUE, torque)]);
+            return Ok(());
+        }
         // |x| − b/2 + ε
         let bearing_at = place.abs() - (half - corner);
         forces.only_where(bearing_at);

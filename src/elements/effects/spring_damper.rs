@@ -9,7 +9,8 @@
 //!
 //! f > 0 is tension: it pulls the points together. e is fixed in the ground's frame; s and ℓ₀ have a sign along it, and
 //! where d is not parallel to e the pair of forces is also a couple d × F, as in a guide. The line has no direction at
-//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0 and c = 0. A zero stiffness or damping leaves nothing behind.
+//! ℓ = 0: the force is NaN there, unless ℓ₀ = 0. Then the elastic force is −k d, and the damper's is −c ḋ where the points
+//! meet, which is its limit on every straight way through: ḋ is d's direction there. A zero stiffness or damping leaves nothing behind.
 //! A further tension is a formula of the spring's own length ℓ (or s) and rate, and of what else a formula may depend on.
 //! With one, or where k or ℓ₀ depend on the motion, there is no potential and none is counted.
 
@@ -20,6 +21,10 @@ use super::{ForceElement, Forces, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
+
+/// Points nearer than this coincide for a damper of no free length, m. Its square is lost in rounding beside that of a
+/// length of 0.1 µm.
+const COINCIDENT: f64 = 1e-15;
 
 /// A spring and damper between two points.
 #[derive(Clone, Debug, Element)]
@@ -115,13 +120,20 @@ struct Stretched<'g> {
 
 /// By d and ḋ.
 fn along_line<'g>(line: Vector<'g>, growth: Vector<'g>, spring: Coefficients<'g>) -> Stretched<'g> {
-    let square = line.dot(line);
+    let passes_zero = spring.free_length.is_zero();
+    let mut square = line.dot(line);
+    if passes_zero {
+        square += square.builder().number(COINCIDENT * COINCIDENT);
+    }
     let length = square.sqrt();
     let elastic = spring.stiffness * (1.0 - spring.free_length / length);
-    let growth = line.dot(growth);
-    let density = elastic + spring.damping * (growth / square);
-    let (pull, direction) = (density * line, line / length);
-    Stretched { pull, direction, length, rate: growth / length, tension: density * length }
+    let advance = line.dot(growth);
+    let density = elastic + spring.damping * (advance / square);
+    let (mut pull, direction) = (density * line, line / length);
+    if passes_zero {
+        pull += (spring.damping * (COINCIDENT * COINCIDENT / square)) * growth;
+    }
+    Stretched { pull, direction, length, rate: advance / length, tension: density * length }
 }
 
 /// By d and ḋ.

@@ -65,6 +65,11 @@ pub trait Joint: Debug {
         self.mobilizer()?.axis_of(coordinate)
     }
 
+    /// What it pushes on by teeth: bearings feel more than its own torque and force.
+    fn toothed(&self) -> Toothed {
+        Toothed::default()
+    }
+
     /// Its constraints; `own` is its own index.
     ///
     /// # Errors
@@ -78,6 +83,15 @@ pub trait Joint: Debug {
             _ => None,
         }
     }
+}
+
+/// Joints, and bodies, that have teeth, by index.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Toothed {
+    /// The second body of each has teeth: the joint is its bearing.
+    pub joints: Vec<usize>,
+    /// Bodies whose bearings are not named.
+    pub bodies: Vec<usize>,
 }
 
 /// The relative motions that a recursion over a tree of bodies knows.

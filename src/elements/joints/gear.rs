@@ -6,8 +6,9 @@
 //!
 //! φ is the angle of a body about z, or of a joint about its axis. An external pair has a negative ratio. −Φ_qᵀ λ is the
 //! torque −λ on the second and +ratio λ on the first; the difference is carried by whatever holds the axles, so this is no
-//! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Tooth
-//! forces on the axles are not part of it: the reaction has no force.
+//! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Where
+//! teeth touch and at which angle is not told: the motion does not depend on it, but the reactions of the bearings do, and
+//! are refused where something asks for them.
 
 use mbint_derive::Element;
 use symdiff::Formula;
@@ -15,7 +16,7 @@ use symdiff::Formula;
 use crate::grammar::{JointCoordinate, OnJoint, Rotating};
 use crate::multibody::Vector;
 
-use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
+use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
 #[derive(Clone, Debug, Element)]
@@ -57,6 +58,17 @@ fn of_joint(angle: Rotating) -> Option<OnJoint> {
 impl Joint for Gear {
     fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
         self.between.into_iter().filter_map(of_joint).collect()
+    }
+
+    fn toothed(&self) -> Toothed {
+        let mut toothed = Toothed::default();
+        for angle in self.between {
+            match angle {
+                Rotating::Joint(joint) => toothed.joints.push(joint),
+                Rotating::Body(body) => toothed.bodies.push(body),
+            }
+        }
+        toothed
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -10,7 +10,7 @@ mod capabilities;
 mod registry;
 mod rows;
 
-pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, RowDocs, Separation};
+pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, RowDocs, Separation, Toothed};
 pub use rows::{Kinematics, Row, Rows};
 
 pub use registry::JointDocs;

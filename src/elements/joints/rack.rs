@@ -14,7 +14,7 @@ use symdiff::Formula;
 use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
 use crate::multibody::Vector;
 
-use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
+use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
 #[derive(Clone, Debug, Element)]
@@ -50,6 +50,10 @@ impl JointElement for Rack {
 impl Joint for Rack {
     fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
         self.pinion_and_rack().to_vec()
+    }
+
+    fn toothed(&self) -> Toothed {
+        Toothed { joints: self.pinion_and_rack().map(|on| on.joint).to_vec(), bodies: Vec::new() }
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -18,7 +18,7 @@ const MANY: i32 = 8;
 impl LogAxis {
     /// The axis for `values`; whatever is not positive and finite is passed over.
     pub fn fit(values: impl Iterator<Item = f64>) -> Self {
-        let exponents = values.filter(|x| x.is_normal() && *x > 0.0).map(f64::log10);
+        let exponents = values.filter(|x| x.is_normal() && *x > 0.0).map(symdiff::math::log10);
         let (low, high) =
             exponents.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         if low > high {
@@ -30,7 +30,7 @@ impl LogAxis {
 
     /// Where `x` lies: 0 at the lower end, 1 at the upper end; what is below the axis or not positive, at its lower end.
     pub fn place(&self, x: f64) -> f64 {
-        let exponent = if x > 0.0 { x.log10() } else { f64::NEG_INFINITY };
+        let exponent = if x > 0.0 { symdiff::math::log10(x) } else { f64::NEG_INFINITY };
         ((exponent - f64::from(self.first)) / f64::from(self.last - self.first)).clamp(0.0, 1.0)
     }
 
@@ -44,7 +44,9 @@ impl LogAxis {
             let label = (exponent - self.first) % every == 0;
             ticks.push((decade, label.then(|| format!("10{}", superscript(exponent)))));
             if exponent < self.last && decades <= MANY {
-                ticks.extend((2..10).map(|times| (decade + f64::from(times).log10() / f64::from(decades), None)));
+                ticks.extend(
+                    (2..10).map(|times| (decade + symdiff::math::log10(f64::from(times)) / f64::from(decades), None)),
+                );
             }
         }
         ticks

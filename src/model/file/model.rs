@@ -84,7 +84,7 @@ grammar! {
         duration: Option<Number>,
         /// Length of every step, s; instead of a `tolerance` of the model.
         step: Option<Number>,
-        /// Instead of `step`: what the steps' position errors may add up to over the run, relative to |q| or, where that is larger, to the model's size.
+        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run; every sample keeps it, and steps end at events.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0.
         alpha: Option<Number>,

@@ -11,11 +11,11 @@ grammar! {
         duration: Number,
         /// Length of every step, s; by default 1e-3.
         step: Option<Number>,
-        /// Instead of `step`: what the steps' position errors may add up to over the run, relative to |q| or, where that is larger, to the model's size.
+        /// Instead of `step`: error that the steps may leave in every output, relative to how far it moves in the run; every sample keeps it, and steps end at events.
         tolerance: Option<Number>,
         /// HHT parameter from -1/3 to below 0; by default -0.1.
         alpha: Option<Number>,
-        /// s between rows of output; by default about a 200th of the duration.
+        /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however near.
         output_step: Option<Number>,
         /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions.
         formulation: Option<FormulationName>,

@@ -75,7 +75,14 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
         None => (deviation(reader, draft, *plus, nominal, kind), deviation(reader, draft, *minus, nominal, kind)),
     };
     let (nominal, above, below) = (nominal?, above?, below?);
-    Some([nominal, nominal - below, nominal + above])
+    let (lower, upper) = (nominal - below, nominal + above);
+    if !(lower.is_finite() && upper.is_finite() && (upper - lower).is_finite()) {
+        let written = [*tolerance, *plus, *minus].into_iter().flatten().next();
+        let place = written.map_or_else(|| 0..0, |node| node.span.clone());
+        reader.error(place, "the parameter's limits are no finite numbers", None);
+        return None;
+    }
+    Some([nominal, lower, upper])
 }
 
 /// How far a value may deviate: `1%` of it, or a quantity.

@@ -13,6 +13,10 @@ use crate::syntax::yaml::{Entry, Node, Value};
 /// Sections whose entries can be left out by name.
 const NAMED: [&str; 3] = ["effects", "joints", "outputs"];
 
+/// Those of what moves and acts, and that of what is observed.
+const PARTS: &[&str] = &["effects", "joints"];
+const OUTPUTS: &[&str] = &["outputs"];
+
 /// Sections of which a scene's entries replace the model's of the same name, or come on top.
 const BY_NAME: [(&str, &str); 5] = [
     ("joints", "joints"),
@@ -146,10 +150,12 @@ impl Draft {
         }
     }
 
-    /// Sections that have an entry of this name.
+    /// Sections that have an entry of this name; that of outputs only where no effect and no joint has it.
     fn sections_with(&self, name: &str) -> Vec<&'static str> {
         let has = |section: &&str| self.entries_of(section).iter().any(|entry| entry.key == name);
-        NAMED.into_iter().filter(has).collect()
+        let [parts, outputs] =
+            [PARTS, OUTPUTS].map(|sections| sections.iter().copied().filter(has).collect::<Vec<_>>());
+        if parts.is_empty() { outputs } else { parts }
     }
 
     fn unknown(&self, reader: &mut Reader, name: &str, span: Span) {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use symdiff::Formula;
+use symdiff::{Formula, math};
 
 /// A number, or the text of a formula of parameters, in parentheses where it has an operator.
 #[derive(Clone, Debug)]
@@ -93,7 +93,7 @@ pub fn div(a: &Value, b: &Value) -> Value {
 /// cos and sin of half an angle.
 fn half(angle: &Value) -> [Value; 2] {
     match angle {
-        Value::Number(angle) => [(angle / 2.0).cos(), (angle / 2.0).sin()].map(Value::Number),
+        Value::Number(angle) => [math::cos(angle / 2.0), math::sin(angle / 2.0)].map(Value::Number),
         Value::Text(text) => ["cos", "sin"].map(|function| Value::Text(format!("{function}({text}/2)"))),
     }
 }
@@ -138,9 +138,9 @@ pub fn roll_pitch_yaw(angles: &Vector) -> Quaternion {
 /// Sums of halves of the angles come from p₁ ± p₃ and p₀ ± p₂ (Bernardes & Viollet, PLoS ONE 17 (2022) e0276302): exact
 /// at a pitch of ±90° too, where only the sum or the difference of roll and yaw is determined.
 pub fn angles_of([w, x, y, z]: [f64; 4]) -> [f64; 3] {
-    let half_sum = (x + z).atan2(w - y);
-    let half_difference = (x - z).atan2(w + y);
-    let pitch = 2.0 * (w + y).hypot(x - z).atan2((w - y).hypot(x + z)) - FRAC_PI_2;
+    let half_sum = math::atan2(x + z, w - y);
+    let half_difference = math::atan2(x - z, w + y);
+    let pitch = 2.0 * math::atan2(math::hypot(w + y, x - z), math::hypot(w - y, x + z)) - FRAC_PI_2;
     let wrapped = |angle: f64| angle - TAU * (angle / TAU).round();
     [wrapped(half_sum + half_difference), pitch, wrapped(half_sum - half_difference)]
 }

@@ -1,7 +1,7 @@
 //! Effects of a [`Robot`](super::robot::Robot)'s joints: damping and friction as the file has them and, where the model asks for
 //! it, stops at their limits.
 //!
-//! Damping is −d v, Coulomb friction −f tanh(v/v₀), each between the joint's two bodies, v the joint's velocity. They are
+//! Damping is −d v, Coulomb friction −f v/√(v² + v₀²), each between the joint's two bodies, v the joint's velocity. They are
 //! called `JOINT.damping`, `JOINT.friction` and `JOINT.limit`, and can be left out by these names.
 
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
@@ -19,7 +19,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::Node;
 
-/// Velocities at which Coulomb friction has three quarters of its size: rad/s, m/s.
+/// v₀, at which Coulomb friction has 71 % of its size: rad/s, m/s.
 const SLOW_TURN: f64 = 0.05;
 const SLOW_SLIDE: f64 = 0.01;
 

@@ -144,7 +144,7 @@ fn design(dimension: usize) -> Vec<Vec<f64>> {
     };
     let corners = (0..(dimension + 1).next_power_of_two()).map(walsh);
     // The root of φ^(k+1) = φ + 1: steps φ^−1, φ^−2, … that are as irrational as they can be together.
-    let golden = (0..64).fold(2.0_f64, |phi, _| (1.0 + phi).powf(1.0 / (dimension as f64 + 1.0)));
+    let golden = (0..64).fold(2.0_f64, |phi, _| symdiff::math::pow(1.0 + phi, 1.0 / (dimension as f64 + 1.0)));
     let scattered = (1..=SCATTERED.0 * dimension).map(|n| {
         let coordinate = |axis| 2.0 * (0.5 + n as f64 * golden.powi(-(axis as i32) - 1)).fract() - 1.0;
         (0..dimension).map(coordinate).collect()

@@ -18,8 +18,27 @@ impl Controller {
     /// Smallest step, as a share of the duration; below it the control gives up.
     pub const SMALLEST: f64 = 1e-13;
 
+    /// See [`event`](Self::event), as a share of the duration.
+    const EVENT: f64 = 1e-7;
+
     /// Local errors below this are round-off and are not controlled: positions carry an error of ε, and so does δ.
     const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+    /// A switch is located to this, s: shorter steps are left to the errors that they make.
+    pub fn event(self) -> f64 {
+        Self::EVENT * self.duration
+    }
+
+    /// Smallest step, s.
+    pub fn least(self) -> f64 {
+        Self::SMALLEST * self.duration
+    }
+
+    /// For steps that are divided into so many parts: the scheme is of second order.
+    #[must_use]
+    pub fn for_parts(self, parts: usize) -> Self {
+        Self { tolerance: self.tolerance / (parts as f64).powi(2), ..self }
+    }
 
     /// A step's local error over its share of the tolerance; the step is accepted where this is at most 1.
     pub fn error_ratio(self, error: f64, h: f64) -> f64 {

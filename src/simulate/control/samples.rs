@@ -2,6 +2,7 @@
 
 use symdiff::WIDTHS;
 
+use super::adaptive::{Adaptive, Attempt};
 use super::controller::Controller;
 use super::schedule::Schedule;
 use crate::simulate::error::SimulationError;
@@ -13,9 +14,6 @@ const FIRST_STEP: f64 = 1e-2;
 
 /// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to grow.
 const LOOK_AHEAD: f64 = 0.5;
-
-/// A step longer than this share of the time left up to a row is cut to half of that time, so that no sliver remains.
-const HALVE: f64 = 0.55;
 
 /// Most steps of a schedule: where it needs more, no step resolves the motion.
 const MOST_STEPS: usize = 2_000_000;
@@ -34,7 +32,7 @@ pub struct ToleranceSchedule {
 }
 
 /// The schedule at which every controlling sample keeps its local position errors within their shares of `tolerance`. Rows
-/// are whole multiples of `output_step`; a step is repeated with a smaller size where the largest error is too large or a
+/// are whole multiples of `output_step`, and the end; a step is repeated with a smaller size where the largest error is too large or a
 /// sample does not converge.
 ///
 /// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
@@ -55,7 +53,7 @@ pub fn schedule_for_tolerance(
     let mut ends = Vec::with_capacity(rows - 1);
     let (mut complete_rows, mut failure) = (rows, None);
     for row in 1..rows {
-        let (mut time, goal) = ((row - 1) as f64 * output_step, row as f64 * output_step);
+        let (mut time, goal) = ((row - 1) as f64 * output_step, Schedule::time_of(duration, output_step, row));
         let mut list = Vec::new();
         while time < goal {
             match control.step(time, goal) {
@@ -80,15 +78,12 @@ pub fn schedule_for_tolerance(
     Ok(ToleranceSchedule { schedule, complete_rows, dropped: control.dropped, failure })
 }
 
-/// The controlling samples in step, and the step size to try next.
+/// The controlling samples in step.
 struct Control<'s> {
     simulator: &'s Simulator,
     samples: &'s [Vec<f64>],
-    controller: Controller,
     output_step: f64,
-    stepper: Stepper<'s>,
-    /// The step size to try next, s.
-    h: f64,
+    steps: Adaptive<'s>,
     /// Accepted steps.
     count: usize,
     dropped: Vec<usize>,
@@ -114,88 +109,63 @@ impl<'s> Control<'s> {
         let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
         let h = FIRST_STEP * output_step;
         let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
-        let mut stepper = Stepper::new(&simulator.program, &start);
-        stepper.estimate_errors();
-        Ok(Self { simulator, samples, controller, output_step, stepper, h, count: 0, dropped: Vec::new() })
+        let steps = Adaptive::new(simulator, Stepper::new(&simulator.program, &start), controller, h);
+        Ok(Self { simulator, samples, output_step, steps, count: 0, dropped: Vec::new() })
     }
 
     /// Whether no sample runs any more, or the schedule has as many steps as it may have.
     fn is_over(&self) -> bool {
-        !self.stepper.alive().contains(&true) || self.count == MOST_STEPS
+        !self.steps.stepper.alive().contains(&true) || self.count == MOST_STEPS
     }
 
     /// Tries a step from `time` towards the row at `goal`.
     fn step(&mut self, time: f64, goal: f64) -> Outcome {
-        let left = goal - time;
-        let (step, end) = match self.h {
-            h if h >= left * (1.0 - 1e-9) => (left, goal),
-            h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
-            h => (h, time + h),
-        };
-        self.stepper.set_step_size(step);
-        let before = self.stepper.save();
-        let ratios = self.error_ratios(step, end);
-        let largest = ratios.iter().copied().fold(0.0, f64::max);
-        let (factor, accepted) = (self.controller.factor(largest), largest <= 1.0);
-        let next = step * if accepted { factor } else { factor.min(0.9) };
-        // A step cut short at a row is no reason against the longer one.
-        self.h = if accepted && step < self.h { self.h.max(next) } else { next };
-        if self.h < Controller::SMALLEST * self.controller.duration || self.count == MOST_STEPS {
-            Outcome::Dropped(self.drop_failing(&ratios, &before, time, step, goal))
-        } else if accepted {
+        let attempt = self.steps.attempt(time, goal);
+        if self.steps.is_stuck() || self.count == MOST_STEPS {
+            Outcome::Dropped(self.drop_failing(&attempt, time, goal))
+        } else if attempt.accepted {
             self.count += 1;
-            Outcome::Accepted(end)
+            Outcome::Accepted(attempt.end)
         } else {
-            self.stepper.rewind(&before, step);
+            self.steps.reject(&attempt);
             Outcome::Rejected
         }
     }
 
-    /// Every lane's error ratio in a step: infinite where it does not converge, 0 where it no longer runs.
-    fn error_ratios(&mut self, step: f64, end: f64) -> Vec<f64> {
-        let converged = self.stepper.try_step(step, end);
-        let lanes = self.stepper.alive().iter().zip(converged).zip(self.stepper.local_errors());
-        let ratio = |((running, converged), error): ((&bool, bool), &LocalError)| match self
-            .controller
-            .error_ratio(error.size, step)
-        {
-            _ if !running => 0.0,
-            ratio if converged && !ratio.is_nan() => ratio,
-            _ => f64::INFINITY,
-        };
-        lanes.map(ratio).collect()
-    }
-
     /// Drops the samples whose error ratios are too large, restores the others' state and says why.
-    fn drop_failing(&mut self, ratios: &[f64], before: &[f64], time: f64, step: f64, goal: f64) -> SimulationError {
+    fn drop_failing(&mut self, attempt: &Attempt, time: f64, goal: f64) -> SimulationError {
+        let Attempt { ratios, step, .. } = attempt;
         let largest = ratios.iter().copied().fold(0.0, f64::max);
         let failing: Vec<usize> = (0..ratios.len()).filter(|&lane| ratios[lane] >= largest.min(1.0)).collect();
         // One of them has the largest ratio.
         let lane = *failing.iter().find(|&&lane| ratios[lane] == largest).unwrap_or(&failing[0]);
         let cause = self.cause(lane, largest);
-        self.stepper.rewind(before, step);
+        self.steps.reject(attempt);
         let parameters = self.simulator.with_names(&self.samples[lane.min(self.samples.len() - 1)]);
         let later = goal.max(time + LOOK_AHEAD * self.output_step);
-        let error = match self.simulator.open_constraint(&self.stepper.lane(lane), later) {
+        let error = match self.simulator.open_constraint(&self.steps.stepper.lane(lane), later) {
             Some(open) => self.simulator.locked(open, time, parameters),
-            None if self.count == MOST_STEPS => SimulationError::TooManySteps { steps: self.count, step, time, cause },
-            None => SimulationError::StepTooSmall { step: self.h, time, cause, parameters },
+            None if self.count == MOST_STEPS => {
+                SimulationError::TooManySteps { steps: self.count, step: *step, time, cause }
+            }
+            None => SimulationError::StepTooSmall { step: self.steps.h, time, cause, parameters },
         };
-        failing.iter().for_each(|&lane| self.stepper.retire(lane..lane + 1));
+        failing.iter().for_each(|&lane| self.steps.stepper.retire(lane..lane + 1));
         // Lanes beyond the samples repeat the last one.
         self.dropped.extend(failing.into_iter().filter(|&lane| lane < self.samples.len()));
-        self.h = FIRST_STEP * self.output_step;
+        self.steps.h = FIRST_STEP * self.output_step;
         error
     }
 
     /// Why a lane misses its tolerance: an equation that does not converge, or the acceleration that changes most.
     fn cause(&mut self, lane: usize, error_ratio: f64) -> String {
+        let stepper = &mut self.steps.stepper;
         if error_ratio.is_finite() {
-            let LocalError { coordinate, change, .. } = self.stepper.local_errors()[lane];
+            let LocalError { coordinate, change, .. } = stepper.local_errors()[lane];
             let name = &self.simulator.system.coordinates[coordinate].name;
             return format!("the acceleration of `{name}` changes by {change:.3e} within one of them");
         }
-        let equation = self.simulator.equation_name(self.stepper.worst_equation(lane));
+        let equation = self.simulator.equation_name(stepper.worst_equation(lane));
         format!("Newton's iteration does not converge, and the largest residual is that of `{equation}`")
     }
 }

@@ -1,45 +1,92 @@
 //! The step schedule that all samples share: the rows of output and the steps between them.
+//!
+//! The last row is at the end of the run, also where the output step does not divide the duration; then it is nearer to the row before.
+//! Where the step does not divide the time between these two, the last step is shorter.
 
 /// Rows of output, and the steps that lead from row to row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
-    /// s between rows of output.
+    /// s between rows of output, but for the last.
     pub output_step: f64,
     /// Rows of output, the one at t = 0 included.
     pub rows: usize,
+    /// Time of the last row, s.
+    end: f64,
     steps: Steps,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Steps {
-    /// This many steps of equal length between rows.
-    Fixed { step: f64, per_row: usize },
+    /// This many steps of equal length between rows, and those before the last row.
+    Fixed { step: f64, per_row: usize, last: LastSteps },
     /// For each row but the first, the times at which the steps before it end; the last is the row's own.
     Listed(Vec<Vec<f64>>),
 }
 
-/// Rows that fit into a duration (with the slack of rounded decimals).
+/// Steps before the last row: whole ones, then so many of the length `rest`, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LastSteps {
+    whole: usize,
+    rests: usize,
+    rest: f64,
+}
+
+/// A remainder below this share of a step is rounding.
+const NO_REST: f64 = 1e-6;
+
+impl LastSteps {
+    fn new(length: f64, step: f64) -> Self {
+        let whole = (length / step + NO_REST).floor();
+        let rest = length - whole * step;
+        let rests = usize::from(rest > NO_REST * step);
+        Self { whole: whole as usize, rests, rest: if rests > 0 { rest } else { 0.0 } }
+    }
+}
+
+/// Rows of a duration: those that fit into it (with the slack of rounded decimals), and the one at its end.
 fn rows(duration: f64, output_step: f64) -> usize {
-    (duration / output_step * (1.0 + 1e-12) + 1e-9).floor() as usize + 1
+    let ratio = duration / output_step;
+    let whole = (ratio * (1.0 + 1e-12) + 1e-9).floor();
+    whole as usize + usize::from(ratio - whole > NO_REST) + 1
 }
 
 impl Schedule {
-    /// Steps of one length; `output_step` is a whole multiple of `step`.
+    /// Steps of one length, but for the last; `output_step` is a whole multiple of `step`.
     pub fn fixed(duration: f64, step: f64, output_step: f64) -> Self {
         let per_row = ((output_step / step).round() as usize).max(1);
-        Self { output_step, rows: rows(duration, output_step), steps: Steps::Fixed { step, per_row } }
+        Self::of_steps(duration, output_step, step, per_row)
+    }
+
+    fn of_steps(end: f64, output_step: f64, step: f64, per_row: usize) -> Self {
+        let rows = rows(end, output_step);
+        let before = end - rows.saturating_sub(2) as f64 * output_step;
+        let last = if (before - output_step).abs() <= NO_REST * output_step {
+            LastSteps { whole: per_row, rests: 0, rest: 0.0 }
+        } else {
+            LastSteps::new(before, step)
+        };
+        Self { output_step, rows, end, steps: Steps::Fixed { step, per_row, last } }
     }
 
     /// Steps that end at the listed times: one list for each row but the first.
     pub fn listed(output_step: f64, ends: Vec<Vec<f64>>) -> Self {
-        Self { output_step, rows: ends.len() + 1, steps: Steps::Listed(ends) }
+        let end = ends.last().and_then(|ends| ends.last()).copied().unwrap_or(0.0);
+        Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends) }
     }
 
     /// The same rows, each step divided into `parts` equal ones.
     #[must_use]
     pub fn refined(&self, parts: usize) -> Self {
         let steps = match &self.steps {
-            Steps::Fixed { step, per_row } => Steps::Fixed { step: step / parts as f64, per_row: per_row * parts },
+            Steps::Fixed { step, per_row, last } => Steps::Fixed {
+                step: step / parts as f64,
+                per_row: per_row * parts,
+                last: LastSteps {
+                    whole: last.whole * parts,
+                    rests: last.rests * parts,
+                    rest: last.rest / parts as f64,
+                },
+            },
             Steps::Listed(ends) => {
                 let refine = |row: usize| {
                     self.steps_to(row)
@@ -54,7 +101,7 @@ impl Schedule {
         Self { steps, ..*self }
     }
 
-    /// Number of steps between rows, if all steps have one length.
+    /// Number of steps between rows, if all steps but those before the last row have one length.
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
             Steps::Fixed { per_row, .. } => Some(*per_row),
@@ -65,7 +112,7 @@ impl Schedule {
     /// The same rows with this many steps of one length between them.
     #[must_use]
     pub fn with_steps_per_row(&self, per_row: usize) -> Self {
-        Self { steps: Steps::Fixed { step: self.output_step / per_row as f64, per_row }, ..*self }
+        Self::of_steps(self.end, self.output_step, self.output_step / per_row as f64, per_row)
     }
 
     /// Number of rows of a schedule of this duration.
@@ -75,12 +122,23 @@ impl Schedule {
 
     /// Time of a row, s.
     pub fn time(&self, row: usize) -> f64 {
-        row as f64 * self.output_step
+        if row + 1 == self.rows { self.end } else { row as f64 * self.output_step }
+    }
+
+    /// Time of the last row, s.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
+    /// Time of a row of a schedule of this duration, s.
+    pub fn time_of(duration: f64, output_step: f64, row: usize) -> f64 {
+        if row + 1 == rows(duration, output_step) { duration } else { row as f64 * output_step }
     }
 
     /// The first step's length, s.
     pub fn first_step(&self) -> f64 {
         match &self.steps {
+            Steps::Fixed { last, .. } if self.rows == 2 && last.whole == 0 => last.rest,
             Steps::Fixed { step, .. } => *step,
             Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
         }
@@ -90,11 +148,15 @@ impl Schedule {
     pub fn steps_to(&self, row: usize) -> impl Iterator<Item = (f64, f64)> {
         let count = match &self.steps {
             _ if row == 0 => 0,
+            Steps::Fixed { last, .. } if row + 1 == self.rows => last.whole + last.rests,
             Steps::Fixed { per_row, .. } => *per_row,
             Steps::Listed(ends) => ends[row - 1].len(),
         };
         (0..count).map(move |index| match &self.steps {
-            Steps::Fixed { step, per_row } => (*step, ((row - 1) * per_row + index + 1) as f64 * step),
+            Steps::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
+                (last.rest, self.end - (last.whole + last.rests - index - 1) as f64 * last.rest)
+            }
+            Steps::Fixed { step, per_row, .. } => (*step, ((row - 1) * per_row + index + 1) as f64 * step),
             Steps::Listed(ends) => {
                 let before = if index == 0 { self.time(row - 1) } else { ends[row - 1][index - 1] };
                 (ends[row - 1][index] - before, ends[row - 1][index])
@@ -105,6 +167,9 @@ impl Schedule {
     /// Number of steps up to a row.
     pub fn steps_before(&self, row: usize) -> usize {
         match &self.steps {
+            Steps::Fixed { per_row, last, .. } if row > 0 && row + 1 == self.rows => {
+                (row - 1) * per_row + last.whole + last.rests
+            }
             Steps::Fixed { per_row, .. } => row * per_row,
             Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
         }
@@ -123,6 +188,36 @@ mod tests {
         assert_eq!(steps.len(), 10);
         assert!((steps[9].1 - 2.0).abs() < 1e-12);
         assert_eq!(schedule.steps_before(200), 2000);
+    }
+
+    /// Whatever the duration, the steps are as long as they should be, the last is not longer, and they end where the run does.
+    #[test]
+    fn the_last_row_is_at_the_end() {
+        for (duration, step, output_step) in [
+            (0.7, 1e-3, 3e-3),
+            (0.5, 1e-3, 2e-3),
+            (1.0, 0.03, 0.06),
+            (0.355, 0.01, 0.1),
+            (0.35, 0.01, 0.35),
+            (0.02, 0.03, 0.03),
+        ] {
+            let schedule = Schedule::fixed(duration, step, output_step);
+            for schedule in [schedule.clone(), schedule.refined(2), schedule.with_steps_per_row(3)] {
+                assert_eq!(schedule.time(schedule.rows - 1), duration);
+                let (mut time, mut count, mut before) = (0.0, 0, f64::INFINITY);
+                for row in 1..schedule.rows {
+                    for (h, end) in schedule.steps_to(row) {
+                        assert!(
+                            (time + h - end).abs() < 1e-12 && h <= before * (1.0 + 1e-9),
+                            "{duration}: {h} to {end}"
+                        );
+                        (time, count, before) = (end, count + 1, h);
+                    }
+                    assert!((time - schedule.time(row)).abs() < 1e-9 * duration, "{duration}: {time}");
+                }
+                assert_eq!(count, schedule.steps_before(schedule.rows - 1));
+            }
+        }
     }
 
     #[test]

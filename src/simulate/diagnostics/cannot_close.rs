@@ -1,6 +1,6 @@
 //! Whether a mechanism locks: then a constraint cannot be closed wherever positions are sought.
 
-use crate::compile::compile_start;
+use crate::compile::{ClosureRow, compile_start};
 use crate::simulate::error::{NamedValues, SimulationError, residual_text};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
@@ -21,6 +21,7 @@ impl Simulator {
         // Of the start only the constraints are kept.
         let mut free = self.system.clone();
         free.start.position.fill(None);
+        free.start.conditions.clear();
         let start = compile_start(&free, &self.mobility.redundant, state).ok()?;
         let layout = &start.layout;
         let parameters = layout.parameters.clone();
@@ -30,7 +31,11 @@ impl Simulator {
         }
         assembly.tile_mut().lane_mut(layout.time)[0] = time;
         let worst = assembly.descend().err()?;
-        Some(OpenConstraint { constraint: worst.constraint, residual: worst.residual.abs() })
+        // The start's conditions, which a beam has, do not hold later.
+        match worst.row {
+            ClosureRow::Constraint(constraint) => Some(OpenConstraint { constraint, residual: worst.residual.abs() }),
+            ClosureRow::Condition(_) => None,
+        }
     }
 
     /// The error of a mechanism that locks at a time.

@@ -1,9 +1,12 @@
-//! Findings about a mechanism that its motion shows: singular configurations, loops that cannot be closed, undetermined reactions.
+//! Findings about a mechanism that its motion shows: singular configurations, loops that cannot be closed, terms that are no finite
+//! numbers, undetermined reactions.
 
 mod cannot_close;
+mod not_finite;
 mod singular;
 mod undetermined;
 
 pub use cannot_close::OpenConstraint;
+pub use not_finite::not_finite;
 pub use singular::{SingularPass, SingularWatch};
 pub use undetermined::undetermined_outputs;

@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use symdiff::Interval;
 use symdiff::taylor_model::{ModelSpace, up};
 
-use super::matrix::{Models, apply_bounds, larger};
+use super::matrix::{Models, larger};
 use super::{EnclosureError, Gains};
 
 /// Independent coordinates are chosen anew when another moves this many times as much.
@@ -225,16 +225,16 @@ impl Frame {
         let found = inverse.times(space, moved);
         turn(&mut self.turned, &found);
         let rest = inverse.times(space, &self.basis).off_identity(space);
-        let mut entering = apply_bounds(&inverse.bounds(space), fresh);
-        let mut coordinates = apply_bounds(&found.bounds(space), radii);
+        let mut entering = inverse.bounds(space).times(fresh);
+        let mut coordinates = found.bounds(space).times(radii);
         let rough: Vec<f64> = coordinates.iter().zip(&entering).map(|(a, b)| up(a + b)).collect();
         add_skew(space, &rest, &rough, &mut entering)?;
         coordinates.iter_mut().zip(&entering).for_each(|(z, more)| *z = up(*z + more));
 
         let back = Models::constant(space, &self.turned.transpose());
         let turned = back.times(space, &found.part(space, 0..slow, 0..moved.columns));
-        let mut of_slow = apply_bounds(&turned.bounds(space), radii);
-        let entering = apply_bounds(&back.bounds(space), &entering[..slow]);
+        let mut of_slow = turned.bounds(space).times(radii);
+        let entering = back.bounds(space).times(&entering[..slow]);
         of_slow.iter_mut().zip(&entering).for_each(|(z, more)| *z = up(*z + more));
         let rest = back.times(space, &Models::constant(space, &self.turned)).off_identity(space);
         let rough = of_slow.clone();
@@ -254,7 +254,7 @@ fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) ->
         return Err(EnclosureError::Unproven);
     }
     let largest = up(rough.iter().copied().fold(0.0, larger) / (1.0 - norm));
-    for (to, row) in to.iter_mut().zip(skew.bounds(space).chunks_exact(skew.columns)) {
+    for (to, row) in to.iter_mut().zip(skew.bounds(space).rows()) {
         *to = up(*to + up(row.iter().sum::<f64>()) * largest);
     }
     Ok(())

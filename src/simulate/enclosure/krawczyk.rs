@@ -3,7 +3,7 @@
 use symdiff::taylor_model::up;
 
 use super::EnclosureError;
-use super::matrix::{apply_bounds, larger};
+use super::matrix::{Bounds, larger};
 
 /// Most attempts to find a box that is mapped into itself.
 const ATTEMPTS: usize = 12;
@@ -15,7 +15,7 @@ const INFLATION: f64 = 1.25;
 /// over the solutions in the box, row by row.
 pub(super) struct Image {
     pub missed: Vec<f64>,
-    pub contraction: Vec<f64>,
+    pub contraction: Bounds,
 }
 
 /// A box that the operator maps into itself: for every ξ one solution is in it. `first` is where the search begins.
@@ -26,9 +26,9 @@ pub(super) fn enclose(first: Vec<f64>, mut image: impl FnMut(&[f64]) -> Image) -
     let mut box_of = first;
     for _ in 0..ATTEMPTS {
         let Image { missed, contraction } = image(&box_of);
-        let norm = contraction.chunks_exact(box_of.len()).map(|row| up(row.iter().sum())).fold(0.0, larger);
+        let norm = contraction.rows().map(|row| up(row.iter().sum())).fold(0.0, larger);
         let apply = |y: &[f64]| -> Vec<f64> {
-            apply_bounds(&contraction, y).iter().zip(&missed).map(|(moved, missed)| up(moved + missed)).collect()
+            contraction.times(y).iter().zip(&missed).map(|(moved, missed)| up(moved + missed)).collect()
         };
         let mapped = apply(&box_of);
         // Written so that NaN is no proof.
@@ -52,7 +52,10 @@ mod tests {
     #[test]
     fn a_contraction_is_enclosed_and_an_expansion_is_not() {
         let image = |factor: f64| {
-            move |_: &[f64]| Image { missed: vec![1.0, 0.5], contraction: vec![factor, 0.1, 0.0, factor] }
+            move |_: &[f64]| Image {
+                missed: vec![1.0, 0.5],
+                contraction: Bounds::of(2, 2, &[factor, 0.1, 0.0, factor]),
+            }
         };
         let found = enclose(vec![1e-9, 1e-9], image(0.5)).unwrap();
         // y₂ = 0.5/(1 − 0.5) = 1, y₁ = (1 + 0.1)/(1 − 0.5) = 2.2.

@@ -105,9 +105,10 @@ impl Models {
         self.values.chunks_exact(self.size).map(norms).collect()
     }
 
-    /// Bound of each entry's absolute value, row by row.
-    pub fn bounds(&self, space: &ModelSpace) -> Vec<f64> {
-        self.values.chunks_exact(self.size).map(|model| space.bound(model)).collect()
+    /// Bound of each entry's absolute value.
+    pub fn bounds(&self, space: &ModelSpace) -> Bounds {
+        let values = self.values.chunks_exact(self.size).map(|model| space.bound(model)).collect();
+        Bounds { rows: self.rows, columns: self.columns, values }
     }
 
     /// `self · other`.
@@ -186,8 +187,7 @@ impl Models {
 
     /// Largest sum of a row's bounds.
     pub fn row_norm(&self, space: &ModelSpace) -> f64 {
-        let rows = self.bounds(space);
-        rows.chunks_exact(self.columns.max(1)).map(|row| row.iter().sum::<f64>()).fold(0.0, larger)
+        self.bounds(space).rows().map(|row| row.iter().sum::<f64>()).fold(0.0, larger)
     }
 
     /// The inverse at the box's centre, as constants; `None` where it has none.
@@ -219,8 +219,49 @@ pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// Σ_j aᵢⱼ xⱼ of non-negative numbers, row by row, rounded up.
-pub(super) fn apply_bounds(matrix: &[f64], x: &[f64]) -> Vec<f64> {
-    let row = |row: &[f64]| symdiff::taylor_model::up(row.iter().zip(x).map(|(a, x)| a * x).sum());
-    matrix.chunks_exact(x.len()).map(row).collect()
+/// Bounds of the absolute values of a matrix's entries. A matrix without columns has rows: a mechanism without degrees of freedom has
+/// such matrices.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bounds {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl Bounds {
+    /// A matrix with this number of columns, from its entries row by row.
+    #[cfg(test)]
+    pub fn of(rows: usize, columns: usize, values: &[f64]) -> Self {
+        assert_eq!(values.len(), rows * columns);
+        Self { rows, columns, values: values.to_vec() }
+    }
+
+    /// All entries, row by row.
+    pub fn entries(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        (0..self.rows).map(|row| &self.values[row * self.columns..][..self.columns])
+    }
+
+    /// Σ_j aᵢⱼ xⱼ, row by row, rounded up; x is not negative.
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        debug_assert_eq!(x.len(), self.columns);
+        self.rows().map(|row| symdiff::taylor_model::up(row.iter().zip(x).map(|(a, x)| a * x).sum())).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Bounds;
+
+    #[test]
+    fn a_matrix_without_columns_has_rows() {
+        let empty = Bounds::of(3, 0, &[]);
+        assert_eq!(empty.rows().count(), 3);
+        assert_eq!(empty.times(&[]), [0.0, 0.0, 0.0]);
+        assert_eq!(Bounds::of(0, 2, &[]).times(&[1.0, 2.0]), [0.0; 0]);
+    }
 }

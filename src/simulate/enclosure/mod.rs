@@ -103,15 +103,32 @@ impl Gains {
     }
 }
 
+/// What the next step's length does: its own coefficients, and a becomes w + ratio (a − w) where the length changes.
+#[derive(Clone, Copy, Debug)]
+struct NextGains {
+    gains: Gains,
+    /// The next length over this one, where they differ.
+    ratio: Option<f64>,
+}
+
+impl NextGains {
+    fn same(gains: Gains) -> Self {
+        Self { gains, ratio: None }
+    }
+}
+
 /// A motion enclosed over a box of parameters, step by step.
 #[derive(Debug)]
 pub struct Enclosure<'s> {
     space: &'s ModelSpace,
+    certifier: &'s Certifier<'s>,
     program: &'s EquationsProgram,
     /// Whether rows of output solve for their accelerations and multipliers.
     solves_accelerations: bool,
     memory: ModelMemory<'s>,
     gains: Gains,
+    /// Those with which the next q̂ and v̂ are made.
+    next: NextGains,
     /// q̂, v̂, w in that order, 3n: polynomials only.
     state: Models,
     /// A, in units of `scale`.
@@ -149,7 +166,7 @@ impl<'s> Enclosure<'s> {
         start::assemble(simulator, program, space, &mut memory, coefficients.shift() * h)?;
 
         let n = program.layout.q.len();
-        let unit = |size: f64| 2.0_f64.powi(size.log2().round() as i32);
+        let unit = |size: f64| 2.0_f64.powi(symdiff::math::log2(size).round() as i32);
         let lengths = || simulator.system.coordinates.iter().map(|coordinate| coordinate.scale);
         let scale: Vec<f64> =
             [1.0, h, h * h].into_iter().flat_map(|time| lengths().map(move |length| unit(length / time))).collect();
@@ -159,10 +176,12 @@ impl<'s> Enclosure<'s> {
         let frame = Frame::new(space, &units, &gains, &tangent, &push, independent);
         let mut enclosure = Self {
             space,
+            certifier,
             program,
             solves_accelerations: simulator.solves_row_accelerations(),
             memory,
             gains,
+            next: NextGains::same(gains),
             state: Models::zero(space, 3 * n, 1),
             frame,
             radii: vec![0.0; 3 * n],
@@ -194,6 +213,12 @@ impl<'s> Enclosure<'s> {
     /// # Errors
     /// Where a step's solution cannot be proven, with the time of its end.
     pub fn advance(&mut self, schedule: &Schedule, row: usize) -> Result<(), (f64, EnclosureError)> {
-        schedule.steps_to(row).try_for_each(|(_, end)| self.step(end).map_err(|lost| (end, lost)))
+        let lengths = schedule.steps_to(row).chain(schedule.steps_to((row + 1).min(schedule.rows - 1))).skip(1);
+        let next: Vec<f64> = lengths.map(|(length, _)| length).collect();
+        for (place, (length, end)) in schedule.steps_to(row).enumerate() {
+            let next = next.get(place).copied().unwrap_or(length);
+            self.step(end, (length, next)).map_err(|lost| (end, lost))?;
+        }
+        Ok(())
     }
 }

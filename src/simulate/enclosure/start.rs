@@ -5,7 +5,7 @@ use symdiff::{Interval, ModelMemory, Tape};
 
 use super::EnclosureError;
 use super::krawczyk::{self, Image};
-use super::matrix::{Models, apply_bounds};
+use super::matrix::Models;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
@@ -177,7 +177,7 @@ impl Equations<'_> {
             }
         }
         let sizes = inverse.bounds(space);
-        let missed = apply_bounds(&sizes, &self.residual(space, memory).bounds(space));
+        let missed = sizes.times(self.residual(space, memory).bounds(space).entries());
         let spread = krawczyk::enclose(missed.clone(), |y| {
             self.set_radii(space, memory, Some(y));
             let contraction = inverse.times(space, &self.matrix(space, memory)).off_identity(space).bounds(space);

@@ -4,8 +4,8 @@ use symdiff::taylor_model::up;
 use symdiff::{Interval, ModelMemory};
 
 use super::krawczyk::{self, Image};
-use super::matrix::{Models, apply_bounds, larger};
-use super::{Enclosure, EnclosureError};
+use super::matrix::{Bounds, Models, larger};
+use super::{Enclosure, EnclosureError, Gains, NextGains};
 
 /// Most corrections of X; the residual that is left is bounded in any case.
 const MAX_CORRECTIONS: usize = 4;
@@ -54,7 +54,7 @@ impl<'s> Enclosure<'s> {
 
     /// q̂ = q + h v + q_a a − q_w w,   v̂ = v + v_a a − v_w w.
     fn predict(&self, q: &[f64], v: &[f64], a: &[f64], w: &[f64]) -> [Vec<f64>; 2] {
-        let gains = &self.gains;
+        let gains = &self.next.gains;
         let position = self.combine(&[(None, q), (Some(gains.h), v), (Some(gains.q_a), a), (Some(-gains.q_w), w)]);
         let velocity = self.combine(&[(None, v), (Some(gains.v_a), a), (Some(-gains.v_w), w)]);
         [position, velocity]
@@ -80,14 +80,26 @@ impl<'s> Enclosure<'s> {
         let gains = &self.gains;
         let q = self.combine(&[(None, position), (Some(gains.b), x)]);
         let v = self.combine(&[(None, velocity), (Some(gains.c), x)]);
-        let a = self.combine(&[(Some(gains.a_x), x), (Some(-gains.a_w), w)]);
+        let mut a = self.combine(&[(Some(gains.a_x), x), (Some(-gains.a_w), w)]);
+        if let Some(ratio) = self.next.ratio {
+            let ratio = Interval::point(ratio);
+            a = self.combine(&[(Some(Interval::point(1.0) - ratio), x), (Some(ratio), &a)]);
+        }
         let [position, velocity] = self.predict(&q, &v, &a, x);
         [q, v, position, velocity]
     }
 
-    /// One step to the time `end`. On return the memory holds q₊, v₊, w₊, λ₊ with all their radii.
-    pub(super) fn step(&mut self, end: f64) -> Result<(), EnclosureError> {
+    /// One step to the time `end`, with its length and that of the step after it. On return the memory holds q₊, v₊, w₊, λ₊ with all
+    /// their radii.
+    pub(super) fn step(&mut self, end: f64, (length, next): (f64, f64)) -> Result<(), EnclosureError> {
         let (n, space) = (self.coordinates(), self.space);
+        self.gains = self.next.gains;
+        self.next = if next == length {
+            NextGains::same(self.gains)
+        } else {
+            let gains = Gains::new(self.certifier.simulator.program.coefficients, next);
+            NextGains { gains, ratio: Some(next / length) }
+        };
         space.constant(Interval::point(end), self.memory.model_mut(self.program.layout.time));
         let solution = self.solve()?;
         let count = solution.rows;
@@ -111,8 +123,8 @@ impl<'s> Enclosure<'s> {
         let mut memory = self.take_memory();
         let spread_of = |y: &[f64]| -> Vec<f64> {
             // Of q₊, v₊, w₊, λ₊.
-            let mut spread = apply_bounds(&moved_sizes, &self.radii);
-            let of_unknowns = apply_bounds(&follow_sizes, &self.radii);
+            let mut spread = moved_sizes.times(&self.radii);
+            let of_unknowns = follow_sizes.times(&self.radii);
             for i in 0..n {
                 spread[i] = up(spread[i] + self.gains.b.magnitude() * y[i]);
                 spread[n + i] = up(spread[n + i] + self.gains.c.magnitude() * y[i]);
@@ -122,20 +134,20 @@ impl<'s> Enclosure<'s> {
         };
 
         let first: Vec<f64> = if self.spread.is_empty() {
-            apply_bounds(&sizes, &missed).iter().map(|missed| 2.0 * missed).collect()
+            sizes.times(missed.entries()).iter().map(|missed| 2.0 * missed).collect()
         } else {
             self.spread.iter().map(|spread| 1.5 * spread).collect()
         };
-        let (mut forcing, mut rest) = (Vec::new(), Vec::new());
+        let (mut forcing, mut rest) = (Vec::new(), Bounds::default());
         let found = krawczyk::enclose(first, |y| {
             self.place_in(&mut memory, &solution, Some(&spread_of(y)));
             let Slopes { by_unknown, by_state } = self.slopes_in(&mut memory);
             let contraction = inverse.times(space, &by_unknown).off_identity(space).bounds(space);
             let mut left = by_unknown.times(space, &follows);
             left.add(space, &by_state.times(space, &of_state));
-            let of_remainder = apply_bounds(&left.bounds(space), &self.radii);
-            let total: Vec<f64> = missed.iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
-            let missed = apply_bounds(&sizes, &total);
+            let of_remainder = left.bounds(space).times(&self.radii);
+            let total: Vec<f64> = missed.entries().iter().zip(&of_remainder).map(|(a, b)| up(a + b)).collect();
+            let missed = sizes.times(&total);
             (forcing, rest) = (total, contraction.clone());
             Image { missed, contraction }
         })?;
@@ -145,7 +157,7 @@ impl<'s> Enclosure<'s> {
         // y = −C η + (I − C J) y, |η| ≤ `forcing`: the first part is a known map, of the second only a bound is known.
         let forced = self.force(&inverse);
         let push = inverse.part(space, 0..n, n..count);
-        let rest = apply_bounds(&rest, &found);
+        let rest = rest.times(&found);
         let radii = [&self.radii[..], &forcing].concat();
         self.finish(&solution, &turned.beside(space, &forced), &radii, &rest[..n], &push)?;
         (self.inverse, self.spread) = (Some(inverse), found);
@@ -177,7 +189,7 @@ impl<'s> Enclosure<'s> {
             solution.add_approximately(&correction);
             self.place(&solution, None);
             let sizes = correction.bounds(space);
-            let scaled = sizes[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
+            let scaled = sizes.entries()[..n].iter().zip(&self.units.scale).map(|(size, scale)| gain * size / scale);
             if scaled.fold(0.0, larger) < SETTLED {
                 break;
             }
@@ -350,8 +362,13 @@ impl<'s> Enclosure<'s> {
         let radius = space.size() - 1;
         let gains = self.gains;
         // The effect of y on the next q̂, v̂, w.
-        let of_velocity = gains.c + gains.v_a * gains.a_x - gains.v_w;
-        let of_position = gains.b + gains.h * gains.c + gains.q_a * gains.a_x - gains.q_w;
+        let next = self.next.gains;
+        let of_algorithmic = match self.next.ratio.map(Interval::point) {
+            Some(ratio) => Interval::point(1.0) - ratio + ratio * gains.a_x,
+            None => gains.a_x,
+        };
+        let of_velocity = gains.c + next.v_a * of_algorithmic - next.v_w;
+        let of_position = gains.b + next.h * gains.c + next.q_a * of_algorithmic - next.q_w;
         let effect = [of_position.magnitude(), of_velocity.magnitude(), 1.0];
         let mut fresh = vec![0.0; 3 * n];
         for (i, further) in found.iter().enumerate() {

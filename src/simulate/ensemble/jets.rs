@@ -22,6 +22,8 @@ pub struct JetRun<'s> {
     memory: JetMemory<'s>,
     /// The start's, which solves for the accelerations of rows; `None` where outputs do not need them.
     accelerations: Option<JetMemory<'s>>,
+    /// Whether rows make their velocities consistent.
+    projects: bool,
     step_size: f64,
 }
 
@@ -58,9 +60,17 @@ impl<'s> JetRun<'s> {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         memory.run(program.sample());
-        let accelerations = simulator.solves_row_accelerations().then_some(start);
+        let solves = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
+        let accelerations = solves.then_some(start);
         let center = Stepper::new(program, &assembled);
-        Ok(Self { simulator, order, center, memory, accelerations, step_size: f64::NAN })
+        Ok(Self { simulator, order, center, memory, accelerations, projects: false, step_size: f64::NAN })
+    }
+
+    /// For steps that are controlled by a tolerance: rows make their velocities consistent.
+    #[must_use]
+    pub fn controlled(mut self) -> Self {
+        self.projects = self.simulator.projects_row_velocities();
+        self
     }
 
     /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
@@ -83,14 +93,22 @@ impl<'s> JetRun<'s> {
     /// the steps.
     fn observe(&mut self, into: &mut Vec<f64>) {
         let layout = &self.simulator.program.layout;
-        let unknowns = layout.w.start..layout.lambda.end;
+        let unknowns = layout.v.start..layout.lambda.end;
         let own: Vec<Vec<f64>> = match &mut self.accelerations {
             None => Vec::new(),
             Some(start) => {
                 for register in layout.state().chain([layout.time]) {
                     start.jet_mut(register).copy_from_slice(self.memory.jet(register));
                 }
-                accelerate(self.simulator, start, self.order);
+                if self.projects {
+                    for _ in 0..corrections(self.order) {
+                        start.run(self.simulator.start.projection());
+                        add_correction(start, layout.v.clone(), layout.correction.start);
+                    }
+                }
+                if self.simulator.solves_row_accelerations() {
+                    accelerate(self.simulator, start, self.order);
+                }
                 let finite = |register: usize| start.jet(register).iter().all(|coefficient| coefficient.is_finite());
                 let solved = unknowns.clone().all(finite);
                 let own =
@@ -187,12 +205,17 @@ fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>,
     }
 }
 
+/// Further corrections of a start that is nearest to rest.
+const LEAST_SQUARES_CORRECTIONS: usize = 10;
+
 /// Makes the jet of the start consistent. Its constant terms are consistent already, and every Newton correction in jets
 /// doubles the number of orders that are.
 fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first_step: f64) {
     let start = &simulator.start;
     let layout = &start.layout;
-    let corrections = corrections(order);
+    // Least squares converge linearly, though fast.
+    let open = if start.open.is_any() { LEAST_SQUARES_CORRECTIONS } else { 0 };
+    let corrections = corrections(order) + open;
     memory.run(start.sample());
     memory.run(start.given());
     for _ in 0..corrections {

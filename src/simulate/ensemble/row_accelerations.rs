@@ -3,6 +3,9 @@
 //! A step's own w₊ and λ₊ fulfil Φ(q₊) = 0 through b w₊, b ∼ h²: rounding and Newton's tolerance are in them as ε/h², and a
 //! change of h disturbs them by as much as it changes. Positions and velocities do not suffer. So where outputs depend on w
 //! or λ, a row takes those that solve M w + Φ_qᵀ λ = Q and Φ̈ = 0 at its q and v. The steps go on with their own.
+//!
+//! With controlled steps velocities are made consistent too: steps grow as long as what moves allows, and leave Φ_q v + Φ_t =
+//! C h² with it, which local errors of positions do not show.
 
 use symdiff::Tile;
 
@@ -16,21 +19,24 @@ use crate::simulate::step::Stepper;
 pub(super) struct RowAccelerations<'s> {
     layout: &'s Layout,
     assembly: Assembly<'s>,
-    /// w and λ of the steps.
+    /// Whether velocities are made consistent, and whether accelerations are solved for.
+    solves: (bool, bool),
+    /// v, a, w and λ of the steps.
     own: Vec<f64>,
 }
 
 impl<'s> RowAccelerations<'s> {
-    /// For the samples of an assembled tile; `None` where outputs do not depend on accelerations, or no constraint disturbs
-    /// them.
-    pub fn new(simulator: &'s Simulator, start: &Tile) -> Option<Self> {
-        if !simulator.solves_row_accelerations() {
+    /// For the samples of an assembled tile; `None` where outputs do not depend on what is solved for, or no constraint
+    /// disturbs it. `controlled` says whether steps follow a tolerance.
+    pub fn new(simulator: &'s Simulator, start: &Tile, controlled: bool) -> Option<Self> {
+        let solves = (controlled && simulator.projects_row_velocities(), simulator.solves_row_accelerations());
+        if solves == (false, false) {
             return None;
         }
         let parameters = simulator.start.layout.parameters.clone();
         let parameter = |parameter: usize, lane: usize| start.lane(parameters.start + parameter)[lane];
         let assembly = Assembly::new(&simulator.start, &simulator.system, start.width(), parameter);
-        Some(Self { layout: &simulator.start.layout, assembly, own: Vec::new() })
+        Some(Self { layout: &simulator.start.layout, assembly, solves, own: Vec::new() })
     }
 
     /// The outputs of the state, as [`Stepper::observe`] gives them, with these accelerations. A lane in which they are not
@@ -39,17 +45,23 @@ impl<'s> RowAccelerations<'s> {
         let (layout, width) = (self.layout, stepper.tile().width());
         let block = |registers: std::ops::Range<usize>| registers.start * width..registers.end * width;
         let (state, time) = (block(layout.q.start..layout.lambda.end), layout.time);
-        let unknowns = layout.w.start..layout.lambda.end;
+        let unknowns = layout.v.start..layout.lambda.end;
         let tile = self.assembly.tile_mut();
         tile.values_mut()[state.clone()].copy_from_slice(&stepper.tile().values()[state]);
         tile.lane_mut(time).copy_from_slice(stepper.tile().lane(time));
         self.own.clear();
         self.own.extend_from_slice(&stepper.tile().values()[block(unknowns.clone())]);
-        let mut settled = self.assembly.accelerate();
+        let (velocities, accelerations) = self.solves;
+        let mut settled = vec![true; width];
+        let mut also = |lanes: Vec<bool>| settled.iter_mut().zip(lanes).for_each(|(settled, lane)| *settled &= lane);
+        if velocities {
+            also(self.assembly.project_velocities());
+        }
+        if accelerations {
+            also(self.assembly.accelerate());
+        }
         for register in unknowns.clone() {
-            for (settled, value) in settled.iter_mut().zip(self.assembly.tile().lane(register)) {
-                *settled &= value.is_finite();
-            }
+            also(self.assembly.tile().lane(register).iter().map(|value| value.is_finite()).collect());
         }
         for register in unknowns.clone() {
             let found = self.assembly.tile().lane(register);

@@ -3,9 +3,10 @@
 use rayon::prelude::*;
 use symdiff::WIDTHS;
 
+use super::lane_steps::LaneSteps;
 use super::row_accelerations::RowAccelerations;
-use crate::simulate::control::Schedule;
-use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch};
+use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, StepFailure, Stepper};
@@ -30,6 +31,7 @@ pub struct EnsembleRun<'s> {
 
 #[derive(Debug)]
 struct TileRun<'s> {
+    simulator: &'s Simulator,
     stepper: Stepper<'s>,
     observes_accelerations: bool,
     /// Where constraints disturb those of the steps.
@@ -37,8 +39,10 @@ struct TileRun<'s> {
     /// First sample of the tile, and how many of its lanes are samples.
     first: usize,
     count: usize,
-    /// Sum of each lane's local errors over the tolerance.
-    error_ratio: Vec<f64>,
+    /// With a tolerance: keeps all lanes within it.
+    lanes: Option<LaneSteps<'s>>,
+    /// Whether the first rows were advanced to.
+    begun: bool,
     /// The first of the samples that stopped, and its state at the beginning of the failed step.
     stopped: Option<(usize, Vec<f64>)>,
     /// Search for singular configurations of the first lane.
@@ -114,12 +118,14 @@ impl<'s> EnsembleRun<'s> {
                 let mut stepper = Stepper::new(&simulator.program, &start);
                 stepper.retire(count..width);
                 Ok(TileRun {
+                    simulator,
                     stepper,
                     observes_accelerations,
-                    accelerations: RowAccelerations::new(simulator, &start),
+                    accelerations: None,
+                    begun: false,
                     first,
                     count,
-                    error_ratio: vec![0.0; width],
+                    lanes: None,
                     stopped: None,
                     watch: None,
                 })
@@ -139,13 +145,13 @@ impl<'s> EnsembleRun<'s> {
     }
 
     /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records what is `observed`: row by
-    /// row, value by value, sample by sample. With a tolerance, local errors are summed up. Returns the samples that
-    /// stopped.
+    /// row, value by value, sample by sample. With a tolerance, a sample that exceeds it takes shorter steps. Returns the
+    /// samples that stopped.
     pub fn advance(
         &mut self,
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         observed: Observed,
         into: &mut Vec<f64>,
     ) -> Vec<Stop> {
@@ -194,10 +200,18 @@ impl<'s> EnsembleRun<'s> {
         times.into_iter().find_map(|time| self.simulator.open_constraint(state, time))
     }
 
+    /// The term that is no finite number where a sample stopped. Known for the first sample of each tile that stops.
+    pub fn not_finite(&self, stop: &Stop) -> Option<String> {
+        let mut stopped = self.tiles.iter().filter_map(|tile| tile.stopped.as_ref());
+        let (_, state) = stopped.find(|(sample, _)| *sample == stop.sample)?;
+        not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
+    }
+
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
     pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
         let ratios = self.tiles.iter().flat_map(|tile| {
-            tile.error_ratio[..tile.count].iter().enumerate().map(|(lane, &ratio)| (tile.first + lane, ratio))
+            let ratios = tile.lanes.as_ref().map_or(&[][..], |lanes| &lanes.error_ratios()[..tile.count]);
+            ratios.iter().enumerate().map(|(lane, &ratio)| (tile.first + lane, ratio))
         });
         ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
@@ -208,12 +222,13 @@ impl TileRun<'_> {
         &mut self,
         schedule: &Schedule,
         rows: std::ops::Range<usize>,
-        tolerance: Option<f64>,
+        tolerance: Option<Controller>,
         (observed, outputs): (Observed, usize),
     ) -> (Vec<f64>, Vec<Stop>) {
         let width = self.stepper.tile().width();
-        if tolerance.is_some() {
-            self.stepper.estimate_errors();
+        if !std::mem::replace(&mut self.begun, true) {
+            self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), tolerance.is_some());
+            self.lanes = tolerance.map(|controller| LaneSteps::new(self.simulator, controller, &mut self.stepper));
         }
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
@@ -225,7 +240,10 @@ impl TileRun<'_> {
                 }
                 self.stepper.set_step_size(h);
                 self.stepper.refine(self.observes_accelerations && steps.peek().is_none());
-                let failures = self.stepper.step(h, end);
+                let failures = match &mut self.lanes {
+                    Some(lanes) => lanes.step(&mut self.stepper, h, end),
+                    None => self.stepper.step(h, end),
+                };
                 if let (Some(first), None) = (failures.first(), &self.stopped) {
                     self.stopped = Some((self.first + first.lane, self.stepper.lane(first.lane)));
                 }
@@ -240,13 +258,6 @@ impl TileRun<'_> {
                     open: None,
                     singular: false,
                 }));
-                if let Some(tolerance) = tolerance {
-                    for (lane, error) in self.stepper.local_errors().iter().enumerate() {
-                        if self.stepper.alive()[lane] {
-                            self.error_ratio[lane] += error.size / tolerance;
-                        }
-                    }
-                }
             }
             let values = &mut values[place * outputs * width..][..outputs * width];
             match observed {

@@ -3,7 +3,7 @@
 use symdiff::{Tape, Tile};
 
 use crate::assemble::System;
-use crate::compile::StartProgram;
+use crate::compile::{ClosureRow, Residual, StartProgram};
 
 /// Corrections of a tile's start before a lane is given up.
 const MAX_CORRECTIONS: usize = 40;
@@ -28,6 +28,9 @@ pub fn allowed_residual(scale: &[f64]) -> f64 {
     CLOSED * scale.iter().copied().fold(1.0, f64::min)
 }
 
+/// Corrections towards rest, relative to the coordinates' scales, that are not shortened.
+const REACH: f64 = 0.3;
+
 /// A sample whose coordinates lie further than this from the nominal ones, in their scales, may be on another branch.
 const FAR: f64 = 0.25;
 
@@ -36,8 +39,8 @@ const FAR: f64 = 0.25;
 pub struct ConstraintResidual {
     /// Lane of the tile.
     pub lane: usize,
-    /// The constraint with the largest residual; beyond the constraints, the conditions of the start.
-    pub constraint: usize,
+    /// The constraint or the condition of the start with the largest residual.
+    pub row: ClosureRow,
     /// Its residual: m, rad, or m/s, rad/s for velocities.
     pub residual: f64,
     /// Whether positions are consistent and velocities are not.
@@ -153,6 +156,27 @@ impl<'p> Assembly<'p> {
         Err(best.expect("at least one guess was tried"))
     }
 
+    /// Assembles the one lane nearest to rest, from an assembled state.
+    ///
+    /// # Errors
+    /// The largest residual, where the corrections do not end at one.
+    pub fn assemble_nearest(&mut self, nominal: &[f64]) -> Result<(), ConstraintResidual> {
+        self.set_state(nominal);
+        self.tile.run(self.program.given());
+        let (q, correction) = (self.program.layout.q.clone(), self.program.layout.correction.start);
+        for _ in 0..MAX_NOMINAL_CORRECTIONS {
+            self.tile.run(self.program.position());
+            let changes = self.tile.values()[correction..][..q.len()].to_vec();
+            let largest = changes.iter().zip(&self.scale).map(|(c, s)| (c / s).abs()).fold(0.0, f64::max);
+            if largest <= REACH {
+                break;
+            }
+            let share = REACH / largest;
+            q.clone().zip(changes).for_each(|(register, change)| self.tile.lane_mut(register)[0] += share * change);
+        }
+        self.assemble().into_iter().next().map_or(Ok(()), Err)
+    }
+
     /// Assembles every lane from `nominal`, an assembled state of one lane. Returns the largest residual of each lane that
     /// cannot be assembled, lane by lane.
     pub fn assemble_from(&mut self, nominal: &[f64]) -> Vec<ConstraintResidual> {
@@ -189,6 +213,11 @@ impl<'p> Assembly<'p> {
         }
         self.accelerate();
         open
+    }
+
+    /// Corrects the velocities of a motion at the tile's positions and time. Returns which lanes have settled.
+    pub fn project_velocities(&mut self) -> Vec<bool> {
+        self.correct_until_settled(self.program.projection(), self.program.layout.v.start)
     }
 
     /// Accelerations and multipliers at the tile's positions, velocities and time. Returns which lanes have settled.
@@ -254,7 +283,8 @@ impl<'p> Assembly<'p> {
     }
 
     fn constraint_norm(&self) -> f64 {
-        self.program.constraint.iter().map(|&register| self.tile.lane(register)[0].powi(2)).sum::<f64>().sqrt()
+        let residuals = self.program.constraint.iter();
+        residuals.map(|residual| self.tile.lane(residual.register)[0].powi(2)).sum::<f64>().sqrt()
     }
 
     /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are used up.
@@ -290,14 +320,14 @@ impl<'p> Assembly<'p> {
     }
 
     /// The largest residual of each lane with a constraint that does not hold.
-    fn open_lanes(&self, registers: &[usize], of_velocities: bool) -> Vec<ConstraintResidual> {
+    fn open_lanes(&self, residuals: &[Residual], of_velocities: bool) -> Vec<ConstraintResidual> {
         let allowed = allowed_residual(&self.scale);
         let of_lane = |lane: usize| {
-            let residuals = registers.iter().map(|&register| self.tile.lane(register)[lane]).enumerate();
+            let residuals = residuals.iter().map(|residual| (residual.row, self.tile.lane(residual.register)[lane]));
             let worst = residuals.reduce(|a, b| if b.1.abs() <= a.1.abs() || a.1.is_nan() { a } else { b });
             // NaN does not hold either.
             let open = worst.filter(|(_, residual)| residual.is_nan() || residual.abs() > allowed);
-            open.map(|(constraint, residual)| ConstraintResidual { lane, constraint, residual, of_velocities })
+            open.map(|(row, residual)| ConstraintResidual { lane, row, residual, of_velocities })
         };
         (0..self.tile.width()).filter_map(of_lane).collect()
     }

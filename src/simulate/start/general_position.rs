@@ -72,6 +72,6 @@ pub fn move_apart(system: &System, state: &[f64]) -> Option<Vec<f64>> {
         }
     }
     tile.run(start.position());
-    let assembled = start.constraint.iter().all(|&register| tile.lane(register)[0].abs() < 1e-9);
+    let assembled = start.constraint.iter().all(|residual| tile.lane(residual.register)[0].abs() < 1e-9);
     assembled.then(|| tile.values()[..state.len()].to_vec())
 }

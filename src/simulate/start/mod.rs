@@ -3,10 +3,12 @@
 mod assembly;
 mod general_position;
 mod mobility;
+mod open;
 mod rank;
 
 pub(super) use assembly::{Assembly, ConstraintResidual, allowed_residual};
 pub(super) use general_position::{guess_state, move_apart, pivot_samples, spread};
 pub use mobility::Mobility;
 pub(super) use mobility::{DEPENDENT, jacobian_rows, mobility};
+pub(super) use open::{open_start, shared_coordinates};
 pub(super) use rank::{free_columns, row_independence};

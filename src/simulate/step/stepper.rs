@@ -22,8 +22,10 @@ pub struct StepFailure {
 /// A lane's local error in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LocalError {
-    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger.
+    /// Of positions, relative to |q| or the coordinate's scale, whichever is larger: what moves the mechanism.
     pub size: f64,
+    /// The same of the whole change of acceleration, with the parts that constraints and stiff forces leave little of.
+    pub whole: f64,
     /// The coordinate with this error.
     pub coordinate: usize,
     /// Change of that coordinate's acceleration within the step.
@@ -123,6 +125,24 @@ impl<'p> Stepper<'p> {
     /// Whether steps from now on take one more correction, after which accelerations are as accurate as positions.
     pub(in crate::simulate) fn refine(&mut self, refines: bool) {
         self.refines = refines;
+    }
+
+    /// What [`refine`](Self::refine) was told last.
+    pub(in crate::simulate) fn refines(&self) -> bool {
+        self.refines
+    }
+
+    /// Takes the state of a stepper of one lane, whose a belongs to steps of the same length.
+    pub(in crate::simulate) fn set_lane(&mut self, lane: usize, alone: &Self) {
+        for register in self.program.layout.state() {
+            self.tile.lane_mut(register)[lane] = alone.tile.lane(register)[0];
+        }
+    }
+
+    /// Counts what another stepper has done for this one since it had counted `before`.
+    pub(in crate::simulate) fn count_since(&mut self, now: Counters, before: Counters) {
+        self.newton.counters.iterations += now.iterations - before.iterations;
+        self.newton.counters.rank_revealing += now.rank_revealing - before.rank_revealing;
     }
 
     /// Newton iterations and rank-revealing solves so far.
@@ -231,23 +251,22 @@ impl<'p> Stepper<'p> {
             let parts = 1_u32 << halvings;
             single.rewind(&start, h);
             let part = h / f64::from(parts);
-            let mut error = 0.0;
+            let [mut size, mut whole] = [0.0; 2];
             let done = (1..=parts).all(|count| {
                 let converged = single.try_step(part, end - f64::from(parts - count) * part)[0];
-                error += single.local_errors().first().map_or(0.0, |error| error.size);
+                let error = single.local_errors().first().copied().unwrap_or_default();
+                size += error.size;
+                whole += error.whole;
                 converged
             });
             if done {
                 for (error_of, last) in self.errors.iter_mut().zip(&single.errors) {
-                    error_of[lane] = LocalError { size: error, ..last[0] };
+                    error_of[lane] = LocalError { size, whole, ..last[0] };
                 }
                 // Back to the schedule's step size, so that a fits it.
                 single.set_step_size(h);
-                for register in layout.state() {
-                    self.tile.lane_mut(register)[lane] = single.tile.lane(register)[0];
-                }
-                self.newton.counters.iterations += single.newton.counters.iterations;
-                self.newton.counters.rank_revealing += single.newton.counters.rank_revealing;
+                self.set_lane(lane, &single);
+                self.count_since(single.counters(), Counters::default());
                 return Ok(());
             }
         }
@@ -285,17 +304,18 @@ impl<'p> Stepper<'p> {
             *worst = LocalError::default();
             let value = |register: usize| self.tile.lane(register)[lane];
             for (place, scale) in self.program.scale.iter().enumerate() {
-                let change = if self.newton.is_singular(lane) {
-                    // There are no factors.
-                    let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + place));
-                    numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a
-                } else {
-                    value(layout.correction.start + place)
-                };
-                let size = gain * change.abs() / scale.max(value(layout.q.start + place).abs());
+                let [w, a, x] = [&layout.w, &layout.a, &layout.iterate].map(|block| value(block.start + place));
+                let whole = numbers.of_new() * x + numbers.of_old() * w - (1.0 + numbers.of_algorithmic()) * a;
+                // Where the step was singular there are no factors.
+                let moving = value(layout.correction.start + place);
+                let change = if self.newton.is_singular(lane) { whole } else { moving };
+                let unit = gain / scale.max(value(layout.q.start + place).abs());
                 // Written so that NaN wins and stays.
-                if !(size <= worst.size || worst.size.is_nan()) {
-                    *worst = LocalError { size, coordinate: place, change };
+                if !(unit * change.abs() <= worst.size || worst.size.is_nan()) {
+                    *worst = LocalError { size: unit * change.abs(), coordinate: place, change, ..*worst };
+                }
+                if !(unit * whole.abs() <= worst.whole || worst.whole.is_nan()) {
+                    worst.whole = unit * whole.abs();
                 }
             }
         }

@@ -93,7 +93,7 @@ impl Setting {
     pub(super) fn work(&self, k: usize) -> f64 {
         let steps = match self.stepping {
             Stepping::Fixed(step) => 1.0 / step,
-            Stepping::Tolerance(tolerance) => 1.0 / tolerance.cbrt(),
+            Stepping::Tolerance(tolerance) => 1.0 / symdiff::math::cbrt(tolerance),
         };
         self.simulations(k) * steps
     }

@@ -29,8 +29,8 @@ pub struct Family {
     draw: fn(&mut Random, &Frame) -> Vec<Term>,
     /// Whether outputs have kinks or many turns.
     wraps: bool,
-    /// Whether `simulation: { tolerance }` may be drawn: with fast modes it would take too long.
-    tolerances: bool,
+    /// Tolerances of the simulation that may be drawn: those that do not take too long.
+    tolerances: &'static [f64],
 }
 
 /// Time of a draw.
@@ -46,7 +46,7 @@ impl Frame {
 }
 
 const fn family(name: &'static str, draw: fn(&mut Random, &Frame) -> Vec<Term>) -> Family {
-    Family { name, draw, wraps: false, tolerances: true }
+    Family { name, draw, wraps: false, tolerances: &[1e-3, 1e-4, 1e-5, 1e-6] }
 }
 
 pub const FAMILIES: &[Family] = &[
@@ -60,9 +60,12 @@ pub const FAMILIES: &[Family] = &[
         vec![oscillators::free_at(random, &frame.scale(0), far)]
     }),
     family("forced", |random, frame| vec![oscillators::forced(random, &frame.scale(0))]),
-    family("resonance", |random, frame| vec![oscillators::resonant(random, &frame.scale(0))]),
     Family {
-        tolerances: false,
+        tolerances: &[1e-3, 1e-4],
+        ..family("resonance", |random, frame| vec![oscillators::resonant(random, &frame.scale(0))])
+    },
+    Family {
+        tolerances: &[],
         ..family("fast and slow", |random, frame| {
             vec![oscillators::free(random, &frame.scale(0)), oscillators::fast(random, &frame.scale(1))]
         })
@@ -91,7 +94,7 @@ pub const FAMILIES: &[Family] = &[
     family("post", |random, frame| vec![nonlinear::post(random, &frame.scale(0))]),
     family("slider crank", |random, frame| vec![linkages::slider_crank(random, &frame.scale(0))]),
     family("four-bar", |random, frame| vec![linkages::four_bar(random, &frame.scale(0))]),
-    family("top", |random, frame| vec![tops::top(random, &frame.scale(0))]),
+    Family { tolerances: &[1e-3, 1e-4], ..family("top", |random, frame| vec![tops::top(random, &frame.scale(0))]) },
 ];
 
 /// The draw of a number; families take turns.
@@ -113,8 +116,8 @@ pub fn draw(seed: u64, number: u64, only: Option<&str>) -> Draw {
     let outputs = observe(&mut random, family, &terms, &time);
     let mut draw = Draw { family: family.name, terms, outputs, time, bounds: Bounds::default() };
     draw.bounds = request(&mut random, draw.uncertain_count());
-    if family.tolerances && random.chance(0.15) {
-        draw.time.stepping = Stepping::Tolerance(random.pick(&[1e-3, 1e-4, 1e-5, 1e-6]));
+    if !family.tolerances.is_empty() && random.chance(0.15) {
+        draw.time.stepping = Stepping::Tolerance(random.pick(family.tolerances));
     }
     draw
 }

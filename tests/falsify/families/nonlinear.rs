@@ -152,7 +152,7 @@ pub fn post(random: &mut Random, scale: &Scale) -> Term {
     let stiffness = digits((PI / contact).powi(2), 3);
     let speed = right.hypot(up);
     let curves = integrated(
-        (0.1 * radius / speed).min(0.2 * contact),
+        (0.25 * radius / speed).min(0.3 * contact),
         |p| [0.0, 0.0, p[0], p[1]],
         |p, _, y, d| {
             let [_, _, x, height, radius, stiffness] = p[..6] else { unreachable!() };

@@ -14,7 +14,7 @@ pub fn top(random: &mut Random, scale: &Scale) -> Term {
     let spin = digits(random.scale(0.02, 0.5) / scale.step, 3).min(digits(300.0 / scale.duration, 3));
     let tilt = random.between(0.1, 1.4);
     let curves = integrated(
-        0.3 / spin,
+        1.0 / spin,
         |p| [(0.5 * p[4]).cos(), (0.5 * p[4]).sin(), 0.0, 0.0, 0.0, 0.0, p[3]],
         |p, _, y, d| {
             let [arm, across, axial, _, _, m] = p[..6] else { unreachable!() };

@@ -30,7 +30,7 @@ fn begin(place: &Place, arguments: &str) -> Child {
 fn what_is_finished_at_a_ctrl_c_is_written() {
     let place = Place::new();
     long(&place);
-    let run = begin(&place, "run -q crank.yaml -o out");
+    let run = begin(&place, "run -q --yes crank.yaml -o out");
     std::thread::sleep(Duration::from_millis(1500));
     signal(&run, "-INT");
     let ended = run.wait_with_output().unwrap();
@@ -67,7 +67,7 @@ fn a_study_of_costs_ends_at_a_ctrl_c() {
 fn a_second_ctrl_c_does_not_wait() {
     let place = Place::new();
     long(&place);
-    let run = begin(&place, "run -q crank.yaml -o out");
+    let run = begin(&place, "run -q --yes crank.yaml -o out");
     std::thread::sleep(Duration::from_millis(700));
     for _ in 0..20 {
         signal(&run, "-INT");
@@ -84,7 +84,7 @@ fn a_killed_run_leaves_nothing_half() {
     let whole = fs::read(place.path().join("whole/bounds.csv")).unwrap();
     let mut written = 0;
     for trial in 0..40_u64 {
-        let mut run = begin(&place, "run -q crank.yaml -o out");
+        let mut run = begin(&place, "run -q --yes crank.yaml -o out");
         std::thread::sleep(Duration::from_millis(3 * trial));
         // It may be over.
         let _ = run.kill();
@@ -100,7 +100,7 @@ fn a_killed_run_leaves_nothing_half() {
         let _ = fs::remove_dir_all(out);
     }
     println!("{written} of 40 had written");
-    place.run("run -q crank.yaml -o out", 0);
+    place.run("run -q --yes crank.yaml -o out", 0);
 }
 
 #[test]
@@ -117,4 +117,24 @@ fn nothing_is_asked_of_a_terminal() {
     assert_eq!(command.status().unwrap().code(), Some(0));
     let [with, without] = ["results/crank", "closed"].map(|dir| fs::read(place.path().join(dir).join("bounds.csv")));
     assert_eq!(with.unwrap(), without.unwrap());
+}
+
+/// Nobody has to wait ten minutes to learn that a request was too large.
+#[test]
+fn a_dear_run_is_refused_before_it_begins() {
+    let place = Place::new();
+    long(&place);
+    let begun = std::time::Instant::now();
+    let (_, errors) = place.run("run -q crank.yaml -o out", 2);
+    assert!(
+        errors.contains(" simulations are asked for") && errors.contains("--yes") && errors.contains("tolerance"),
+        "{errors}"
+    );
+    assert!(begun.elapsed().as_secs() < 30 && place.files("out").is_empty());
+    let path = place.path().join("crank.yaml");
+    let text = fs::read_to_string(&path).unwrap();
+    let allowed =
+        text.replace("bounds:", "bounds:\n  budget: { solves: 50000 }").replace("duration: 4", "duration: 0.001");
+    fs::write(&path, allowed).unwrap();
+    place.run("run -q crank.yaml -o out", 0);
 }

@@ -2,8 +2,13 @@
 //! kept, and what is reported is true.
 
 mod disk;
+mod folder;
 mod infeasible;
 mod interrupts;
 mod names;
+mod numbers;
+mod panics;
+mod processors;
 mod sizes;
+mod terminal;
 mod uncertainty;

@@ -3,6 +3,8 @@
 use mbint::inner::model::{self, Description};
 use mbint::inner::study::{self, Options};
 
+use crate::place::Place;
+
 fn chain(bodies: usize, duration: f64) -> Description {
     let each = |line: &dyn Fn(usize) -> String| (0..bodies).map(line).collect::<Vec<_>>().join("\n  ");
     let text = format!(
@@ -56,4 +58,43 @@ fn long_chains_swing_and_keep_their_energy() {
 fn ten_thousand_bodies_are_counted() {
     let simulator = study::prepare(&chain(if cfg!(debug_assertions) { 2000 } else { 10_000 }, 1e-3)).unwrap();
     assert_eq!(simulator.mobility.degrees_of_freedom, simulator.system.q.len() / 3);
+}
+
+/// A robot of links in series, each joint with a coordinate.
+fn robot(links: usize) -> String {
+    let mut text = String::from("<robot name=\"snake\"><link name=\"base\"/>");
+    for link in 0..links {
+        let (parent, axis) =
+            (if link == 0 { "base".to_owned() } else { format!("s{}", link - 1) }, ["0 1 0", "1 0 0"][link % 2]);
+        text += &format!(
+            "<link name=\"s{link}\"><inertial><origin xyz=\"0 0 0.07\"/><mass value=\"0.8\"/>\
+             <inertia ixx=\"0.02\" iyy=\"0.02\" izz=\"0.01\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>\
+             <joint name=\"k{link}\" type=\"continuous\"><parent link=\"{parent}\"/><child link=\"s{link}\"/>\
+             <origin xyz=\"0 0 0.15\"/><axis xyz=\"{axis}\"/></joint>"
+        );
+    }
+    text + "</robot>"
+}
+
+/// A chain so deep that joint coordinates are not tried, and one whose absolute coordinates include the joints'.
+#[test]
+fn a_long_robot_is_checked_in_the_memory_that_it_takes() {
+    let place = Place::new();
+    std::fs::write(place.path().join("snake.urdf"), robot(60)).unwrap();
+    let (told, _) = place.run("check snake.urdf", 0);
+    assert!(told.contains("60 degrees of freedom"), "{told}");
+    std::fs::write(
+        place.path().join("few.yaml"),
+        "urdf: few.urdf\nsimulation: { duration: 0.1, step: 1e-3, formulation: absolute }\n",
+    )
+    .unwrap();
+    std::fs::write(place.path().join("few.urdf"), robot(6)).unwrap();
+    let instructions = |links: usize| {
+        std::fs::write(place.path().join("few.urdf"), robot(links)).unwrap();
+        let description = model::load(&place.path().join("few.yaml"), &[]).unwrap();
+        let simulator = study::prepare(&description).unwrap();
+        simulator.start.position().len() + simulator.start.velocity().len() + simulator.start.acceleration().len()
+    };
+    let [few, twice] = [8, 16].map(instructions);
+    assert!((twice as f64) < 2.5 * few as f64, "{few} and {twice} instructions: they grow with the chain, not faster");
 }

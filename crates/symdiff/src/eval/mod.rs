@@ -3,6 +3,7 @@
 pub(crate) mod functions;
 pub mod interval;
 pub mod jet;
+pub mod math;
 pub mod sincos;
 pub mod taylor_model;
 pub mod tile;

@@ -1,0 +1,90 @@
+//! The model's size.
+
+use std::collections::BTreeSet;
+
+use symdiff::{Formula, Scalar};
+
+use super::mechanism::Mechanism;
+use crate::elements::joints::{Placement, Separation};
+use crate::grammar::{JointCoordinate, Reference, Symbol, TimeOrder};
+use crate::model::{Description, StartValue};
+use crate::multibody::{BuildError, Context};
+
+impl Mechanism<'_, '_> {
+    /// The largest length that the model names and uses, m, at its nominal parameters: coordinates of points, distances,
+    /// prescribed and initial positions; 1 where it names none.
+    pub fn characteristic_length(&self, description: &Description) -> Result<f64, BuildError> {
+        let mut lengths: Vec<Scalar> = Vec::new();
+        for body in &self.bodies {
+            lengths.extend(body.center.components());
+            // A coordinate's symbol counts as zero here.
+            lengths.extend(&body.position[..3]);
+        }
+        for (body, point) in used_points(description) {
+            lengths.extend(self.bodies[body].points[point].components());
+        }
+        for joint in self.joints {
+            if let Some(Placement { separation: Separation::Distance(length), .. }) = joint.kind.placement() {
+                lengths.push(self.formula(length, Context::Time)?);
+            }
+        }
+        lengths.push(self.length_of_beams()?);
+        for formula in description.initial.iter().chain(&description.guess).filter_map(length_at_start) {
+            lengths.push(self.formula(formula, Context::Parameters)?);
+        }
+        let values = self.sample(&lengths, 0.0, |parameter| parameter.nominal);
+        let largest = values.into_iter().map(f64::abs).filter(|length| length.is_finite());
+        let largest = largest.fold(0.0, f64::max);
+        Ok(if largest > 0.0 { largest } else { 1.0 })
+    }
+}
+
+/// The formula of a start value that is a position.
+fn length_at_start(value: &StartValue) -> Option<&Formula> {
+    match value {
+        StartValue::Coordinate { coordinate, order: TimeOrder::Position, value, .. } => {
+            coordinate.is_length().then_some(value)
+        }
+        StartValue::Joint { coordinate: JointCoordinate::Displacement, order: TimeOrder::Position, value, .. } => {
+            Some(value)
+        }
+        _ => None,
+    }
+}
+
+/// Points that a joint, an effect or a formula refers to: body and point. What nothing refers to says nothing of the
+/// model's size.
+fn used_points(description: &Description) -> BTreeSet<(usize, usize)> {
+    let mut used = BTreeSet::new();
+    let joints = description.joints.iter().map(|joint| (joint.kind.clone(), joint.kind.formulas()));
+    for (mut kind, formulas) in joints {
+        add_references(&mut used, kind.references());
+        add_names(&mut used, description, formulas);
+    }
+    let effects = description.effects.iter().map(|effect| (effect.kind.clone(), effect.kind.formulas()));
+    for (mut kind, formulas) in effects {
+        add_references(&mut used, kind.references());
+        add_names(&mut used, description, formulas);
+    }
+    add_names(&mut used, description, description.outputs.iter().map(|output| &output.formula));
+    used
+}
+
+fn add_references(used: &mut BTreeSet<(usize, usize)>, references: Vec<Reference>) {
+    used.extend(references.into_iter().filter_map(|reference| match reference {
+        Reference::Point(place) => Some((place.body, place.point?)),
+        Reference::Body(_) | Reference::Joint(_) => None,
+    }));
+}
+
+fn add_names<'f>(
+    used: &mut BTreeSet<(usize, usize)>,
+    description: &Description,
+    formulas: impl IntoIterator<Item = &'f Formula>,
+) {
+    for (name, _) in formulas.into_iter().flat_map(Formula::names) {
+        if let Some(Symbol::Point { body, point, .. }) = description.symbol(name) {
+            used.insert((body, point));
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! What the start is nearest to where the model leaves it open: the coordinates of the inboard joints, at zero.
+//!
+//! These are the inboard joints of joint coordinates, so that the start does not depend on the formulation, nor on what is
+//! observed. A root stays near the place where assembly begins to look.
+
+use symdiff::Scalar;
+
+use super::mechanism::{Mechanism, Owner};
+use super::system::{Distance, Start};
+use super::tree::Tree;
+use crate::grammar::{JointCoordinate, OnJoint, TimeOrder};
+use crate::model::Description;
+use crate::multibody::{BuildError, Context};
+
+impl<'g> Mechanism<'g, '_> {
+    /// The distances that are smallest at the start, of coordinates that `start` does not keep, in a model of size `length`.
+    ///
+    /// # Errors
+    /// A formula with a name that cannot stand in it.
+    pub fn distances(
+        &self,
+        description: &Description,
+        length: f64,
+        start: &Start,
+    ) -> Result<Vec<Distance>, BuildError> {
+        let tree = Tree::spanning(description, |mobilizer| self.is_time_independent(mobilizer));
+        let guessed = self.guessed(description)?;
+        let mut distances = Vec::new();
+        let mut add = |owner: Owner, name: String, value: Scalar<'g>, place: Option<usize>| {
+            let is_open = |kept: &[Option<_>]| place.is_none_or(|place| kept[place].is_none());
+            let distance = Distance {
+                name,
+                value: value.expr(),
+                scale: if owner.is_length() { length } else { 1.0 },
+                position: is_open(&start.position),
+                velocity: is_open(&start.velocity),
+            };
+            distances.extend((distance.position || distance.velocity).then_some(distance));
+        };
+        for (place, &owner) in self.coordinates.iter().enumerate() {
+            if matches!(owner, Owner::Body(body, _) if tree.inboard[body].is_none()) {
+                let value = self.q[place] - self.g.scalar(start.guess[place]);
+                add(owner, self.coordinate_names[place].clone(), value, Some(place));
+            }
+        }
+        for joint in tree.order.iter().filter(|&&body| !tree.merges(body)).filter_map(|&body| tree.inboard[body]) {
+            let joint = joint.joint;
+            let Some(mobilizer) = self.joints[joint].kind.mobilizer() else { continue };
+            for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
+                // A screw's displacement follows from its angle.
+                let follows = mobilizer.pitch().is_some() && coordinate == JointCoordinate::Displacement;
+                if mobilizer.axis_of(coordinate).is_none() || follows {
+                    continue;
+                }
+                let place = self.joint_coordinates.get(&(joint, coordinate)).copied();
+                let mut value = self.measured_coordinate(OnJoint { joint, coordinate })?;
+                if let Some(guess) = place.and_then(|place| guessed[place]) {
+                    value -= guess;
+                }
+                let owner = Owner::Joint(joint, coordinate);
+                add(owner, format!("{}.{}", self.joints[joint].name, owner.suffix()), value, place);
+            }
+        }
+        Ok(distances)
+    }
+
+    /// Whether all distances are coordinates of the mechanism: those of the inboard joints alone.
+    pub fn has_distances(&self) -> bool {
+        self.coordinates.iter().all(|owner| matches!(owner, Owner::Joint(..)))
+    }
+
+    /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.
+    fn measured_coordinate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
+        let kind = &self.joints[on.joint].kind;
+        let planar_angle = on.coordinate == JointCoordinate::Angle && !self.is_spatial;
+        let is_own = planar_angle || self.joint_coordinates.contains_key(&(on.joint, on.coordinate));
+        let (Some(between), Some(axis), false) = (kind.between(), kind.axis_of(on.coordinate), is_own) else {
+            return Ok(self.joint_coordinate(on, TimeOrder::Position));
+        };
+        let axis = self.unit_vector(axis, Context::Time)?;
+        let pair = self.pair(between);
+        Ok(match on.coordinate {
+            JointCoordinate::Displacement => pair.displacement(axis),
+            JointCoordinate::Angle => {
+                let relative = pair.relative();
+                let (cos, sin) = (relative[0], relative.vector_part().dot(axis));
+                // Of the double of half the angle: q and −q are one rotation.
+                (2.0 * cos * sin).atan2(cos * cos - sin * sin)
+            }
+        })
+    }
+}

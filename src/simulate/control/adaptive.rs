@@ -1,0 +1,136 @@
+//! Steps whose size follows the local errors of a tile's samples, together.
+
+use super::controller::Controller;
+use super::switch_watch::{Crossing, SwitchWatch};
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Stepper;
+
+/// A step longer than this share of the time left up to a goal is cut to half of that time, so that no sliver remains.
+const HALVE: f64 = 0.55;
+
+/// A step towards a switch ends this share beyond it, so that it is passed.
+const BEYOND: f64 = 1e-6;
+
+/// The samples in step, and the step size to try next.
+///
+/// Where the equations switch in a step (a contact closes), the step is repeated so that it ends there. The local error of that
+/// step, and of the next until it is small enough, is the whole change of acceleration: the part that stiff forces leave of
+/// it says little where a step jumps over their motion.
+#[derive(Clone, Debug)]
+pub struct Adaptive<'s> {
+    pub controller: Controller,
+    pub stepper: Stepper<'s>,
+    /// The step size to try next, s.
+    pub h: f64,
+    watch: Option<SwitchWatch<'s>>,
+    /// Register of the time.
+    time: usize,
+    /// Lanes whose equations switched in the step before.
+    switched: Vec<bool>,
+}
+
+/// A step that was tried.
+#[derive(Clone, Debug)]
+pub struct Attempt {
+    /// Its length and its end, s.
+    pub step: f64,
+    pub end: f64,
+    /// Every lane's error over its share of the tolerance: infinite where it does not converge, 0 where it no longer runs.
+    pub ratios: Vec<f64>,
+    /// Whether the step stands.
+    pub accepted: bool,
+    before: Vec<f64>,
+}
+
+impl<'s> Adaptive<'s> {
+    /// From the states of a stepper; the first step tried has the length `h`.
+    pub fn new(simulator: &'s Simulator, mut stepper: Stepper<'s>, controller: Controller, h: f64) -> Self {
+        stepper.estimate_errors();
+        let watch = simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile()));
+        let switched = vec![false; stepper.alive().len()];
+        Self { controller, stepper, h, watch, time: simulator.program.layout.time, switched }
+    }
+
+    /// The equations have just switched in all lanes.
+    pub fn switch(&mut self) {
+        self.switched.fill(true);
+    }
+
+    /// Whether the step size is too small to go on with.
+    pub fn is_stuck(&self) -> bool {
+        self.h < self.controller.least()
+    }
+
+    /// Whether a sample has just passed a switch.
+    pub fn has_switched(&self) -> bool {
+        self.switched.contains(&true)
+    }
+
+    /// Tries a step from `time` towards a goal. One that is not accepted is to be [rejected](Self::reject).
+    pub fn attempt(&mut self, time: f64, goal: f64) -> Attempt {
+        let left = goal - time;
+        let (step, end) = match self.h {
+            h if h >= left * (1.0 - 1e-9) => (left, goal),
+            h if h > HALVE * left => (0.5 * left, time + 0.5 * left),
+            h => (h, time + h),
+        };
+        self.stepper.set_step_size(step);
+        let before = self.stepper.save();
+        // A rejected step leaves the time of its end.
+        self.stepper.tile_mut().lane_mut(self.time).fill(time);
+        if let Some(watch) = &mut self.watch {
+            watch.begin(&self.stepper);
+        }
+        let converged = self.stepper.try_step(step, end);
+        if let Some(watch) = &mut self.watch {
+            watch.end(&self.stepper);
+        }
+        let crossings: Vec<Option<Crossing>> = (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();
+        let ratios = self.ratios(&converged, &crossings, step);
+        let largest = ratios.iter().copied().fold(0.0, f64::max);
+        let accepted = largest <= 1.0;
+        let factor = self.controller.factor(largest);
+        let next = step * if accepted { factor } else { factor.min(0.9) };
+        let missed =
+            crossings.iter().zip(&ratios).filter(|(_, ratio)| **ratio > 1.0).filter_map(|(crossing, _)| *crossing);
+        let first = missed.map(|crossing| crossing.share).reduce(f64::min).filter(|_| step > self.controller.event());
+        let crosses = crossings.iter().any(Option::is_some);
+        self.h = match first {
+            Some(share) => (step * share * (1.0 + BEYOND)).max(self.controller.event()).min(0.9 * step),
+            // A step cut short at a goal is no reason against the longer one.
+            None if accepted && step < self.h && !crosses => self.h.max(next),
+            None => next,
+        };
+        if accepted {
+            self.switched = crossings.iter().map(Option::is_some).collect();
+        }
+        Attempt { step, end, ratios, accepted, before }
+    }
+
+    /// Restores the states before a step.
+    pub fn reject(&mut self, attempt: &Attempt) {
+        self.stepper.rewind(&attempt.before, attempt.step);
+    }
+
+    fn crossing(&self, lane: usize, step: f64) -> Option<Crossing> {
+        let running = self.stepper.alive()[lane];
+        self.watch.as_ref().filter(|_| running)?.crossing(lane, step)
+    }
+
+    fn ratios(&self, converged: &[bool], crossings: &[Option<Crossing>], step: f64) -> Vec<f64> {
+        let ratio = |lane: usize| {
+            let error = self.stepper.local_errors()[lane];
+            let size = if self.switched[lane] || crossings[lane].is_some() { error.whole } else { error.size };
+            let ratio = self.controller.error_ratio(size, step);
+            // A switch right after another is no new event: equations may switch in every step, as with dry friction at rest.
+            let event = crossings[lane].filter(|_| !self.switched[lane]);
+            let early = event.is_some_and(|crossing| !crossing.is_at_the_end()) && step > self.controller.event();
+            match () {
+                () if !self.stepper.alive()[lane] => 0.0,
+                () if converged[lane] && !ratio.is_nan() && !early => ratio,
+                () => f64::INFINITY,
+            }
+        };
+        (0..converged.len()).map(ratio).collect()
+    }
+}

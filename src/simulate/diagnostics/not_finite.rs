@@ -1,0 +1,75 @@
+//! Which term of the equations is no finite number at a state.
+
+use rustc_hash::FxHashMap;
+use symdiff::{Binary, Expr, Graph, Node, Unary};
+
+use crate::assemble::System;
+use crate::compile::Layout;
+
+/// Operations of a term that are written out; deeper ones are left out.
+const DEEPEST: usize = 4;
+
+/// A term that is no finite number, and the equation that it is part of: `` `1/t` in the motion of rod.angle ``. `None` where all equations
+/// have finite values. `state` holds the values of the layout's registers.
+pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) -> Option<String> {
+    let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
+    let mut set = |symbols: &[Expr], first: usize| {
+        values.extend(symbols.iter().zip(&state[first..]).map(|(&symbol, &value)| (symbol, value)));
+    };
+    let parameters: Vec<Expr> = system.parameters.iter().map(|parameter| parameter.symbol).collect();
+    set(&parameters, layout.parameters.start);
+    set(&system.q, layout.q.start);
+    set(&system.v, layout.v.start);
+    values.insert(system.time, time);
+    // Reactions and accelerations that follow from a term are not finite either; they say nothing of where it comes from.
+    let value_of = |symbol: Expr| values.get(&symbol).copied().unwrap_or(0.0);
+    let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
+    let named = motion.map(|(&expr, coordinate)| (expr, format!("the motion of `{}`", coordinate.name)));
+    let closure = system.constraint.iter().zip(&system.constraints);
+    let named = named.chain(closure.map(|(&expr, info)| (expr, format!("`{}`", info.name))));
+    let graph = &system.graph;
+    let value = |expr: Expr| graph.evaluate(&[expr], value_of)[0];
+    let (mut term, place) = named.into_iter().find(|&(expr, _)| !value(expr).is_finite())?;
+    while let Some(part) = graph.node(term).children().find(|&part| !value(part).is_finite()) {
+        term = part;
+    }
+    Some(format!("`{}` in {place}", written(graph, term, DEEPEST)))
+}
+
+/// A term as a formula.
+fn written(graph: &Graph, expr: Expr, depth: usize) -> String {
+    let part = |expr: Expr| match graph.node(expr) {
+        Node::Constant(_) | Node::Symbol(_) => written(graph, expr, depth),
+        _ if depth == 0 => "…".to_owned(),
+        node => {
+            let text = written(graph, expr, depth - 1);
+            if matches!(node, Node::Binary(..)) && !text.ends_with(')') { format!("({text})") } else { text }
+        }
+    };
+    match graph.node(expr) {
+        Node::Constant(bits) => f64::from_bits(bits).to_string(),
+        Node::Symbol(_) => {
+            let name = graph.symbol_name(expr).unwrap_or_default();
+            // `q:rod.angle`, `p:length`.
+            name.split_once(':').map_or(name, |(_, name)| name).to_owned()
+        }
+        Node::Unary(Unary::Neg, a) => format!("-{}", part(a)),
+        Node::Unary(Unary::Spline(..), a) => format!("table({})", written(graph, a, depth.saturating_sub(1))),
+        Node::Unary(function, a) => {
+            let name = format!("{function:?}").to_lowercase();
+            format!("{name}({})", if depth == 0 { "…".to_owned() } else { written(graph, a, depth - 1) })
+        }
+        Node::Binary(function, a, b) => {
+            let (a, b) = (part(a), part(b));
+            match function {
+                Binary::Add => format!("{a} + {b}"),
+                Binary::Sub => format!("{a} - {b}"),
+                Binary::Mul => format!("{a}*{b}"),
+                Binary::Div => format!("{a}/{b}"),
+                Binary::Pow => format!("{a}^{b}"),
+                Binary::Select | Binary::SelectElse => b,
+                other => format!("{}({a}, {b})", format!("{other:?}").to_lowercase()),
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Samples that need shorter steps than the schedule has.
+//!
+//! The schedule is the controlling samples'. Another sample may meet a contact at another time, or move faster between them. Where
+//! its local error in a step of the schedule is more than the step's share of the tolerance, or where its equations switch, it
+//! takes steps of its own up to that step's end, and goes on with them until they are as long as the schedule's.
+
+use symdiff::Tile;
+
+use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::{StepFailure, Stepper};
+
+/// Most steps of a sample within one of the schedule.
+const MOST_STEPS: usize = 200_000;
+
+/// Keeps every lane of a tile within the tolerance.
+#[derive(Debug)]
+pub(super) struct LaneSteps<'s> {
+    simulator: &'s Simulator,
+    controller: Controller,
+    watch: Option<SwitchWatch<'s>>,
+    /// Lanes that go on alone.
+    alone: Vec<Option<Box<Adaptive<'s>>>>,
+    /// Sum of each lane's local errors over the tolerance.
+    error_ratios: Vec<f64>,
+}
+
+impl<'s> LaneSteps<'s> {
+    /// For the lanes of a stepper at the beginning of a run.
+    pub fn new(simulator: &'s Simulator, controller: Controller, stepper: &mut Stepper<'s>) -> Self {
+        stepper.estimate_errors();
+        let width = stepper.alive().len();
+        Self {
+            simulator,
+            controller,
+            watch: simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile())),
+            alone: (0..width).map(|_| None).collect(),
+            error_ratios: vec![0.0; width],
+        }
+    }
+
+    /// Sum of each lane's local errors over the tolerance.
+    pub fn error_ratios(&self) -> &[f64] {
+        &self.error_ratios
+    }
+
+    /// A step of the schedule, as [`Stepper::step`] does it.
+    pub fn step(&mut self, stepper: &mut Stepper<'s>, h: f64, end: f64) -> Vec<StepFailure> {
+        let start = stepper.tile().lane(self.simulator.program.layout.time)[0];
+        stepper.set_step_size(h);
+        let before = stepper.save();
+        if let Some(watch) = &mut self.watch {
+            watch.begin(stepper);
+        }
+        let converged = stepper.try_step(h, end);
+        if let Some(watch) = &mut self.watch {
+            watch.end(stepper);
+        }
+        let mut failures = Vec::new();
+        for lane in (0..converged.len()).filter(|&lane| stepper.alive()[lane]).collect::<Vec<_>>() {
+            let crossing = self.watch.as_ref().filter(|_| converged[lane]).and_then(|watch| watch.crossing(lane, h));
+            let error = stepper.local_errors()[lane];
+            let size = if crossing.is_some() { error.whole } else { error.size };
+            let ratio = self.controller.error_ratio(size, h);
+            let within = converged[lane] && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
+            let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());
+            if within && attached {
+                self.error_ratios[lane] += ratio * h / self.controller.duration;
+                // What follows a switch is not left to the schedule's steps.
+                self.alone[lane] = crossing.is_some().then(|| self.detached(stepper, lane, h, None));
+                continue;
+            }
+            let mut alone = match self.alone[lane].take() {
+                Some(alone) => alone,
+                None => self.detached(stepper, lane, h, Some(&before)),
+            };
+            match self.advance(&mut alone, stepper, (start, end)) {
+                Ok(ratio) => {
+                    self.error_ratios[lane] += ratio;
+                    alone.stepper.set_step_size(h);
+                    stepper.set_lane(lane, &alone.stepper);
+                    self.alone[lane] = Some(alone);
+                }
+                Err(()) if converged[lane] => self.error_ratios[lane] += ratio.max(1.0),
+                Err(()) => {
+                    let equation = alone.stepper.worst_equation(0);
+                    failures.push(StepFailure { lane, time: end, equation });
+                    stepper.retire(lane..lane + 1);
+                }
+            }
+        }
+        failures
+    }
+
+    /// A lane alone, in its present state or in that of states saved before.
+    fn detached(&self, stepper: &Stepper<'s>, lane: usize, h: f64, saved: Option<&[f64]>) -> Box<Adaptive<'s>> {
+        let program = &self.simulator.program;
+        let (width, mut tile) = (stepper.alive().len(), Tile::new(1, program.registers(), program.constants()));
+        for (register, value) in stepper.lane(lane).into_iter().enumerate() {
+            tile.lane_mut(register)[0] = value;
+        }
+        let mut alone = Stepper::new(program, &tile);
+        let state = match saved {
+            Some(saved) => saved.iter().skip(lane).step_by(width).copied().collect(),
+            None => alone.save(),
+        };
+        alone.rewind(&state, h);
+        let mut alone = Adaptive::new(self.simulator, alone, self.controller, h);
+        if saved.is_none() {
+            alone.switch();
+        }
+        Box::new(alone)
+    }
+
+    /// Steps alone from `start` to `end`; the sum of local errors over the tolerance.
+    ///
+    /// # Errors
+    /// Where no step is short enough.
+    fn advance(
+        &self,
+        alone: &mut Adaptive<'s>,
+        stepper: &mut Stepper<'s>,
+        (start, end): (f64, f64),
+    ) -> Result<f64, ()> {
+        let counted = alone.stepper.counters();
+        alone.stepper.refine(stepper.refines());
+        let (mut time, mut sum, mut reached) = (start, 0.0, false);
+        for _ in 0..MOST_STEPS {
+            let attempt = alone.attempt(time, end);
+            if alone.is_stuck() {
+                break;
+            }
+            if attempt.accepted {
+                sum += attempt.ratios[0] * attempt.step / self.controller.duration;
+                time = attempt.end;
+            } else {
+                alone.reject(&attempt);
+            }
+            if time == end {
+                reached = true;
+                break;
+            }
+        }
+        stepper.count_since(alone.stepper.counters(), counted);
+        if reached { Ok(sum) } else { Err(()) }
+    }
+}

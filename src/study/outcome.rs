@@ -1,0 +1,72 @@
+//! What a subsystem's methods found, before it becomes bounds.
+
+use super::internal::InternalError;
+use crate::methods::{Method, MethodResult, Stop, Validation};
+use crate::results::{Bounds, MethodSummary, Summary};
+use crate::simulate::{Schedule, SingularPass};
+
+/// A method's result and its line in the summary.
+pub(super) struct Outcome {
+    pub result: MethodResult,
+    pub summary: MethodSummary,
+}
+
+/// What one schedule yields.
+pub(super) struct Results {
+    pub schedule: Schedule,
+    pub nominal: Outcome,
+    /// Singular configurations that the nominal motion passes.
+    pub singular: Vec<SingularPass>,
+    /// Absent where no method is asked for.
+    pub validation: Option<(Validation, MethodSummary)>,
+    pub methods: Vec<(Method, Outcome)>,
+    /// The same with halved steps, where asked for.
+    pub halved: Vec<(Method, Outcome)>,
+    /// What this program did wrong; of what failed nothing is known.
+    pub internal: Vec<InternalError>,
+}
+
+impl Results {
+    pub fn outcomes(&self) -> impl Iterator<Item = &Outcome> {
+        std::iter::once(&self.nominal).chain(self.methods.iter().map(|(_, outcome)| outcome))
+    }
+
+    /// Samples that stopped.
+    pub fn stops(&self) -> impl Iterator<Item = &(Stop, Vec<f64>)> {
+        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.stop.as_ref());
+        self.outcomes().filter_map(|outcome| outcome.result.simulated.stop.as_ref()).chain(validation)
+    }
+
+    /// Rows that every sample of every method has reached, validation samples included.
+    pub fn whole(&self) -> usize {
+        let nominal = self.nominal.result.simulated.stop.as_ref().map(|(stop, _)| stop);
+        let stops = self.stops().filter(|(stop, _)| !stop.is_of_jet() && nominal != Some(stop));
+        stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
+    }
+
+    /// The largest error ratio of a sample, where that is more than 1.
+    pub fn beyond_tolerance(&self) -> Option<f64> {
+        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
+        let ratios =
+            self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
+        ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
+    }
+}
+
+/// What a study found.
+pub(super) struct Ran {
+    pub bounds: Bounds,
+    pub summary: Summary,
+    /// Rows that every sample of every method has reached.
+    pub whole: usize,
+}
+
+/// How far validation samples of a box came.
+pub(super) struct Tried {
+    /// Rows that all have reached.
+    pub reached: usize,
+    /// ξ of those that did not reach the end.
+    pub stopped: Vec<Vec<f64>>,
+    /// Whether any did.
+    pub any: bool,
+}

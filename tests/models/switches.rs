@@ -1,0 +1,154 @@
+//! Steps from a tolerance where the equations switch: every sample of the box keeps the tolerance, and no step jumps over an
+//! event. Truths are closed forms of flights and oscillations between events.
+
+use std::f64::consts::PI;
+
+use mbint::inner::results::{Bounds, Method};
+
+use crate::common::{Vary, band, curve, largest, nominal, output, read, run};
+
+/// A ball that falls on a stiff ground.
+const BALL: &str = "
+parameters: { m: 2 kg, g: 9.81 m/s^2, K: 3e8 N/m, h0: { value: 0.7, unit: m, tolerance: 1% } }
+bodies: { ball: { mass: m, coordinates: [y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  ground: { force: { on: ball, value: [0, \"K*max(-ball.y, 0)\"] } }
+initial: { ball.y: h0, ball.vy: 0 }
+outputs: { y: ball.y, energy: \"m*ball.vy^2/2 + m*g*ball.y + K*max(-ball.y, 0)^2/2\" }
+simulation: { duration: 1.5, tolerance: 1e-6, output_step: 0.03 }
+bounds: { scan: { points: 17 } }
+";
+
+/// Height of a ball that bounces without loss; contacts last π/ω and shift the flights by what gravity adds to that.
+fn bounces(height: f64, t: f64) -> f64 {
+    let (g, omega) = (9.81, (3e8_f64 / 2.0).sqrt());
+    let speed = (2.0 * g * height).sqrt();
+    let fall = speed / g;
+    // y = −(v/ω) sin ωτ − (g/ω²)(1 − cos ωτ) returns to 0 after π/ω + 2 atan(g/(vω))/ω.
+    let contact = (PI + 2.0 * (g / (speed * omega)).atan()) / omega;
+    if t < fall {
+        return height - 0.5 * g * t * t;
+    }
+    let within = (t - fall) % (contact + 2.0 * fall);
+    if within < contact {
+        let phase = omega * within;
+        return -speed / omega * phase.sin() - g / (omega * omega) * (1.0 - phase.cos());
+    }
+    let flight = within - contact;
+    speed * flight - 0.5 * g * flight * flight
+}
+
+/// Ends of the heights over the box, from many of them: the box's ends and what lies between.
+fn truth(t: f64) -> [f64; 2] {
+    let heights = (0..=4000).map(|place| bounces(0.7 * (0.99 + 0.02 * f64::from(place) / 4000.0), t));
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], y| [lower.min(y), upper.max(y)])
+}
+
+fn of_scan(points: usize, t: f64) -> [f64; 2] {
+    let heights = (0..points).map(|place| bounces(0.7 * (0.99 + 0.02 * place as f64 / (points - 1) as f64), t));
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], y| [lower.min(y), upper.max(y)])
+}
+
+#[test]
+fn no_sample_of_a_bouncing_ball_gains_energy() {
+    for tolerance in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+        let bounds = run(&read(BALL).tolerance(tolerance));
+        let [y, energy] = ["y", "energy"].map(|name| band(output(&bounds, name), Method::Scan));
+        let full = 2.0 * 9.81 * 0.7 * 1.01;
+        let highest = largest(energy.upper.iter().copied());
+        let lowest = energy.lower.iter().copied().fold(f64::INFINITY, f64::min);
+        let off = largest(bounds.times.iter().enumerate().flat_map(|(row, &t)| {
+            let [lower, upper] = of_scan(17, t);
+            [y.lower[row] - lower, y.upper[row] - upper]
+        }));
+        println!(
+            "{tolerance:e}: off by {off:.1e} m, energy {:.1e} more, {:.1e} less",
+            highest / full - 1.0,
+            1.0 - lowest / (2.0 * 9.81 * 0.7 * 0.99)
+        );
+        assert!(highest < full * (1.0 + 10.0 * tolerance), "{tolerance:e}: {highest} of {full}");
+        assert!(off < 20.0 * tolerance, "{tolerance:e}: off by {off:e} m");
+    }
+}
+
+/// At rows that are not flagged both ends of the true band lie within the stated error.
+fn covered(bounds: &Bounds, name: &str, truth: impl Fn(f64) -> [f64; 2]) -> (usize, usize) {
+    let band = band(output(bounds, name), Method::Scan);
+    let rows = (0..bounds.times.len()).filter(|&row| !band.error.unresolved[row]);
+    let holds = |row: &usize| {
+        let ([lower, upper], error) = (truth(bounds.times[*row]), band.error.total[*row]);
+        (band.lower[*row] - lower).abs() <= error + 1e-12 && (band.upper[*row] - upper).abs() <= error + 1e-12
+    };
+    let rows: Vec<usize> = rows.collect();
+    (rows.iter().filter(|row| holds(row)).count(), rows.len())
+}
+
+#[test]
+fn the_band_of_a_bouncing_ball_is_covered_by_its_error() {
+    let bounds = run(&read(BALL));
+    let (covered, rows) = covered(&bounds, "y", truth);
+    println!("{covered} of {rows} rows");
+    assert!(covered as f64 >= 0.95 * rows as f64, "{covered} of {rows}");
+}
+
+/// A spring that acts on one side only, and a speed at which a body passes it within less than a step: a narrow post.
+#[test]
+fn no_step_jumps_over_a_narrow_post() {
+    let text = "
+bodies: { cart: { mass: 1, coordinates: [x] } }
+effects: { post: { force: { on: cart, value: [\"-4000*max(1e-3 - abs(cart.x - 1.23456), 0)/1e-3\", 0] } } }
+initial: { cart.x: 0, cart.vx: 3 }
+outputs: { x: cart.x, v: cart.vx }
+simulation: { duration: 1, tolerance: 1e-5, output_step: 0.5 }
+";
+    let bounds = nominal(&read(text));
+    // The post takes 4000 N over a triangle of ± 1 mm: 4 J of 4.5 J.
+    let after = (2.0 * (4.5 - 4.0_f64)).sqrt();
+    let found = *curve(&bounds, "v").last().unwrap();
+    assert!((found - after).abs() < 1e-3, "{found}, not {after}");
+}
+
+/// 50 µm of motion in a machine whose drawing is 1 m large.
+#[test]
+fn the_tolerance_is_relative_to_what_an_output_moves() {
+    let text = "
+parameters: { k: { value: 4e4, unit: N/m, tolerance: 1% } }
+bodies: { ground: { points: { far: [1, 0] } }, tip: { mass: 1, coordinates: [x] } }
+effects: { spring: { force: { on: tip, value: [-k*(tip.x - 1), 0] } } }
+initial: { tip.x: 1.00005, tip.vx: 0 }
+outputs: { x: tip.x }
+simulation: { duration: 0.5, tolerance: 1e-3, output_step: 0.01 }
+bounds: { scan: { points: 3 } }
+";
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let bounds = nominal(&read(text).tolerance(tolerance));
+        let off = crate::common::distance_from(&bounds.times, curve(&bounds, "x"), |t| 1.0 + 5e-5 * (200.0 * t).cos());
+        println!("{tolerance:e}: off by {:.1e} of the movement", off / 1e-4);
+        assert!(off < tolerance * 1e-4, "{tolerance:e}: {off:e} m");
+    }
+}
+
+/// What a user asks for is the error of the result, within its own movement.
+#[test]
+fn the_tolerance_is_the_error_of_the_result() {
+    let text = "
+parameters: { k: { value: 30, unit: N/m, tolerance: 2% } }
+bodies: { bob: { mass: 1.3, coordinates: [x] } }
+effects: { spring: { force: { on: bob, value: [-k*bob.x, 0] } } }
+initial: { bob.x: 0.2, bob.vx: 0.1 }
+outputs: { x: bob.x, v: bob.vx }
+simulation: { duration: 20, tolerance: 1e-4, output_step: 0.1 }
+bounds: { scan: { points: 3 } }
+";
+    let omega = (30.0_f64 / 1.3).sqrt();
+    for tolerance in [1e-3, 1e-4, 1e-5] {
+        let bounds = nominal(&read(text).tolerance(tolerance));
+        let off = crate::common::distance_from(&bounds.times, curve(&bounds, "x"), |t| {
+            0.2 * (omega * t).cos() + 0.1 / omega * (omega * t).sin()
+        });
+        let moves = 2.0 * (0.2_f64.powi(2) + (0.1 / omega).powi(2)).sqrt();
+        println!("{tolerance:e}: {:.1e}", off / moves);
+        assert!(off < tolerance * moves, "{tolerance:e}: {:e}", off / moves);
+    }
+}
