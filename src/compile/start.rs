@@ -220,11 +220,7 @@ struct Builder<'s> {
 
 impl Builder<'_> {
     /// The corrections of positions, of velocities, of accelerations with multipliers, and of a motion's velocities.
-    fn corrections(
-        &mut self,
-        equations: &Equations,
-        open: OpenStart,
-    ) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
+    fn corrections(&mut self, equations: &Equations, open: OpenStart) -> Result<[Vec<Expr>; 4], NoFactors<Equation>> {
         let system = self.system;
         let n = system.q.len();
         let smallest = LeastSquares::smallest_change(system, &mut self.graph);
@@ -266,8 +262,7 @@ impl Builder<'_> {
         let rate = &closure_rate[..system.lambda.len()];
         let zero = vec![self.graph.constant(0.0); n];
         let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
-        let projection =
-            self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
+        let projection = self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
         Ok([position, velocity, acceleration, projection])
     }
 

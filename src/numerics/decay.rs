@@ -4,6 +4,8 @@
 //! and what is missing beyond is the rest of the geometric series. Where they do not fall, as at a narrow resonance, it is large,
 //! whatever the samples between the nodes say.
 
+use symdiff::math;
+
 use super::sparse_basis::SparseBasis;
 
 /// Lower degrees are too few to tell a rate.
@@ -36,7 +38,7 @@ pub fn truncation(basis: &SparseBasis, coefficients: &[f64]) -> f64 {
         }
         // Even or odd ones may be missing, so that pairs are compared. Falling ever faster, they tell less than over all higher degrees;
         // in waves they may stand still.
-        let fall = |from: usize| (envelope[n - 1] / envelope[from]).powf(1.0 / (n - 1 - from) as f64);
+        let fall = |from: usize| math::pow(envelope[n - 1] / envelope[from], 1.0 / (n - 1 - from) as f64);
         let overall = fall(n / 2);
         let rate = fall(n - 3).clamp(CAUTION * overall, overall).min(SLOWEST);
         envelope[n].max(rate * envelope[n - 1]) * rate / (1.0 - rate)

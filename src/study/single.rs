@@ -27,6 +27,9 @@ pub(super) struct Study<'a> {
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
+/// A schedule, the local errors that are allowed on it, and what the validation samples found.
+type Balanced = (Schedule, Option<Controller>, (Validation, MethodSummary));
+
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
@@ -179,7 +182,7 @@ impl<'a> Study<'a> {
         schedule: &Schedule,
         tolerance: Option<Controller>,
         progress: &Progress,
-    ) -> Result<(Schedule, Option<Controller>, (Validation, MethodSummary)), SimulationError> {
+    ) -> Result<Balanced, SimulationError> {
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);

@@ -49,7 +49,7 @@ simulation: { duration: 1, step: 2e-3, output_step: 0.1, formulation: absolute }
     // What pushes the rack, and what turns the wheel with it: −2 (J₂ + r² m) φ̈.
     let after = |name: &str| curve(fine, name)[1..].iter().copied();
     assert!(largest(after("force").map(|force| force - 3.0 * 0.1 * acceleration)) < 1e-3);
-    assert!(largest(after("torque").map(|torque| torque - 2.0 * (0.005 + 0.0025 * 3.0) * acceleration)) < 1e-3);
+    assert!(largest(after("torque").map(|torque| torque + 2.0 * (0.005 + 0.0025 * 3.0) * acceleration)) < 1e-3);
 }
 
 #[test]

@@ -238,9 +238,8 @@ fn kinks_are_covered() {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)))
         }
     };
-    let formulas: [(&str, fn(f64) -> f64); 3] =
-        [("a", |x| x.abs()), ("m", |x| x.max(0.02)), ("n", |x| x.min(0.0) - 2.0 * (x - 0.05).max(0.0))];
-    for (name, f) in formulas {
+    let kinks: [fn(f64) -> f64; 3] = [|x| x.abs(), |x| x.max(0.02), |x| x.min(0.0) - 2.0 * (x - 0.05).max(0.0)];
+    for (name, f) in ["a", "m", "n"].into_iter().zip(kinks) {
         for method in [Method::Chebyshev, Method::Scan] {
             assert_honest(&bounds, name, method, of(f));
         }

@@ -112,7 +112,7 @@ fn effort(on: OnJoint) -> TypedSensor {
     (Sensor::of_effort(on.coordinate), dimension)
 }
 
-/// What people are told of an effect.
+/// The documentation of an effect.
 fn with_sensors<E: ForceElement>() -> ElementDocs {
     let sensors = E::SENSORS.iter().map(|(measure, dimension)| (measure.name(), dimension.unit())).collect();
     ElementDocs { sensors, ..ElementDocs::of::<E>() }

@@ -9,7 +9,7 @@ use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use super::range_search::{Functions, Previous, RangeSearch, extent};
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch, extent};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{
@@ -290,7 +290,7 @@ impl<'r> Row<'r> {
         outputs: Vec<usize>,
         are_polynomials: bool,
         places: &'f [Vec<f64>],
-        evaluate: &'f dyn Fn(&[usize], &[Vec<f64>]) -> Vec<f64>,
+        evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
         Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, places, evaluate }
     }

@@ -24,6 +24,9 @@ const BEYOND: f64 = 1e-3;
 /// The extremes of each output in the row before, where they were searched for by climbs.
 pub(super) type Previous = Vec<Option<Extremes>>;
 
+/// Values of the outputs of these numbers, one after the other, at some ξ.
+pub(super) type Evaluate<'f> = dyn Fn(&[usize], &[Vec<f64>]) -> Vec<f64> + 'f;
+
 /// Functions of the parameters whose ranges are sought.
 pub(super) struct Functions<'f> {
     /// Numbers of the outputs.
@@ -34,8 +37,8 @@ pub(super) struct Functions<'f> {
     pub are_polynomials: bool,
     /// Where some of them are known to be large or small.
     pub places: &'f [Vec<f64>],
-    /// Values of those of these numbers, one after the other, at some ξ.
-    pub evaluate: &'f (dyn Fn(&[usize], &[Vec<f64>]) -> Vec<f64> + 'f),
+    /// Their values.
+    pub evaluate: &'f Evaluate<'f>,
 }
 
 /// How ranges over a box are found.

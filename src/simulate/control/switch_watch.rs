@@ -100,7 +100,8 @@ fn crossing([start, start_rate]: [f64; 2], [end, end_rate]: [f64; 2], h: f64) ->
         return changes.then(|| Crossing { share: start / (start - end), hidden: false });
     }
     // Without a change of sign at the ends, it has to approach zero first and to leave it last.
-    if !changes && !(start * start_rate < 0.0 && end * end_rate > 0.0) {
+    let approaches = start * start_rate < 0.0 && end * end_rate > 0.0;
+    if !(changes || approaches) {
         return None;
     }
     let cubic = |s: f64| {

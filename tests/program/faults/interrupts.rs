@@ -133,8 +133,9 @@ fn a_dear_run_is_refused_before_it_begins() {
     assert!(begun.elapsed().as_secs() < 30 && place.files("out").is_empty());
     let path = place.path().join("crank.yaml");
     let text = fs::read_to_string(&path).unwrap();
-    let allowed =
-        text.replace("bounds:", "bounds:\n  budget: { solves: 50000 }").replace("duration: 4", "duration: 0.001");
+    let allowed = text
+        .replace("bounds:", "bounds:\n  budget: { solves: 50000 }")
+        .replace("duration: 4, step: 1e-4", "duration: 0.02, step: 1e-3");
     fs::write(&path, allowed).unwrap();
     place.run("run -q crank.yaml -o out", 0);
 }
