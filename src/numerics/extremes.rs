@@ -243,6 +243,8 @@ struct End {
     best_xi: Vec<f64>,
     /// What the last step of the search changed.
     gap: f64,
+    /// Whether the neighbours are nearer than those that were no better than the best.
+    is_near: bool,
     found: bool,
 }
 
@@ -253,7 +255,7 @@ impl End {
         let around = Peak::new(xi.to_vec(), spacing.clone());
         let best = -sign * f64::INFINITY;
         let (xi, best_xi) = (xi.to_vec(), xi.to_vec());
-        Self { output, sign, width, spacing, around, best_xi, xi, best, gap: f64::NAN, found: false }
+        Self { output, sign, width, spacing, around, best_xi, xi, best, gap: f64::NAN, is_near: false, found: false }
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.
@@ -271,6 +273,7 @@ impl End {
             // Once may be by chance. (At first nothing is known, and NaN is not settled.)
             self.found = gain.max(self.gap) <= SETTLED * self.width && !self.gap.is_nan();
             self.gap = gain;
+            self.is_near = false;
             self.best = values[best];
             self.best_xi.clone_from(&points[best]);
             self.xi = self.around.vertex(&values[..values.len() - 1], self.sign);
@@ -278,7 +281,8 @@ impl End {
         } else {
             // Nothing better around the best, or the quadratic led away from it.
             self.gap = 0.0;
-            self.found = self.xi == self.best_xi;
+            self.found = self.is_near && self.xi == self.best_xi;
+            self.is_near = true;
             self.xi.clone_from(&self.best_xi);
             self.around = self.around.nearer(&self.xi);
         }
