@@ -86,11 +86,11 @@ fn sums_of_independent_oscillators_are_covered() {
     let settings = "simulation: { duration: 30, step: 0.005, output_step: 0.5 }\nbounds: { chebyshev: { order: 6 } }\n";
     let description = oscillators(&parts, "{ x: b0.x + b1.x + b2.x + b3.x }", 0.0, settings);
     assert!(assert_honest(&run(&description), "x", Method::Chebyshev, |t| sum(&parts, t)) > 50);
-    let (parts, outputs) = (&parts[..3], "{ x: b0.x + b1.x + b2.x, y: 3*b0.x + b2.x }");
+    let (parts, outputs) = (&parts[..3], "{ x: b0.x + b1.x + b2.x, y: 3*b0.x - b2.x }");
     let settings = settings.replace("order: 6", "order: 11").replace("duration: 30", "duration: 50");
     let bounds = run(&oscillators(parts, outputs, 0.0, &settings));
     assert!(assert_honest(&bounds, "x", Method::Chebyshev, |t| sum(parts, t)) > 80);
-    let weighted = [(3.0 * parts[0].0, parts[0].1, parts[0].2), (parts[2].0, parts[2].1, parts[2].2)];
+    let weighted = [(3.0 * parts[0].0, parts[0].1, parts[0].2), (-parts[2].0, parts[2].1, parts[2].2)];
     assert_honest(&bounds, "y", Method::Chebyshev, |t| sum(&weighted, t));
 }
 

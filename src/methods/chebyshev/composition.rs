@@ -29,6 +29,9 @@ const ROUNDING: f64 = 256.0 * f64::EPSILON;
 /// one of their values. (Accelerations and reactions of the samples have errors of the scheme that those which follow do not have.)
 const DISAGREES: (f64, f64) = (0.25, 1e-3);
 
+/// So many independent coordinates are moved one by one.
+const MOST_MOVED: usize = 4;
+
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
 
@@ -209,19 +212,34 @@ impl<'r> Row<'r> {
 
     /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
     ///
-    /// All are moved together, one way and the other, and, where there are several, against each other.
+    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
+    /// moved together: all one way, or every other one against the rest.
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
-        let several = self.closure.independent().len() > 1;
-        let signs: &[[f64; 2]] =
-            if several { &[[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] } else { &[[1.0; 2], [-1.0; 2]] };
+        let coordinates = errors.len() / 2;
+        let one_by_one = coordinates <= MOST_MOVED;
+        let rounds = if one_by_one { coordinates } else { 2 };
         let mut moved = vec![0.0; found.len()];
-        for signs in signs {
-            let shift: Vec<(usize, f64)> =
-                errors.iter().enumerate().map(|(place, &(line, error))| (line, signs[place / 2 % 2] * error)).collect();
-            let shifted = self.range_near(range_search, found, &shift);
-            for ((moved, found), shifted) in moved.iter_mut().zip(found).zip(&shifted) {
-                let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
-                *moved = largest(ends.into_iter().chain([*moved]));
+        for round in 0..rounds {
+            let weight = |coordinate: usize| match (one_by_one, coordinate == round) {
+                (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
+                (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
+                (false, _) => 1.0,
+            };
+            let mut own = vec![0.0; found.len()];
+            for sign in [1.0, -1.0] {
+                let shift = |(place, &(line, error)): (usize, &(usize, f64))| match weight(place / 2) {
+                    0.0 => None,
+                    weight => Some((line, sign * weight * error)),
+                };
+                let shift: Vec<(usize, f64)> = errors.iter().enumerate().filter_map(shift).collect();
+                let shifted = self.range_near(range_search, found, &shift);
+                for ((own, found), shifted) in own.iter_mut().zip(found).zip(&shifted) {
+                    let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
+                    *own = largest(ends.into_iter().chain([*own]));
+                }
+            }
+            for (moved, own) in moved.iter_mut().zip(own) {
+                *moved = if one_by_one { *moved + own } else { largest([*moved, own]) };
             }
         }
         moved
