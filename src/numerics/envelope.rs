@@ -18,7 +18,7 @@ pub fn envelope(estimates: &[f64]) -> Vec<f64> {
     // The end of a rise that goes on is none.
     if peaks.len() > 1 && peaks.last() == Some(&(estimates.len() - 1)) {
         let last = estimates.len() - 1;
-        if peaks[peaks.len() - 2] + 1 < last && at(last) > at(peaks[peaks.len() - 2]) {
+        if peaks[peaks.len() - 2] + 1 < last {
             peaks.pop();
         }
     }
