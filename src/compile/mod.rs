@@ -4,7 +4,7 @@
 //! - `scheme`: the integration schemes' coefficients;
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`), `nearest` what decides where it is
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`, `start_program`), `nearest` what decides where it is
 //!   open; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
@@ -20,6 +20,7 @@ mod scheme;
 mod sparse_lu;
 mod start;
 mod start_equations;
+mod start_program;
 mod step;
 mod switches;
 
@@ -30,7 +31,8 @@ pub use nearest::OpenStart;
 pub use program::{PivotSample, Program, Watched};
 pub use scheme::{Coefficients, Scheme};
 pub use sparse_lu::{NoFactors, PIVOT_SAMPLES};
-pub use start::{StartProgram, compile_nearest_start, compile_start};
+pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;
+pub use start_program::StartProgram;
 pub use step::compile;
 pub use switches::{SwitchProgram, compile_switches};

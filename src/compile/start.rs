@@ -25,13 +25,14 @@
 //! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
 //! exact.
 
-use symdiff::{Expr, Graph, Input, Lowered, SparseMatrix, Stages, Tape, lower};
+use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower};
 
 use super::equations::Equation;
 use super::layout::Layout;
 use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
-use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, Residual, named, residuals};
+use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, named, residuals};
+use super::start_program::{JACOBIAN, OBSERVE, POSITION, StartProgram, VELOCITY};
 use crate::assemble::System;
 
 /// ε relative to a constraint's own size in the matrix's metric.
@@ -39,91 +40,6 @@ const REGULARISATION: f64 = 1e-12;
 
 /// The same for constraints known to be redundant: the others imply them, and their multipliers stay near zero.
 const RELAXATION: f64 = 1e6;
-
-/// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
-#[derive(Clone, Debug)]
-pub struct StartProgram {
-    /// Shared with the step's program.
-    pub layout: Layout,
-    /// Φ, m, and the conditions on positions, after [`StartProgram::position`].
-    pub constraint: Vec<Residual>,
-    /// Φ̇, m, and the conditions on velocities, after [`StartProgram::velocity`].
-    pub constraint_rate: Vec<Residual>,
-    /// Registers of the outputs after [`StartProgram::observe`].
-    pub outputs: Vec<usize>,
-    /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
-    pub jacobian_entries: Vec<(usize, usize, usize)>,
-    /// What is nearest to rest.
-    pub open: OpenStart,
-    lowered: Lowered,
-}
-
-const GIVEN: usize = 0;
-const GUESS: usize = 1;
-const POSITION: usize = 2;
-const VELOCITY: usize = 3;
-const ACCELERATION: usize = 4;
-const JACOBIAN: usize = 5;
-const OBSERVE: usize = 6;
-const PROJECTION: usize = 7;
-
-impl StartProgram {
-    /// Number of registers of a tile.
-    pub fn registers(&self) -> usize {
-        self.lowered.registers
-    }
-
-    /// Numbers that a new tile holds.
-    pub fn constants(&self) -> &[(u32, f64)] {
-        &self.lowered.constants
-    }
-
-    /// Once a sample.
-    pub fn sample(&self) -> &Tape {
-        &self.lowered.stages[0]
-    }
-
-    /// Sets the positions and velocities that are given.
-    pub fn given(&self) -> &Tape {
-        &self.lowered.kernels[GIVEN]
-    }
-
-    /// Sets all positions to the guess.
-    pub fn guess(&self) -> &Tape {
-        &self.lowered.kernels[GUESS]
-    }
-
-    /// Correction of the positions (first n of `correction`), and Φ.
-    pub fn position(&self) -> &Tape {
-        &self.lowered.kernels[POSITION]
-    }
-
-    /// Correction of the velocities (first n of `correction`), and Φ̇.
-    pub fn velocity(&self) -> &Tape {
-        &self.lowered.kernels[VELOCITY]
-    }
-
-    /// Correction of accelerations and multipliers.
-    pub fn acceleration(&self) -> &Tape {
-        &self.lowered.kernels[ACCELERATION]
-    }
-
-    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
-    /// consistent.
-    pub fn projection(&self) -> &Tape {
-        &self.lowered.kernels[PROJECTION]
-    }
-
-    /// Outputs of the state.
-    pub fn observe(&self) -> &Tape {
-        &self.lowered.kernels[OBSERVE]
-    }
-
-    /// Φ_q.
-    pub fn jacobian(&self) -> &Tape {
-        &self.lowered.kernels[JACOBIAN]
-    }
-}
 
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);

@@ -114,7 +114,8 @@ impl BandError {
     pub fn hold_nominal(&mut self, ranges: &[Range], nominal: &[f64]) {
         for (row, (range, &nominal)) in ranges.iter().zip(nominal).enumerate() {
             let distance = range.distance(nominal);
-            if nominal.is_nan() || distance <= self.total[row] {
+            let is_unknown = nominal.is_nan() || self.total[row].is_nan();
+            if is_unknown || distance <= self.total[row] {
                 continue;
             }
             if distance <= ROUNDING * nominal.abs() {

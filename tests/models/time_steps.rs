@@ -111,7 +111,8 @@ bounds: {{ scan: {{ points: 61 }} }}
     };
     let mut findings = Findings::default();
     println!("{} steps", steps(&summary));
-    check(&mut findings, &bounds, "x", 40.0, exact);
+    // Between neighbours of the scan a jump may be anywhere, which is most of the error that is stated here.
+    check(&mut findings, &bounds, "x", 60.0, exact);
     findings.none();
 }
 

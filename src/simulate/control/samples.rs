@@ -54,8 +54,10 @@ pub fn schedule_for_tolerance(
     let mut ends = Vec::with_capacity(rows - 1);
     let (mut complete_rows, mut failure) = (rows, None);
     for row in 1..rows {
-        let (mut time, goal) = ((row - 1) as f64 * output_step, Schedule::time_of(duration, output_step, row));
+        let (begin, goal) = ((row - 1) as f64 * output_step, Schedule::time_of(duration, output_step, row));
+        let mut time = begin;
         let mut list = Vec::new();
+        let at_row = control.steps.clone();
         while time < goal {
             match control.step(time, goal) {
                 Outcome::Accepted(end) => {
@@ -66,6 +68,9 @@ pub fn schedule_for_tolerance(
                 Outcome::Dropped(error) => {
                     complete_rows = complete_rows.min(row);
                     failure.get_or_insert(error);
+                    // The ever smaller steps towards its end would spoil the others' accelerations.
+                    control.restore(at_row.clone());
+                    (time, list) = (begin, Vec::new());
                     if control.is_over() {
                         let schedule = Schedule::listed(output_step, ends);
                         return Ok(ToleranceSchedule { schedule, complete_rows, dropped: control.dropped, failure });
@@ -114,6 +119,15 @@ impl<'s> Control<'s> {
         let steps = Adaptive::new(simulator, Stepper::new(&simulator.program, &start), controller, h);
         let functions = TimeFunctions::of(simulator, controller.duration);
         Ok(Self { simulator, samples, output_step, steps, functions, count: 0, dropped: Vec::new() })
+    }
+
+    /// Goes back to an earlier state, without the samples that were dropped since.
+    fn restore(&mut self, mut earlier: Adaptive<'s>) {
+        let running = self.steps.stepper.alive().to_vec();
+        for lane in (0..running.len()).filter(|&lane| !running[lane]) {
+            earlier.stepper.retire(lane..lane + 1);
+        }
+        self.steps = earlier;
     }
 
     /// Whether no sample runs any more, or the schedule has as many steps as it may have.

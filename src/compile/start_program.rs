@@ -1,0 +1,93 @@
+//! The tapes of a consistent start.
+
+use symdiff::{Lowered, Tape};
+
+use super::layout::Layout;
+use super::nearest::OpenStart;
+use super::start_equations::Residual;
+
+/// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
+#[derive(Clone, Debug)]
+pub struct StartProgram {
+    /// Shared with the step's program.
+    pub layout: Layout,
+    /// Φ, m, and the conditions on positions, after [`StartProgram::position`].
+    pub constraint: Vec<Residual>,
+    /// Φ̇, m, and the conditions on velocities, after [`StartProgram::velocity`].
+    pub constraint_rate: Vec<Residual>,
+    /// Registers of the outputs after [`StartProgram::observe`].
+    pub outputs: Vec<usize>,
+    /// Φ_q's entries (constraint, coordinate, register) after [`StartProgram::jacobian`].
+    pub jacobian_entries: Vec<(usize, usize, usize)>,
+    /// What is nearest to rest.
+    pub open: OpenStart,
+    pub(super) lowered: Lowered,
+}
+
+// Numbers of the tapes.
+const GIVEN: usize = 0;
+const GUESS: usize = 1;
+pub(super) const POSITION: usize = 2;
+pub(super) const VELOCITY: usize = 3;
+const ACCELERATION: usize = 4;
+pub(super) const JACOBIAN: usize = 5;
+pub(super) const OBSERVE: usize = 6;
+const PROJECTION: usize = 7;
+
+impl StartProgram {
+    /// Number of registers of a tile.
+    pub fn registers(&self) -> usize {
+        self.lowered.registers
+    }
+
+    /// Numbers that a new tile holds.
+    pub fn constants(&self) -> &[(u32, f64)] {
+        &self.lowered.constants
+    }
+
+    /// Once a sample.
+    pub fn sample(&self) -> &Tape {
+        &self.lowered.stages[0]
+    }
+
+    /// Sets the positions and velocities that are given.
+    pub fn given(&self) -> &Tape {
+        &self.lowered.kernels[GIVEN]
+    }
+
+    /// Sets all positions to the guess.
+    pub fn guess(&self) -> &Tape {
+        &self.lowered.kernels[GUESS]
+    }
+
+    /// Correction of the positions (first n of `correction`), and Φ.
+    pub fn position(&self) -> &Tape {
+        &self.lowered.kernels[POSITION]
+    }
+
+    /// Correction of the velocities (first n of `correction`), and Φ̇.
+    pub fn velocity(&self) -> &Tape {
+        &self.lowered.kernels[VELOCITY]
+    }
+
+    /// Correction of accelerations and multipliers.
+    pub fn acceleration(&self) -> &Tape {
+        &self.lowered.kernels[ACCELERATION]
+    }
+
+    /// Correction of the velocities of a motion (first n of `correction`): impulses of the constraints that make them
+    /// consistent.
+    pub fn projection(&self) -> &Tape {
+        &self.lowered.kernels[PROJECTION]
+    }
+
+    /// Outputs of the state.
+    pub fn observe(&self) -> &Tape {
+        &self.lowered.kernels[OBSERVE]
+    }
+
+    /// Φ_q.
+    pub fn jacobian(&self) -> &Tape {
+        &self.lowered.kernels[JACOBIAN]
+    }
+}
