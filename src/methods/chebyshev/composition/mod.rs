@@ -37,9 +37,8 @@ const MOST_MOVED: usize = 4;
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
 
-/// Samples, for either end of an output, near which it is searched for.
+/// Samples, for either end of an output, near which it is searched for, and how far they are apart along some axis.
 const SEEDS: usize = 4;
-/// They are so far apart along some axis.
 const APART: f64 = 0.5;
 
 /// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
