@@ -213,7 +213,7 @@ fn the_error_falls_as_the_tolerance_does() {
 }
 
 #[test]
-#[ignore = "3 minutes: tolerances down to 1e-8"]
+#[ignore = "by hand: tolerances down to 1e-7"]
 fn the_error_falls_as_the_tolerance_does_further() {
     let mut findings = Findings::default();
     for benchmark in [pendulum(), two_loops(), andrews(), car_axis(), heavy_top(), bricard(), governor()] {
@@ -232,7 +232,7 @@ fn andrews_mechanism_is_exact_to_a_millionth() {
 }
 
 #[test]
-#[ignore = "10 s: hundreds of thousands of steps"]
+#[ignore = "2 minutes: hundreds of thousands of steps"]
 fn andrews_mechanism_is_exact_to_a_hundred_millionth_by_tolerance() {
     // The crank's turns, 16 rad, carry 18 to 24 times the tolerance.
     let errors = andrews().errors_of_tolerances(&[3e-10]);
