@@ -119,6 +119,7 @@ fn agrees_with_samples_alone(description: &Description, width: usize, steps: usi
 }
 
 #[test]
+#[ignore = "10 s: every lane alone"]
 fn lanes_do_not_depend_on_who_touches() {
     // A slider that runs into a buffer, deeper the longer the crank is; one crank is too short.
     let buffer = "  buffer: { contact: { between: [ground.W, slider], plane: [-1, 0], impact: { stiffness: 1e4, dissipation: 0.1 }, \
