@@ -29,6 +29,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
+    /// Draw the assembled mechanism at its start, and print where its bodies and points are.
+    Show(ShowArgs),
     /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
     /// Explain what a model is compiled to and what is left out, or list what the language offers.
@@ -159,6 +161,34 @@ pub(super) struct CheckArgs {
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }
+
+#[derive(Debug, Args)]
+#[command(after_help = SHOW_HELP)]
+pub(super) struct ShowArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Folder for the picture [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
+    pub set: Vec<Override>,
+
+    /// Show this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    /// A table for people, or JSON.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+const SHOW_HELP: &str = "\
+Writes mechanism.svg: a mechanism of the plane in its true shape, one of space from three
+quarters and along the three axes. Uncertain lengths of bodies have their tolerances beside them.";
 
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {

@@ -17,6 +17,7 @@ mod overview;
 mod progress;
 mod run;
 mod scenes;
+mod show;
 mod status;
 mod table;
 mod tree;
@@ -80,6 +81,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Check(args) => check::check(&args, console),
         Command::Cost(args) => cost::cost(args, console),
         Command::Explain(args) => explain::explain(&args, console),
+        Command::Show(args) => show::show(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Completions(args) => {

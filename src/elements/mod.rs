@@ -1,6 +1,8 @@
 //! The elements of the language: one file each, and one line in a registry.
 
 pub mod effects;
+mod glyph;
 pub mod joints;
 
+pub use glyph::Glyph;
 pub use joints::JointKind;

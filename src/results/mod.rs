@@ -3,6 +3,7 @@
 mod bounds;
 mod cost;
 mod decisions;
+mod drawing;
 mod effect_cost;
 mod explanation;
 mod merge;
@@ -14,6 +15,7 @@ pub use bounds::{Band, Bounds, Contribution, OutputBounds, foremost};
 pub(crate) use cost::tests as cost_tests;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};
 pub use decisions::{Decision, Each, Saving};
+pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;

@@ -1,8 +1,10 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
-use symdiff::{Tile, WIDTHS};
+use rustc_hash::FxHashMap;
+use symdiff::{Expr, Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_factors};
@@ -90,6 +92,18 @@ impl Assembled {
         let shared = shared_coordinates(&system, &start, &nominal);
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
         Ok(Self { system, start, nominal, mobility, undetermined, shared })
+    }
+
+    /// Some outputs in the nominal state, with these parameters in their formulas.
+    pub fn outputs_at_start(&self, which: Range<usize>, sample: &Sample) -> Vec<f64> {
+        let (system, layout) = (&self.system, &self.start.layout);
+        let symbols = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied();
+        let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda].into_iter().flat_map(Clone::clone);
+        let state = symbols.zip(registers.map(|register| self.nominal[register]));
+        let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(sample.iter().copied());
+        let values: FxHashMap<Expr, f64> = state.chain(parameters).chain([(system.time, 0.0)]).collect();
+        let outputs: Vec<Expr> = system.outputs[which].iter().map(|output| output.expr).collect();
+        system.graph.evaluate(&outputs, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN))
     }
 }
 

@@ -12,6 +12,7 @@ mod controlled;
 mod cost;
 mod decisions;
 mod deterministic;
+mod drawing;
 mod effect_costs;
 mod ensemble;
 mod explain;
@@ -36,6 +37,7 @@ use crate::simulate::{Assembled, SimulationError, Simulator};
 use subsystems::Prepared;
 
 pub use cost::{CostOptions, cost};
+pub use drawing::drawing;
 pub use effect_costs::language_costs;
 pub use explain::explain;
 pub use feasible::Survey;

@@ -81,6 +81,7 @@ fn sum(parts: &[(f64, f64, f64)], t: f64) -> (f64, f64) {
 }
 
 #[test]
+#[ignore = "10 s: dense scans"]
 fn sums_of_independent_oscillators_are_covered() {
     let parts = [(0.12, 1.1, 17.0), (0.05, 2.0, 14.0), (0.08, 0.7, 18.0), (0.03, 1.5, 12.0)];
     let settings = "simulation: { duration: 30, step: 0.005, output_step: 0.5 }\nbounds: { chebyshev: { order: 6 } }\n";

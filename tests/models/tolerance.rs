@@ -60,6 +60,7 @@ fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
 
 /// A pendulum that swings over the top: after a second no polynomial in its length follows it.
 #[test]
+#[ignore = "20 s: neighbours that part"]
 fn chaos_is_flagged_from_where_it_begins() {
     let description = read(
         &std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/models/double_pendulum.yaml"))
@@ -194,6 +195,7 @@ fn eight_parameters_take_five_hundred_simulations() {
 
 /// Parameters in another order are the same parameters.
 #[test]
+#[ignore = "10 s: four parameters in other orders"]
 fn permuted_parameters_have_the_same_bounds() {
     let description = within(model("slider_crank"), 1e-3, 1000);
     let mut permuted = description.clone();

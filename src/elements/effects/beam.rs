@@ -19,6 +19,7 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::{ForceElement, Forces, LineMass, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
@@ -75,6 +76,7 @@ impl Flexible {
 }
 
 impl ForceElement for Beam {
+    const GLYPH: Glyph = Glyph::Beam;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::FORCE, Dimension::FORCE),

@@ -22,6 +22,7 @@ use symdiff::{Binary, Formula};
 
 use super::positive_part::{PositivePart, clipped};
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Fields, JointCoordinate, Sensor, OnJoint, PointRef, Reader, SymbolTable, TimeOrder, Rotating};
 use crate::multibody::BuildError;
@@ -97,6 +98,7 @@ impl Belt {
 }
 
 impl ForceElement for Belt {
+    const GLYPH: Glyph = Glyph::Belt;
     const SENSORS: &'static [TypedSensor] =
         &[(Self::FIRST_TENSION, Dimension::FORCE), (Self::SECOND_TENSION, Dimension::FORCE)];
 

@@ -21,6 +21,7 @@ use schemars::{Schema, SchemaGenerator};
 use symdiff::{Formula, Scalar};
 
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Node, PerAxis, PointRef, Quantity, Reader, Span, SymbolTable, Value, values};
 use crate::multibody::{BuildError, Matrix, Vector};
@@ -59,6 +60,7 @@ pub struct Bushing {
 }
 
 impl ForceElement for Bushing {
+    const GLYPH: Glyph = Glyph::Spring;
     const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

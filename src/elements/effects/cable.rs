@@ -13,6 +13,7 @@ use symdiff::{Binary, Formula};
 
 use super::positive_part::{PositivePart, clipped};
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Sensor, PointRef};
 use crate::multibody::BuildError;
@@ -52,6 +53,7 @@ pub struct Cable {
 }
 
 impl ForceElement for Cable {
+    const GLYPH: Glyph = Glyph::Cable;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),

@@ -14,6 +14,7 @@ use symdiff::Formula;
 use super::contact::{Shape, Touch};
 use super::impact::Push;
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor, contact};
+use crate::elements::Glyph;
 use crate::grammar::{Axis, PointRef};
 use crate::multibody::BuildError;
 
@@ -46,6 +47,7 @@ pub struct ClearanceJoint {
 }
 
 impl ForceElement for ClearanceJoint {
+    const GLYPH: Glyph = Glyph::Pin;
     const SENSORS: &'static [TypedSensor] = contact::SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -7,8 +7,10 @@
 //! It acts from outside the mechanism: nothing feels the reaction, and it has no potential.
 
 use mbint_derive::{Choice, Element};
+use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::{Components, PointRef};
 use crate::multibody::BuildError;
 
@@ -42,7 +44,12 @@ pub enum Frame {
 }
 
 impl ForceElement for Force {
+    const GLYPH: Glyph = Glyph::Force;
     const SENSORS: &'static [TypedSensor] = &[];
+
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        (self.frame == Frame::Ground).then_some(&*self.value)
+    }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let mut force = forces.vector(&self.value)?;

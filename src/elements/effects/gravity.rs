@@ -8,6 +8,7 @@
 //! g in m/s², in the ground's axes: (0, −9.81) pulls down. V is zero at the ground's origin.
 
 use mbint_derive::Element;
+use symdiff::Formula;
 
 use super::{ForceElement, Forces, Scope, TypedSensor};
 use crate::grammar::Components;
@@ -33,6 +34,10 @@ impl ForceElement for Gravity {
 
     fn scope(&self) -> Scope {
         Scope::EveryBody
+    }
+
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        Some(&self.acceleration)
     }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

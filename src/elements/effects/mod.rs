@@ -18,6 +18,7 @@ pub use self::impact::Impact;
 #[cfg(test)]
 pub use self::impact::{Exponent, RestitutionLaw};
 use self::registry::effects;
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Element, ElementDocs, OnJoint, PointRef, Sensor};
 use crate::multibody::BuildError;
@@ -59,6 +60,14 @@ pub trait ForceElement: Element {
     /// What it measures.
     fn sensors(&self) -> Vec<TypedSensor> {
         Self::SENSORS.to_vec()
+    }
+
+    /// Its symbol in drawings, at the points, bodies and joints that it names.
+    const GLYPH: Glyph = Glyph::Nothing;
+
+    /// A direction that a drawing shows, in the ground's axes.
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        None
     }
 
     /// Coordinates of joints that it acts on.

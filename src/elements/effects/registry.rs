@@ -90,6 +90,20 @@ macro_rules! effects {
                 }
             }
 
+            /// Its symbol in drawings.
+            pub fn glyph(&self) -> $crate::elements::Glyph {
+                match self {
+                    $(Self::$name(_) => <$name as ForceElement>::GLYPH,)*
+                }
+            }
+
+            /// A direction that a drawing shows, in the ground's axes.
+            pub fn direction(&self) -> Option<&[symdiff::Formula; 3]> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::direction(effect),)*
+                }
+            }
+
             /// Coordinates of joints that it acts on.
             pub fn coordinates(&self) -> Vec<$crate::grammar::OnJoint> {
                 match self {

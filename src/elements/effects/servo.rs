@@ -11,6 +11,7 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::{ForceElement, Forces, TypedSensor, effort};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Sensor, OnJoint};
 use crate::multibody::BuildError;
@@ -46,6 +47,7 @@ pub struct Servo {
 }
 
 impl ForceElement for Servo {
+    const GLYPH: Glyph = Glyph::Motor;
     const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE), (Sensor::TORQUE, Dimension::TORQUE)];
 
     fn sensors(&self) -> Vec<TypedSensor> {

@@ -18,6 +18,7 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Vector};
@@ -57,6 +58,7 @@ pub struct SpringDamper {
 }
 
 impl ForceElement for SpringDamper {
+    const GLYPH: Glyph = Glyph::Spring;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::LENGTH, Dimension::LENGTH),
         (Sensor::RATE, Dimension::VELOCITY),

@@ -14,6 +14,7 @@ use symdiff::Formula;
 
 use super::force::Frame;
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::{
     BodyRef, Checked, Fields, JointCoordinate, Node, OnJoint, Quantity, Reader, Reference, Span, SymbolTable, Value, plane, values,
 };
@@ -61,6 +62,7 @@ impl Torque {
 }
 
 impl ForceElement for Torque {
+    const GLYPH: Glyph = Glyph::Torque;
     const SENSORS: &'static [TypedSensor] = &[];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -12,6 +12,7 @@ use mbint_derive::Element;
 use symdiff::Formula;
 
 use super::{ForceElement, Forces, TypedSensor};
+use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{BodyRef, Checked, Fields, JointCoordinate, Sensor, OnJoint, Reader, SymbolTable, TimeOrder, Rotating, RotatingJoint};
 use crate::multibody::BuildError;
@@ -46,6 +47,7 @@ pub struct TorsionalSpringDamper {
 }
 
 impl ForceElement for TorsionalSpringDamper {
+    const GLYPH: Glyph = Glyph::TorsionSpring;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::ANGLE, Dimension::ANGLE),
         (Sensor::RATE, Dimension::ANGULAR_VELOCITY),

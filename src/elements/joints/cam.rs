@@ -22,6 +22,7 @@
 use mbint_derive::{Choice, Element};
 use symdiff::Formula;
 
+use crate::elements::Glyph;
 use crate::grammar::{Direction, OfAngle, PointRef};
 use crate::multibody::Vector;
 
@@ -82,6 +83,10 @@ impl Joint for Cam {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Distance(&self.base), orientation: Orientation::Free })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Gear
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use serde::Serialize;
 use symdiff::Formula;
 
+use crate::elements::Glyph;
 use crate::grammar::{Element, JointCoordinate, OnJoint, PointRef};
 
 use super::rows::{Kinematics, Rows};
@@ -75,6 +76,23 @@ pub trait Joint: Debug {
     /// # Errors
     /// A formula with a name that cannot stand in it; the reader of model files lets none through.
     fn rows<'g>(&self, own: usize, k: &dyn Kinematics<'g>) -> Rows<'g>;
+
+    /// Its symbol in drawings.
+    fn glyph(&self) -> Glyph {
+        match self.mobilizer() {
+            Some(Mobilizer::Weld { .. }) => Glyph::Weld,
+            Some(Mobilizer::Translation { .. }) => Glyph::Slider,
+            Some(Mobilizer::RotationAndTranslation { .. }) => Glyph::Cylinder,
+            Some(Mobilizer::Helix { .. }) => Glyph::Screw,
+            Some(Mobilizer::Rotation { .. }) => Glyph::Pin,
+            None => Glyph::Nothing,
+        }
+    }
+
+    /// The direction that its symbol is turned to, in the first frame.
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        self.mobilizer()?.axis()
+    }
 
     /// The angle of the second frame against the first, where the joint welds its bodies together.
     fn weld(&self) -> Option<&Formula> {

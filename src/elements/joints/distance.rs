@@ -11,6 +11,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
+use crate::elements::Glyph;
 use crate::grammar::{PointRef};
 
 use crate::multibody::Vector;
@@ -47,6 +48,10 @@ impl Joint for Distance {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Distance(&self.length), orientation: Orientation::Free })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Rod
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

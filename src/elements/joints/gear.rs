@@ -13,6 +13,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
+use crate::elements::Glyph;
 use crate::grammar::{JointCoordinate, OnJoint, Rotating};
 use crate::multibody::Vector;
 
@@ -69,6 +70,10 @@ impl Joint for Gear {
             }
         }
         toothed
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Gear
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -24,6 +24,7 @@ use std::f64::consts::{PI, TAU};
 use mbint_derive::{Choice, Element};
 use symdiff::{Builder, Formula, Scalar};
 
+use crate::elements::Glyph;
 use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable};
 use crate::multibody::{BuildError, Vector};
 
@@ -96,6 +97,10 @@ impl JointElement for Motor {
 impl Joint for Motor {
     fn coordinates(&self, _own: usize) -> Vec<OnJoint> {
         vec![self.on]
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Motor
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -10,8 +10,10 @@
 //! row of the prismatic joint.
 
 use mbint_derive::Element;
+use symdiff::Formula;
 
 
+use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use crate::multibody::Vector;
@@ -51,6 +53,14 @@ impl Joint for PinInSlot {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::AboutAxis })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Slot
+    }
+
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        Some(&self.axis)
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -9,8 +9,10 @@
 //! on the second body and the opposite on the first, at the same place; the others carry the torque across the normal.
 
 use mbint_derive::Element;
+use symdiff::Formula;
 
 
+use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
@@ -50,6 +52,14 @@ impl Joint for Planar {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::AboutAxis })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Plane
+    }
+
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        Some(&self.normal)
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

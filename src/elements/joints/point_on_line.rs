@@ -8,8 +8,10 @@
 //! body and the opposite on the first, at the same place.
 
 use mbint_derive::Element;
+use symdiff::Formula;
 
 
+use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
@@ -45,6 +47,14 @@ impl Joint for PointOnLine {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Unknown, orientation: Orientation::Free })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Slot
+    }
+
+    fn direction(&self) -> Option<&[Formula; 3]> {
+        Some(&self.axis)
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

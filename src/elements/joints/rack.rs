@@ -11,6 +11,7 @@
 use mbint_derive::Element;
 use symdiff::Formula;
 
+use crate::elements::Glyph;
 use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
 use crate::multibody::Vector;
 
@@ -54,6 +55,10 @@ impl Joint for Rack {
 
     fn toothed(&self) -> Toothed {
         Toothed { joints: self.pinion_and_rack().map(|on| on.joint).to_vec(), bodies: Vec::new() }
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Gear
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -94,6 +94,13 @@ macro_rules! joints {
                 }),*]
             }
 
+            /// The word for it in a model file.
+            pub fn keyword(&self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => <$name as $crate::grammar::Element>::KEYWORD,)*
+                }
+            }
+
             /// Every formula in it.
             pub fn formulas(&self) -> Vec<&symdiff::Formula> {
                 let mut found = Vec::new();

@@ -9,6 +9,7 @@
 use mbint_derive::Element;
 
 
+use crate::elements::Glyph;
 use crate::grammar::{PointRef};
 
 use super::{Joint, JointElement, Kinematics, Orientation, Placement, RowDocs, Rows, Separation};
@@ -43,6 +44,10 @@ impl Joint for Spherical {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Coincident, orientation: Orientation::Free })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Ball
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

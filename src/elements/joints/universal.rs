@@ -12,6 +12,7 @@
 use mbint_derive::Element;
 
 
+use crate::elements::Glyph;
 use crate::grammar::{Direction, PointRef};
 
 use crate::multibody::Vector;
@@ -53,6 +54,10 @@ impl Joint for Universal {
 
     fn placement(&self) -> Option<Placement<'_>> {
         Some(Placement { separation: Separation::Coincident, orientation: Orientation::AboutAxis })
+    }
+
+    fn glyph(&self) -> Glyph {
+        Glyph::Universal
     }
 
     fn rows<'g>(&self, _own: usize, k: &dyn Kinematics<'g>) -> Rows<'g> {

@@ -327,6 +327,7 @@ fn loose_slider(clearance: f64, output_step: f64, rows: usize) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "30 s: steps that resolve impacts"]
 fn a_slider_crank_with_clearance_converges() {
     let description = loose_pin("duration: 0.1, step: 1e-4, output_step: 1e-3");
     let truth = loose_slider(1e-4, 1e-3, 101);

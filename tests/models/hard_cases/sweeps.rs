@@ -239,6 +239,7 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
 }
 
 #[test]
+#[ignore = "10 s: every model in other units"]
 fn lengths_in_millimetres_and_kilometres_give_the_same_motion() {
     let base = nominal(&read(&crank_of_size(1.0, "m")));
     let others = [

@@ -131,6 +131,11 @@ impl Formula {
         Self { terms: vec![(Term::Number(value), 0..0)] }
     }
 
+    /// The formula that is just a name.
+    pub fn name(name: &str) -> Self {
+        Self { terms: vec![(Term::Name(name.to_owned()), 0..0)] }
+    }
+
     /// `function(self, other)`; places are those in either's own text.
     #[must_use]
     pub fn combined(&self, function: Binary, other: &Self) -> Self {

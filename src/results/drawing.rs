@@ -1,0 +1,87 @@
+//! A mechanism at one instant, as a drawing needs it. Positions and directions are those of the ground's frame, m.
+
+use serde::Serialize;
+
+use crate::elements::Glyph;
+
+/// An assembled mechanism.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drawing {
+    /// The model's name.
+    pub model: String,
+    /// Whether it leaves the plane; if not, all z are zero.
+    pub spatial: bool,
+    /// The ground first.
+    pub bodies: Vec<DrawnBody>,
+    /// Joints, then effects, in file order.
+    pub elements: Vec<DrawnElement>,
+    /// The sum of all gravities, m/s²; `None` where there is none.
+    pub gravity: Option<[f64; 3]>,
+    /// Lengths of bodies that are uncertain parameters.
+    pub lengths: Vec<DrawnLength>,
+}
+
+/// A body.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrawnBody {
+    /// Its name.
+    pub name: String,
+    /// The origin of its frame.
+    pub position: [f64; 3],
+    /// In the plane, its angle against the ground about z, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// In space, its Euler parameters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orientation: Option<[f64; 4]>,
+    /// Its centre of mass, where it has a mass.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub center_of_mass: Option<[f64; 3]>,
+    /// The line that it moves along, where it has no other degree of freedom of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guide: Option<[f64; 3]>,
+    /// Its named points, and its frame's origin, without a name, where an element refers to it.
+    pub points: Vec<DrawnPoint>,
+}
+
+/// A point of a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrawnPoint {
+    /// Its name; empty for the frame's origin.
+    pub name: String,
+    /// Where it is.
+    pub position: [f64; 3],
+}
+
+/// A joint or an effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrawnElement {
+    /// Its name.
+    pub name: String,
+    /// The word for it in a model file.
+    pub kind: &'static str,
+    /// Its symbol.
+    pub glyph: Glyph,
+    /// The places that it acts at.
+    pub ends: Vec<[f64; 3]>,
+    /// The bodies there, by index.
+    pub bodies: Vec<usize>,
+    /// Its axis, or the direction that it acts in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axis: Option<[f64; 3]>,
+}
+
+/// The distance of two points of a body that an uncertain parameter is.
+#[derive(Clone, Debug, Serialize)]
+pub struct DrawnLength {
+    /// The parameter's name.
+    pub parameter: String,
+    /// Its nominal value, m.
+    pub nominal: f64,
+    /// Its least value, m.
+    pub lower: f64,
+    /// Its greatest value, m.
+    pub upper: f64,
+    /// The points.
+    pub between: [[f64; 3]; 2],
+}

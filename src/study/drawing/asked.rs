@@ -1,0 +1,155 @@
+//! What a drawing asks of a model: hidden outputs, by their places in the list of all.
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use symdiff::{Binary, Formula, math};
+
+use crate::grammar::Rotation;
+use crate::model::{Body, Description, Output};
+
+/// Outputs that are asked.
+#[derive(Default)]
+pub(super) struct Asked(pub Vec<Output>);
+
+/// Three of them.
+pub(super) type AskedVector = [usize; 3];
+
+/// The orientation of a frame against another.
+#[derive(Clone, Copy)]
+pub(super) enum AskedRotation {
+    None,
+    /// About z.
+    Angle(usize),
+    Euler([usize; 4]),
+    RollPitchYaw(AskedVector),
+    AxisAngle(AskedVector, usize),
+}
+
+/// A body's frame, its centre of mass and its points, in the frame.
+pub(super) struct AskedBody {
+    position: Option<AskedVector>,
+    rotation: AskedRotation,
+    pub center_of_mass: Option<AskedVector>,
+    pub has_mass: bool,
+    pub points: Vec<(AskedVector, AskedRotation)>,
+}
+
+/// A frame in another.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    pub position: Vector3<f64>,
+    pub rotation: UnitQuaternion<f64>,
+}
+
+impl Frame {
+    /// A point of the frame in the other.
+    pub fn place(&self, point: Vector3<f64>) -> Vector3<f64> {
+        self.position + self.rotation * point
+    }
+}
+
+impl Asked {
+    fn formula(&mut self, formula: Formula) -> usize {
+        self.0.push(Output { name: String::new(), formula, unit: String::new(), dimension: None });
+        self.0.len() - 1
+    }
+
+    fn motion(&mut self, body: &str, motion: &str) -> usize {
+        self.formula(Formula::name(&format!("{body}.{motion}")))
+    }
+
+    pub fn vector(&mut self, formulas: &[Formula; 3]) -> AskedVector {
+        formulas.each_ref().map(|formula| self.formula(formula.clone()))
+    }
+
+    fn rotation(&mut self, rotation: &Rotation) -> AskedRotation {
+        match rotation {
+            Rotation::RollPitchYaw(angles) => AskedRotation::RollPitchYaw(self.vector(angles)),
+            Rotation::AxisAngle(axis, angle) => {
+                AskedRotation::AxisAngle(self.vector(axis), self.formula(angle.clone()))
+            }
+            Rotation::Quaternion(parameters) => {
+                AskedRotation::Euler(parameters.each_ref().map(|parameter| self.formula(parameter.clone())))
+            }
+        }
+    }
+
+    pub fn body(&mut self, description: &Description, index: usize, body: &Body) -> AskedBody {
+        let zero = || Formula::number(0.0);
+        let (position, rotation) = if index == 0 {
+            (None, AskedRotation::None)
+        } else {
+            let mut motion = |motion: &str| self.motion(&body.name, motion);
+            let (x, y) = (motion("x"), motion("y"));
+            let z = if description.space.spatial { motion("z") } else { self.formula(zero()) };
+            let rotation = if body.has_orientation() {
+                AskedRotation::Euler(["p0", "p1", "p2", "p3"].map(|parameter| self.motion(&body.name, parameter)))
+            } else {
+                AskedRotation::Angle(self.motion(&body.name, "angle"))
+            };
+            (Some([x, y, z]), rotation)
+        };
+        let center_of_mass = body.center_of_mass.as_ref().map(|center| self.vector(center));
+        let points = body.points.iter().map(|point| {
+            let rotation = point.rotation.as_ref().map_or(AskedRotation::None, |rotation| self.rotation(rotation));
+            (self.vector(&point.position), rotation)
+        });
+        let points = points.collect();
+        AskedBody { position, rotation, center_of_mass, has_mass: body.mass.is_some(), points }
+    }
+
+    /// The distance of two points of a body.
+    pub fn distance(&mut self, a: &[Formula; 3], b: &[Formula; 3]) {
+        let square = |(a, b): (&Formula, &Formula)| {
+            let difference = a.combined(Binary::Sub, b);
+            difference.combined(Binary::Mul, &difference)
+        };
+        let [x, y, z] = [(&a[0], &b[0]), (&a[1], &b[1]), (&a[2], &b[2])].map(square);
+        self.formula(x.combined(Binary::Add, &y).combined(Binary::Add, &z));
+    }
+}
+
+/// Values of what was asked.
+pub(super) struct Values(pub Vec<f64>);
+
+impl Values {
+    pub fn vector(&self, asked: AskedVector) -> Vector3<f64> {
+        Vector3::from(asked.map(|output| self.0[output]))
+    }
+
+    pub fn rotation(&self, asked: AskedRotation) -> UnitQuaternion<f64> {
+        // By sines and cosines that are the same bits everywhere; nalgebra's are the system's.
+        let about = |axis: Vector3<f64>, angle: f64| {
+            let half = 0.5 * angle;
+            let parts = Quaternion::from_parts(math::cos(half), math::sin(half) * axis.normalize());
+            UnitQuaternion::new_unchecked(parts)
+        };
+        match asked {
+            AskedRotation::None => UnitQuaternion::identity(),
+            AskedRotation::Angle(angle) => about(Vector3::z(), self.0[angle]),
+            AskedRotation::Euler(parameters) => {
+                let [p0, p1, p2, p3] = parameters.map(|parameter| self.0[parameter]);
+                UnitQuaternion::from_quaternion(Quaternion::new(p0, p1, p2, p3))
+            }
+            AskedRotation::RollPitchYaw(angles) => {
+                let [roll, pitch, yaw] = self.vector(angles).into();
+                about(Vector3::z(), yaw) * about(Vector3::y(), pitch) * about(Vector3::x(), roll)
+            }
+            AskedRotation::AxisAngle(axis, angle) => about(self.vector(axis), self.0[angle]),
+        }
+    }
+
+    /// A body's angle against the ground about z, where it has no other orientation.
+    pub fn angle(&self, body: &AskedBody) -> Option<f64> {
+        match body.rotation {
+            AskedRotation::None => Some(0.0),
+            AskedRotation::Angle(angle) => Some(self.0[angle]),
+            _ => None,
+        }
+    }
+
+    /// A body's frame in the ground's.
+    pub fn frame(&self, body: &AskedBody) -> Frame {
+        let position = body.position.map_or_else(Vector3::zeros, |position| self.vector(position));
+        Frame { position, rotation: self.rotation(body.rotation) }
+    }
+}

@@ -1,0 +1,237 @@
+//! The assembled mechanism at its start, for a drawing: where bodies, points, joints and effects are.
+//!
+//! What a drawing needs is asked as outputs of the model, so that it comes through the same equations as all else.
+
+mod asked;
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector3;
+
+use super::RunError;
+use super::formulation::assembled;
+use crate::elements::effects::Scope;
+use crate::grammar::{Coordinate, PointRef, Reference};
+use crate::model::{Body, Description};
+use crate::numerics::Sample;
+use crate::results::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
+use crate::simulate::Assembled;
+use asked::{Asked, AskedBody, AskedVector, Frame, Values};
+
+/// Of bodies with more points, no lengths are sought: their pairs are too many to be read in a drawing.
+const MOST_POINTS: usize = 12;
+
+/// A distance is a parameter where it equals it to this share of its width at both its ends.
+const SAME: f64 = 1e-6;
+
+/// Draws a model's nominal start.
+///
+/// # Errors
+/// Where the mechanism cannot be built or assembled.
+pub fn drawing(description: &Description) -> Result<Drawing, RunError> {
+    let mut asked = Asked::default();
+    let bodies = description.bodies.iter().enumerate();
+    let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
+    let joints = description.joints.iter().map(|joint| joint.kind.direction());
+    let effects = description.effects.iter().map(|effect| effect.kind.direction());
+    let directions: Vec<Option<AskedVector>> =
+        joints.chain(effects).map(|direction| direction.map(|direction| asked.vector(direction))).collect();
+    let first_length = asked.0.len();
+    let pairs = pairs_of_points(description, &mut asked);
+
+    let whole = Description { outputs: asked.0, ..description.clone() };
+    let assembled = assembled(&whole)?;
+    let nominal: Sample = assembled.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+    let values = Values(assembled.outputs_at_start(0..first_length, &nominal));
+    let frames = bodies.iter().map(|body| values.frame(body)).collect();
+    let mut scene = Scene { description: whole, bodies, frames, values, origins: BTreeSet::new() };
+    let lengths = scene.lengths(&assembled, first_length, &pairs);
+    let gravity = scene.gravity(&directions);
+    let elements = scene.elements(&directions);
+    Ok(Drawing {
+        model: description.name.clone(),
+        spatial: description.space.spatial,
+        bodies: scene.drawn_bodies(),
+        elements,
+        gravity,
+        lengths,
+    })
+}
+
+/// Asks the distances of each body's points, two and two.
+fn pairs_of_points(description: &Description, asked: &mut Asked) -> Vec<[PointRef; 2]> {
+    let mut pairs = Vec::new();
+    let few = |(_, body): &(usize, &Body)| body.points.len() <= MOST_POINTS;
+    for (body, known) in description.bodies.iter().enumerate().filter(few) {
+        for (second, point) in known.points.iter().enumerate() {
+            for (first, other) in known.points[..second].iter().enumerate() {
+                asked.distance(&other.position, &point.position);
+                pairs.push([first, second].map(|point| PointRef { body, point: Some(point) }));
+            }
+        }
+    }
+    pairs
+}
+
+/// The axis along which a body's only coordinate is.
+fn guide(body: &Body) -> Option<[f64; 3]> {
+    match body.coordinates[..] {
+        [Coordinate::X] => Some([1.0, 0.0, 0.0]),
+        [Coordinate::Y] => Some([0.0, 1.0, 0.0]),
+        [Coordinate::Z] => Some([0.0, 0.0, 1.0]),
+        _ => None,
+    }
+}
+
+/// The mechanism in numbers.
+struct Scene {
+    description: Description,
+    bodies: Vec<AskedBody>,
+    frames: Vec<Frame>,
+    values: Values,
+    /// Bodies of which an element names the frame's origin.
+    origins: BTreeSet<usize>,
+}
+
+/// Where an element acts.
+struct End {
+    body: usize,
+    position: Vector3<f64>,
+}
+
+impl Scene {
+    /// The frame at a point, in the ground's.
+    fn frame(&self, of: PointRef) -> Frame {
+        let frame = self.frames[of.body];
+        let Some(point) = of.point else { return frame };
+        let (position, rotation) = self.bodies[of.body].points[point];
+        let rotation = frame.rotation * self.values.rotation(rotation);
+        Frame { position: frame.place(self.values.vector(position)), rotation }
+    }
+
+    fn point(&mut self, of: PointRef) -> End {
+        if of.point.is_none() {
+            self.origins.insert(of.body);
+        }
+        End { body: of.body, position: self.frame(of).position }
+    }
+
+    /// A body's centre of mass.
+    fn center(&self, body: usize) -> Vector3<f64> {
+        let local = self.bodies[body].center_of_mass.map_or_else(Vector3::zeros, |center| self.values.vector(center));
+        self.frames[body].place(local)
+    }
+
+    /// Where a joint is: the places of its points, or of the joints that it couples.
+    fn joint(&mut self, index: usize) -> Vec<End> {
+        let kind = &self.description.joints[index].kind;
+        if let Some(between) = kind.between() {
+            return between.into_iter().map(|point| self.point(point)).collect();
+        }
+        let coupled: Vec<usize> = kind.coordinates(index).iter().map(|on| on.joint).filter(|&on| on != index).collect();
+        coupled.into_iter().filter_map(|on| self.joint(on).pop()).collect()
+    }
+
+    /// Where an effect acts: at the points, bodies and joints that it names.
+    fn effect(&mut self, index: usize) -> Vec<End> {
+        let mut kind = self.description.effects[index].kind.clone();
+        let mut ends = Vec::new();
+        for reference in kind.references() {
+            match reference {
+                Reference::Body(&mut body) => ends.push(End { body, position: self.center(body) }),
+                Reference::Point(&mut point) => ends.push(self.point(point)),
+                Reference::Joint(&mut joint) => ends.extend(self.joint(joint).pop()),
+            }
+        }
+        ends
+    }
+
+    fn elements(&mut self, directions: &[Option<AskedVector>]) -> Vec<DrawnElement> {
+        let joints = self.description.joints.len();
+        (0..directions.len())
+            .map(|place| {
+                let direction = directions[place].map(|direction| self.values.vector(direction));
+                let (ends, axis) = if place < joints {
+                    let first = self.description.joints[place].kind.between().map(|between| between[0]);
+                    let turned = first.map(|point| self.frame(point).rotation);
+                    (self.joint(place), direction.zip(turned).map(|(direction, turned)| turned * direction))
+                } else {
+                    (self.effect(place - joints), direction)
+                };
+                let (name, kind, glyph) = if place < joints {
+                    let joint = &self.description.joints[place];
+                    (&joint.name, joint.kind.keyword(), joint.kind.glyph())
+                } else {
+                    let effect = &self.description.effects[place - joints];
+                    (&effect.name, effect.kind.keyword(), effect.kind.glyph())
+                };
+                DrawnElement {
+                    name: name.clone(),
+                    kind,
+                    glyph,
+                    ends: ends.iter().map(|end| end.position.into()).collect(),
+                    bodies: ends.iter().map(|end| end.body).collect(),
+                    axis: axis.map(Into::into),
+                }
+            })
+            .collect()
+    }
+
+    /// The sum of what acts on every body.
+    fn gravity(&self, directions: &[Option<AskedVector>]) -> Option<[f64; 3]> {
+        let effects = self.description.effects.iter().zip(&directions[self.description.joints.len()..]);
+        let everywhere = effects.filter(|(effect, _)| effect.kind.scope() == Scope::EveryBody);
+        let accelerations = everywhere.filter_map(|(_, direction)| Some(self.values.vector((*direction)?)));
+        accelerations.reduce(|a, b| a + b).map(Into::into)
+    }
+
+    fn drawn_bodies(&self) -> Vec<DrawnBody> {
+        let drawn = |(index, body): (usize, &Body)| {
+            let frame = self.frames[index];
+            let named = body.points.iter().enumerate().map(|(point, known)| DrawnPoint {
+                name: known.name.clone(),
+                position: self.frame(PointRef { body: index, point: Some(point) }).position.into(),
+            });
+            let origin = self.origins.contains(&index);
+            let origin = origin.then(|| DrawnPoint { name: String::new(), position: frame.position.into() });
+            let quaternion = frame.rotation.quaternion();
+            let spatial = self.description.space.spatial;
+            DrawnBody {
+                name: body.name.clone(),
+                position: frame.position.into(),
+                angle: self.values.angle(&self.bodies[index]).filter(|_| !spatial),
+                orientation: spatial.then(|| [quaternion.w, quaternion.i, quaternion.j, quaternion.k]),
+                guide: guide(body),
+                center_of_mass: self.bodies[index].has_mass.then(|| self.center(index).into()),
+                points: named.chain(origin).collect(),
+            }
+        };
+        self.description.bodies.iter().enumerate().map(drawn).collect()
+    }
+
+    /// The pairs of points whose distance is an uncertain parameter, wherever in its interval that is.
+    fn lengths(&self, assembled: &Assembled, first: usize, pairs: &[[PointRef; 2]]) -> Vec<DrawnLength> {
+        let parameters = &assembled.system.parameters;
+        let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
+        let mut found = Vec::new();
+        for (place, parameter) in parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit == "m") {
+            let ends = [parameter.lower, parameter.upper];
+            let distances = ends.map(|end| {
+                let mut sample = nominal.clone();
+                sample[place] = end;
+                assembled.outputs_at_start(first..first + pairs.len(), &sample.into())
+            });
+            let allowed = SAME * (parameter.upper - parameter.lower);
+            let is_it = |pair: &usize| (0..2).all(|end| (distances[end][*pair].sqrt() - ends[end]).abs() <= allowed);
+            let Some(pair) = (0..pairs.len()).find(is_it) else { continue };
+            found.push(DrawnLength {
+                parameter: parameter.name.clone(),
+                nominal: parameter.nominal,
+                lower: parameter.lower,
+                upper: parameter.upper,
+                between: pairs[pair].map(|point| self.frame(point).position.into()),
+            });
+        }
+        found
+    }
+}
