@@ -105,9 +105,12 @@ fn axes_turn_with_their_frames() {
     let place = Place::new();
     let text = "\
 model: gate
-ground: { points: { post: { position: [1, 2, 3], rpy: [90 deg, 0, 0] } } }
 bodies:
-  gate: { mass: 1, inertia: 0.01, points: { hinge: { position: [0, 0, 0], rpy: [90 deg, 0, 0] }, tip: [0, 0, 0.5] } }
+  ground: { points: { post: { position: [1, 2, 3], rotation: { rpy: [90 deg, 0, 0] } } } }
+  gate:
+    mass: 1
+    inertia: 0.01
+    points: { hinge: { rotation: { rpy: [90 deg, 0, 0] } }, tip: [0, 0, 0.5] }
 joints:
   hinge: { revolute: { between: [ground.post, gate.hinge], axis: z } }
 outputs: { angle: hinge.angle }

@@ -92,7 +92,8 @@ fn drawing_svg(drawing: &Drawing) -> String {
 fn places(drawing: &Drawing) -> Vec<[f64; 3]> {
     let bodies = drawing.bodies[1..].iter().flat_map(body::places);
     let elements = drawing.elements.iter().filter(|element| element.glyph != Glyph::Nothing);
-    bodies.chain(elements.flat_map(|element| element.ends.iter().copied())).collect()
+    let ground = drawing.bodies[0].points.iter().map(|point| point.position);
+    bodies.chain(ground).chain(elements.flat_map(|element| element.ends.iter().copied())).collect()
 }
 
 /// The mechanism as one view shows it.
