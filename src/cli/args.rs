@@ -31,6 +31,8 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
+    /// Record bounds as small text files beside the models, or compare with what is recorded.
+    Snapshot(SnapshotArgs),
     /// Explain what a model is compiled to and what is left out, or list what the language offers.
     Explain(ExplainArgs),
     /// Print the JSON Schema of model files, for editors.
@@ -148,6 +150,43 @@ const COST_HELP: &str = "\
 Runs the model with many methods, orders and step sizes, and compares their bounds with a
 reference that it computes first. Writes cost.csv (one row per setting) and cost.svg; both
 contain computing times, and so differ from run to run.";
+
+#[derive(Debug, Args)]
+#[command(after_help = SNAPSHOT_HELP)]
+pub(super) struct SnapshotArgs {
+    /// Model files.
+    #[arg(required = true, value_name = "MODEL")]
+    pub models: Vec<PathBuf>,
+
+    /// Compare with what is recorded, and write nothing; the exit status is 4 if a bound has moved.
+    #[arg(long)]
+    pub check: bool,
+
+    /// Folder of the snapshots [default: that of each model].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// This scene only; may be given several times [default: all scenes].
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub scene: Vec<String>,
+
+    /// Number of threads; results do not depend on it [default: one per core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute.
+    #[arg(short, long)]
+    pub yes: bool,
+}
+
+const SNAPSHOT_HELP: &str = "\
+Writes NAME.snap for each model, and NAME.SCENE.snap for each scene: the bounds of every output
+at ten times, with their errors. A bound has moved if it is further from what is recorded than
+both stated errors together, or if its error has more than doubled.";
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {

@@ -70,14 +70,7 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
             Kind::Alone(job) => run_and_report(job, &request, console),
             Kind::Scenes(scenes) => scenes.run(&request, console),
         };
-        match done {
-            Ok(done) => status = status.max(done),
-            Err(Failure::Failed(message)) => {
-                console.error(&message);
-                status = status.max(Status::Failed);
-            }
-            Err(wrong) => return Err(wrong),
-        }
+        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
             return Ok(Status::Interrupted);
         }

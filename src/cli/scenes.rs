@@ -48,12 +48,10 @@ impl Scenes {
                     status = status.max(done.status);
                     Some(done)
                 }
-                Err(Failure::Failed(message)) => {
-                    console.error(&message);
-                    status = status.max(Status::Failed);
+                Err(failure) => {
+                    status = status.max(failure.report(console));
                     None
                 }
-                Err(wrong) => return Err(wrong),
             };
             ran.push(Ran { scene, seconds: start.elapsed().as_secs_f64(), done });
             if interrupt::asked() {
@@ -117,7 +115,7 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         }
         if none {
             let [scene, size, seconds] = first;
-            let what = if summary.is_some() { "" } else { "failed" };
+            let what = if summary.is_some() { "" } else { "not run, or failed" };
             table.row([scene, size, seconds, what.to_owned(), String::new(), String::new()]);
         }
     }

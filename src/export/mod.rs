@@ -15,6 +15,7 @@ mod plot;
 mod polyline;
 mod reference;
 mod scenes;
+mod snapshot;
 mod view;
 
 pub use self::csv::bounds_csv;
@@ -27,3 +28,4 @@ pub use overlay::SceneBounds;
 pub use plot::plot_svg;
 pub use reference::effects as effects_page;
 pub use scenes::write_scenes;
+pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_snapshot};

@@ -13,3 +13,4 @@ mod readme;
 mod rooms;
 mod scenes;
 mod schema;
+mod snapshot;
