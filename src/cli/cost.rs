@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use super::args::CostArgs;
 use super::console::{BOLD, Console, count, file_names};
-use super::job::set_once;
 use super::progress::Progress;
 use super::run::results_of;
 use super::table::{Align, Table};
@@ -16,8 +15,7 @@ use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
-    set_once(&args.set)?;
-    let Some(model) = load::load(&args.model, &args.set, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, args.set.overrides()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));

@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::{Failure, Status, interrupt};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
-use crate::results::{Bounds, Method, OutputBounds, Summary};
+use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
 use crate::study;
 
 /// The arguments of a run, checked.
@@ -44,6 +44,8 @@ pub(super) struct Settings {
 pub(super) struct Job {
     pub model: Description,
     pub folder: PathBuf,
+    /// The files that the model was read from.
+    pub files: Vec<ModelFile>,
 }
 
 /// Outcome of a run.
@@ -58,7 +60,7 @@ pub(super) struct Done {
 
 impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
-        set_once(&args.set)?;
+        let overrides = args.set.overrides()?.to_vec();
         let mut scenes = args.scene;
         scenes.sort_unstable();
         scenes.dedup();
@@ -67,7 +69,7 @@ impl Request {
         methods.dedup();
         Ok(Self {
             models: args.models,
-            overrides: args.set,
+            overrides,
             scenes,
             certify: args.certify,
             output: args.output,
@@ -86,15 +88,17 @@ impl Request {
     }
 }
 
-/// Checks that every parameter is set at most once.
-///
-/// # Errors
-/// For the first that is set twice.
-pub(super) fn set_once(overrides: &[Override]) -> Result<(), Failure> {
-    let twice = |&(i, setting): &(usize, &Override)| overrides[..i].iter().any(|earlier| earlier.name == setting.name);
-    match overrides.iter().enumerate().find(twice) {
-        Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
-        None => Ok(()),
+impl Request {
+    /// What the results depend on.
+    fn asked(&self) -> RunRequest {
+        let methods = self.settings.methods.as_ref();
+        RunRequest {
+            set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
+            methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
+            certify: self.certify,
+            certify_time: self.settings.certify_time,
+            skip_infeasible: self.settings.skip_infeasible,
+        }
     }
 }
 
@@ -141,7 +145,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
-    let files = write_results(&folder, &bounds, &written, interrupted).map_err(|error| failed(&error))?;
+    let provenance = Provenance { model_files: job.files.clone(), request: Some(request.asked()) };
+    let files = write_results(&folder, &bounds, &written, &provenance, interrupted).map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
     let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
     Ok(Done { status, bounds, summary, files, folder })

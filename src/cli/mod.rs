@@ -11,6 +11,7 @@ mod job;
 mod joints;
 mod listing;
 mod load;
+mod man;
 mod methods;
 mod new;
 mod overview;
@@ -89,6 +90,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Explain(args) => explain::explain(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
+        Command::Man(args) => man::man(&args, console),
         Command::Completions(args) => {
             let mut script = Vec::new();
             clap_complete::generate(args.shell, &mut Cli::command(), "mbint", &mut script);

@@ -97,7 +97,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes } in models {
+    for load::Model { path, name, scenes, files } in models {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -115,7 +115,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
-            (scene, Job { model, folder })
+            (scene, Job { model, folder, files: files.clone() })
         });
         // A single requested scene is run like a model.
         let alone = request.scenes.len() == 1;

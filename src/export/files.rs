@@ -7,11 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
-use crate::export::{bounds_csv, contributions_csv, contributions_svg, plot_svg};
-use crate::results::Bounds;
-use crate::results::Summary;
+use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, plot_svg};
+use crate::results::{Bounds, Provenance, Summary};
 
-/// Writes `bounds.csv`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
+/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.
 ///
 /// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files that the summary
@@ -23,10 +22,12 @@ pub fn write_results(
     dir: &Path,
     bounds: &Bounds,
     summary: &Summary,
+    provenance: &Provenance,
     interrupted: bool,
 ) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
+    files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
     }
@@ -43,7 +44,9 @@ pub fn write_results(
         }
     }
     let owned = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
-    let mut json = serde_json::to_vec_pretty(&Written { summary, interrupted, files: owned })?;
+    let outputs = bounds.outputs.iter().map(|output| Named { name: &output.name, unit: &output.unit }).collect();
+    let written = Written { schema: SCHEMA, summary, provenance, outputs, interrupted, files: owned };
+    let mut json = serde_json::to_vec_pretty(&written)?;
     json.push(b'\n');
     files.add(SUMMARY, &json)?;
     files.without(Earlier::of(dir).files);
@@ -53,16 +56,31 @@ pub fn write_results(
 /// The summary's file.
 const SUMMARY: &str = "summary.json";
 
+/// Version of the results' files: greater when a key or a column goes or changes its meaning. New ones do not count.
+const SCHEMA: u32 = 1;
+
 /// The summary as it is written.
 #[derive(Serialize)]
 struct Written<'s> {
+    schema: u32,
     #[serde(flatten)]
     summary: &'s Summary,
+    #[serde(flatten)]
+    provenance: &'s Provenance,
+    /// In the model's order, with SI units.
+    outputs: Vec<Named<'s>>,
     /// Whether the run was interrupted before it was done.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     interrupted: bool,
     /// All files of this run, which the next one replaces.
     files: Vec<String>,
+}
+
+/// An output's name and SI unit; empty where dimensionless or unknown.
+#[derive(Serialize)]
+struct Named<'s> {
+    name: &'s str,
+    unit: &'s str,
 }
 
 /// What an older run says of itself.
@@ -145,6 +163,7 @@ mod tests {
         let summary = Summary {
             model: "crank".into(),
             mbint: "0.1.0".into(),
+            formulation: "absolute".into(),
             coordinates: 7,
             constraints: 6,
             degrees_of_freedom: 1,
@@ -181,11 +200,14 @@ mod tests {
         let place = dir.path().join("results/crank");
         let (bounds, summary) = results();
         for _ in 0..2 {
-            let written = write_results(&place, &bounds, &summary, false).unwrap();
+            let written = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap();
             let written: Vec<_> = written.iter().map(|path| path.strip_prefix(&place).unwrap()).collect();
-            assert_eq!(written, ["bounds.csv", "x3.svg", "a_b.svg", "A_b-2.svg", "summary.json"].map(Path::new));
+            assert_eq!(
+                written,
+                ["bounds.csv", "columns.json", "x3.svg", "a_b.svg", "A_b-2.svg", "summary.json"].map(Path::new)
+            );
         }
-        assert_eq!(names(&place), ["A_b-2.svg", "a_b.svg", "bounds.csv", "summary.json", "x3.svg"]);
+        assert_eq!(names(&place), ["A_b-2.svg", "a_b.svg", "bounds.csv", "columns.json", "summary.json", "x3.svg"]);
         let json = fs::read_to_string(place.join("summary.json")).unwrap();
         assert!(json.ends_with("}\n") && json.contains("\"model\": \"crank\""), "{json}");
     }
@@ -196,7 +218,7 @@ mod tests {
         let place = dir.path().join("taken");
         fs::write(&place, "mine").unwrap();
         let (bounds, summary) = results();
-        let error = write_results(&place, &bounds, &summary, false).unwrap_err();
+        let error = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap_err();
         assert!(matches!(&error, ExportError::Folder { path, .. } if *path == place), "{error}");
         assert!(
             error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
@@ -211,11 +233,11 @@ mod tests {
         // A folder stands where a file should.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();
         let (bounds, summary) = results();
-        let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
+        let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
         assert!(!error.to_string().contains(".mbint-"), "{error}");
-        assert_eq!(names(dir.path()), ["bounds.csv", "x3.svg"], "of which one is the folder");
+        assert_eq!(names(dir.path()), ["bounds.csv", "columns.json", "x3.svg"], "of which one is the folder");
     }
 
     #[cfg(unix)]
@@ -227,7 +249,7 @@ mod tests {
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).unwrap();
         // The superuser may write anywhere: nothing to see then.
         if fs::write(dir.path().join("probe"), "").is_err() {
-            let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
+            let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
             let path = dir.path().display().to_string();
             assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: perm")), "{error}");
         }

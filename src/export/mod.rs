@@ -2,6 +2,7 @@
 
 mod axis;
 mod canvas;
+mod columns;
 mod contributions;
 mod cost;
 mod csv;
@@ -19,11 +20,12 @@ mod snapshot;
 mod view;
 
 pub use self::csv::bounds_csv;
+pub use columns::columns_json;
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
 pub use error::ExportError;
 pub use files::{file_stem, holds_complete_results, write_results};
-pub use folder::prepare_folder;
+pub use folder::{prepare_folder, write_pages};
 pub use overlay::SceneBounds;
 pub use plot::plot_svg;
 pub use reference::effects as effects_page;

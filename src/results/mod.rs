@@ -6,6 +6,7 @@ mod decisions;
 mod effect_cost;
 mod explanation;
 mod merge;
+mod provenance;
 mod summary;
 
 pub use crate::methods::Method;
@@ -17,6 +18,7 @@ pub use decisions::{Decision, Each, Saving};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
+pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::export::error::ExportError;
-use crate::export::folder::AtomicFiles;
+use crate::export::folder::write_pages;
 use crate::results::{Bounds, OutputBounds};
 
 /// Times that are shown of a run.
@@ -61,9 +61,7 @@ pub fn snapshot_file(of: &str, table: &str) -> String {
 /// # Errors
 /// If it cannot be written; an older one then stays unchanged.
 pub fn write_snapshot(folder: &Path, name: &str, file: &str) -> Result<Vec<PathBuf>, ExportError> {
-    let mut files = AtomicFiles::in_folder(folder)?;
-    files.add(name, file.as_bytes())?;
-    files.put_in_place()
+    write_pages(folder, &[(name.to_owned(), file.to_owned())])
 }
 
 /// The rows that are shown.
