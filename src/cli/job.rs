@@ -125,13 +125,13 @@ pub(super) fn bounds(
         threads: settings.threads,
         certify_time: settings.certify_time,
         skip_infeasible: settings.skip_infeasible,
-        dear: settings.yes,
+        costly: settings.yes,
         progress: &set_progress,
         interrupted: &interrupt::asked,
     };
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
-        if matches!(error, study::RunError::Dear(_)) { Failure::Wrong(message) } else { Failure::Failed(message) }
+        if matches!(error, study::RunError::Costly(_)) { Failure::Wrong(message) } else { Failure::Failed(message) }
     })
 }
 

@@ -137,17 +137,21 @@ fn results_say_what_they_are_of() {
         columns.as_array().unwrap().iter().map(|column| column["column"].as_str().unwrap()).collect();
     let table = fs::read_to_string(place.path().join("one/bounds.csv")).unwrap();
     assert_eq!(table.lines().next(), Some(named.join(",").as_str()));
-    assert_eq!((&columns[0]["unit"], &columns[2]["unit"], &columns[2]["method"]), (&"s".into(), &"m".into(), &"scan".into()));
+    assert_eq!(
+        (&columns[0]["unit"], &columns[2]["unit"], &columns[2]["method"]),
+        (&"s".into(), &"m".into(), &"scan".into())
+    );
 }
 
 #[test]
 fn what_is_refused_does_not_end_the_scenes_after_it() {
     let place = Place::new();
-    let scenes = "scenes: { one: {}, dear: { bounds: { scan: { points: 200 } } }, last: { effects: { other: null } } }\n"
-        .replace("{ effects: { other: null } }", "{ without: [other] }");
+    let scenes =
+        "scenes: { one: {}, large: { bounds: { scan: { points: 200 } } }, last: { effects: { other: null } } }\n"
+            .replace("{ effects: { other: null } }", "{ without: [other] }");
     fs::write(place.path().join("slides.yaml"), SLIDES.replace("FORMULATION", "") + &scenes).unwrap();
     let (output, errors) = place.run("run slides.yaml", 2);
-    assert!(errors.contains("slides/dear: ") && errors.contains("simulations are asked for"), "{errors}");
+    assert!(errors.contains("slides/large: ") && errors.contains("simulations are asked for"), "{errors}");
     assert!(output.contains("one/, last/") && output.contains("not run, or failed"), "{output}");
     assert!(place.path().join("results/slides/last/bounds.csv").exists());
 }
