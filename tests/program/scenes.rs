@@ -304,7 +304,7 @@ fn scenes_are_chosen_by_name() {
     door(&place);
     // One by itself is run as a model is.
     let (output, _) = place.run("run door.yaml --scene friction -o one --timings", 0);
-    assert!(output.starts_with("door/friction: 1 coordinate"), "{output}");
+    assert!(output.starts_with("door/friction: 1 joint coordinate,"), "{output}");
     assert_eq!(place.files("one"), ["friction"]);
     assert!(fs::read_to_string(place.path().join("one/friction/summary.json")).unwrap().contains("\"seconds\""));
     let (output, _) = place.run("run door.yaml --scene long --scene ideal -o two", 0);
@@ -347,7 +347,7 @@ fn check_and_explain_know_scenes() {
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(lines.len(), 3, "{output}");
     assert!(
-        lines[0].starts_with("ok door/ideal: 1 coordinate") && lines[0].contains("1 uncertain parameter,"),
+        lines[0].starts_with("ok door/ideal: 1 joint coordinate,") && lines[0].contains("1 uncertain parameter,"),
         "{output}"
     );
     assert!(lines[1].starts_with("ok door/friction: ") && lines[1].contains("2 uncertain parameters"), "{output}");
