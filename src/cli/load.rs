@@ -25,6 +25,8 @@ pub(super) struct Model {
     pub name: String,
     /// Its scenes with their names; one without a name if the model has none.
     pub scenes: Vec<(Option<String>, Description)>,
+    /// Names of all scenes that it has.
+    pub all: Vec<String>,
     /// The files that it was read from.
     pub files: Vec<ModelFile>,
 }
@@ -54,10 +56,11 @@ pub(super) fn load_all(
     }
     let chosen = |(path, reading): (&PathBuf, Reading)| {
         let files = files(&reading);
+        let all = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
         let scenes =
             reading.chosen(scenes).map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
-        Ok(Model { path: path.clone(), name, scenes, files })
+        Ok(Model { path: path.clone(), name, scenes, all, files })
     };
     let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
     let Some(readings) = readings.collect::<Option<Vec<_>>>() else { return Ok(None) };

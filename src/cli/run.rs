@@ -97,7 +97,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes, files } in models {
+    for load::Model { path, name, scenes, all, files } in models {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -127,7 +127,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             }
             first => first.into_iter().chain(jobs).filter_map(|(scene, job)| Some((scene?, job))).collect(),
         };
-        work.push(Work { path, kind: Kind::Scenes(Scenes::new(name, folder, scenes)) });
+        work.push(Work { path, kind: Kind::Scenes(Scenes::new(name, folder, all, scenes)) });
     }
     Ok(work)
 }

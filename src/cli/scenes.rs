@@ -16,6 +16,8 @@ pub(super) struct Scenes {
     model: String,
     /// Each scene has a folder in it.
     folder: PathBuf,
+    /// Names of all scenes of the model, be they run or not.
+    all: Vec<String>,
     jobs: Vec<(String, Job)>,
 }
 
@@ -28,8 +30,8 @@ struct Ran<'s> {
 }
 
 impl Scenes {
-    pub fn new(model: String, folder: PathBuf, jobs: Vec<(String, Job)>) -> Self {
-        Self { model, folder, jobs }
+    pub fn new(model: String, folder: PathBuf, all: Vec<String>, jobs: Vec<(String, Job)>) -> Self {
+        Self { model, folder, all, jobs }
     }
 
     pub fn jobs(&self) -> impl Iterator<Item = &Job> {
@@ -62,7 +64,8 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        let files = if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &found) };
+        let files =
+            if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &self.model, &self.all, &found) };
         let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;

@@ -3,12 +3,13 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
+use crate::export::owned::{SCHEMA, SUMMARY, owned};
 use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, plot_svg};
-use crate::results::{Bounds, Provenance, Summary};
+use crate::results::{Bounds, PeakSummary, Provenance, Summary};
 
 /// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.
@@ -43,21 +44,16 @@ pub fn write_results(
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
-    let owned = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
+    let names = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
     let outputs = bounds.outputs.iter().map(|output| Named { name: &output.name, unit: &output.unit }).collect();
-    let written = Written { schema: SCHEMA, summary, provenance, outputs, interrupted, files: owned };
+    let peaks = PeakSummary::of(bounds);
+    let written = Written { schema: SCHEMA, summary, provenance, outputs, peaks, interrupted, files: names };
     let mut json = serde_json::to_vec_pretty(&written)?;
     json.push(b'\n');
     files.add(SUMMARY, &json)?;
-    files.without(Earlier::of(dir).files);
+    files.without(owned(dir));
     files.put_in_place()
 }
-
-/// The summary's file.
-const SUMMARY: &str = "summary.json";
-
-/// Version of the results' files: greater when a key or a column goes or changes its meaning. New ones do not count.
-const SCHEMA: u32 = 1;
 
 /// The summary as it is written.
 #[derive(Serialize)]
@@ -69,6 +65,8 @@ struct Written<'s> {
     provenance: &'s Provenance,
     /// In the model's order, with SI units.
     outputs: Vec<Named<'s>>,
+    /// Of every band, in the output's unit.
+    peaks: Vec<PeakSummary>,
     /// Whether the run was interrupted before it was done.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     interrupted: bool,
@@ -81,29 +79,6 @@ struct Written<'s> {
 struct Named<'s> {
     name: &'s str,
     unit: &'s str,
-}
-
-/// What an older run says of itself.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct Earlier {
-    model: String,
-    interrupted: bool,
-    files: Vec<String>,
-}
-
-impl Earlier {
-    /// Nothing where there is no summary that can be read.
-    fn of(dir: &Path) -> Self {
-        let text = std::fs::read(dir.join(SUMMARY)).unwrap_or_default();
-        serde_json::from_slice(&text).unwrap_or_default()
-    }
-}
-
-/// Whether a folder holds the results of a run that was not interrupted.
-pub fn holds_complete_results(dir: &Path) -> bool {
-    let earlier = Earlier::of(dir);
-    !earlier.model.is_empty() && !earlier.interrupted
 }
 
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest

@@ -6,6 +6,7 @@ mod decisions;
 mod effect_cost;
 mod explanation;
 mod merge;
+mod peaks;
 mod provenance;
 mod summary;
 
@@ -18,6 +19,7 @@ pub use decisions::{Decision, Each, Saving};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
+pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,

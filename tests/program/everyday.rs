@@ -113,6 +113,33 @@ fn new_makes_the_folders_of_its_model() {
     assert!(errors.starts_with("error: cannot make the folder taken: "), "{errors}");
 }
 
+#[test]
+fn what_older_scenes_left_goes() {
+    let place = Place::new();
+    let model =
+        |text: &str| fs::write(place.path().join("slides.yaml"), SLIDES.replace("FORMULATION", "") + text).unwrap();
+    let run = || place.run("run slides.yaml --method scan -q", 0);
+    model("scenes: { one: {}, two: {}, three: { without: [x] } }\n");
+    run();
+    let all = ["one", "scenes.csv", "scenes.json", "three", "two", "x.svg", "y.svg"];
+    assert_eq!(place.files("results/slides"), all);
+    fs::write(place.path().join("results/slides/two/mine.txt"), "").unwrap();
+    // Only one of them has x now, and two are no more: what is not of their runs stays.
+    model("scenes: { one: {}, other: { without: [x] } }\n");
+    run();
+    assert_eq!(place.files("results/slides"), ["one", "other", "scenes.csv", "scenes.json", "two", "y.svg"]);
+    assert_eq!(place.files("results/slides/two"), ["mine.txt"]);
+    // Scenes that were not asked for are kept.
+    model("scenes: { one: {}, other: {}, more: {}, last: {} }\n");
+    place.run("run slides.yaml --method scan -q --scene more --scene last", 0);
+    assert!(place.path().join("results/slides/other/summary.json").exists());
+    // Without scenes the model is run itself.
+    model("");
+    run();
+    let files = place.files("results/slides");
+    assert!(files.contains(&"bounds.csv".to_owned()) && !files.contains(&"scenes.csv".to_owned()), "{files:?}");
+}
+
 /// `printf abc | sha256sum`, of the standard's own example, is `ba7816bf…`: a model's hash is that of its bytes.
 #[test]
 fn results_say_what_they_are_of() {
@@ -126,6 +153,9 @@ fn results_say_what_they_are_of() {
     assert_eq!((&summary["outputs"][1]["name"], &summary["outputs"][1]["unit"]), (&"y".into(), &"m".into()));
     assert_eq!((&summary["errors"][0]["output"], &summary["errors"][0]["unit"]), (&"x".into(), &"m".into()));
     let file = &summary["model_files"][0];
+    let peak = &summary["peaks"][0];
+    assert_eq!((&peak["output"], &peak["unit"], &peak["method"]), (&"x".into(), &"m".into(), &"scan".into()));
+    assert!(peak["greatest"]["error"].as_f64().unwrap() > 0.0 && peak["least"]["time"].is_number(), "{peak}");
     assert_eq!(file["name"], "slides.yaml");
     let hash = file["sha256"].as_str().unwrap();
     assert!(hash.len() == 64 && hash.bytes().all(|digit| digit.is_ascii_hexdigit()), "{hash}");

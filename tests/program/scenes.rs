@@ -245,11 +245,14 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
     door(&place);
     let (output, errors) = place.run("run door.yaml", 0);
     assert_eq!(errors, "");
-    assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv"]);
+    assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv", "scenes.json"]);
     for text in ["door: 3 scenes", "angle.chebyshev", "lost.chebyshev", "angle.scan", "seconds", "largest width"] {
         assert!(output.contains(text), "{text} in\n{output}");
     }
-    assert!(output.ends_with("  results/door: angle.svg, scenes.csv; ideal/, friction/, long/\n"), "{output}");
+    assert!(
+        output.ends_with("  results/door: angle.svg, scenes.csv, scenes.json; ideal/, friction/, long/\n"),
+        "{output}"
+    );
     let summary = fs::read_to_string(place.path().join("results/door/ideal/summary.json")).unwrap();
     assert!(summary.contains("\"model\": \"door/ideal\"") && !summary.contains("seconds"), "{summary}");
 
@@ -309,7 +312,7 @@ fn scenes_are_chosen_by_name() {
     assert!(fs::read_to_string(place.path().join("one/friction/summary.json")).unwrap().contains("\"seconds\""));
     let (output, _) = place.run("run door.yaml --scene long --scene ideal -o two", 0);
     assert!(output.starts_with("door: 2 scenes"), "{output}");
-    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "scenes.csv"]);
+    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "scenes.csv", "scenes.json"]);
     place.run("run door.yaml --scene long,ideal -o three -q", 0);
     assert_eq!(place.files("three"), place.files("two"));
     // Scenes of several models have the models' folders.
@@ -391,7 +394,7 @@ bounds: { scan: { points: 3 } }
     assert_eq!(errors.matches("error").count(), 1, "{errors}");
     let failed = output.lines().find(|line| line.trim_start().starts_with("short")).unwrap();
     assert!(failed.ends_with("failed"), "{output}");
-    assert!(output.ends_with("angle.svg, scenes.csv; fine/, also_fine/\n"), "{output}");
+    assert!(output.ends_with("angle.svg, scenes.csv, scenes.json; fine/, also_fine/\n"), "{output}");
     let table = fs::read_to_string(place.path().join("results/rocker/scenes.csv")).unwrap();
     let named: BTreeSet<&str> = table.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(named.into_iter().collect::<Vec<_>>(), ["also_fine", "fine"]);
