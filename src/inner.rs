@@ -17,7 +17,7 @@ pub mod elements {
 }
 
 pub mod export {
-    pub use crate::export::{bounds_csv, effects_page, write_cost};
+    pub use crate::export::{bounds_csv, effects_page, snapshot_table, write_cost};
 }
 
 pub mod methods {

@@ -1,4 +1,5 @@
 #![doc = include_str!("../docs/guides/rust.md")]
+#![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions"))]
 
 mod api;

@@ -1,5 +1,7 @@
 //! The `mbint` command; everything is in the library's room `cli`.
 
+#![forbid(unsafe_code)]
+
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

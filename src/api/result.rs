@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Error;
 use crate::export;
 use crate::methods::Method;
-use crate::results::{self, Bounds, OutputBounds, Summary, foremost};
+use crate::results::{self, Bounds, OutputBounds, Provenance, Summary, foremost};
 
 /// Bounds of every output over time, with their errors.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ impl StudyResult {
     /// # Errors
     /// [`Error::Write`]: the folder or a file cannot be written.
     pub fn write(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
-        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, false)?)
+        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, &Provenance::default(), false)?)
     }
 
     /// The data behind the outputs.

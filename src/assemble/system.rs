@@ -67,6 +67,13 @@ pub struct FormulationInfo {
     pub why: String,
 }
 
+impl FormulationInfo {
+    /// `absolute` or `joint`.
+    pub fn name(&self) -> &'static str {
+        if self.joint { "joint" } else { "absolute" }
+    }
+}
+
 /// What an effect came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectInfo {

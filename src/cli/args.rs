@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::listing::Listing;
-use super::status;
+use super::{Failure, status};
 use crate::model::Override;
 use crate::results::Method;
 
@@ -33,6 +33,8 @@ pub(super) enum Command {
     Show(ShowArgs),
     /// Compare error and computing time of methods, orders and step sizes.
     Cost(CostArgs),
+    /// Record bounds as small text files beside the models, or compare with what is recorded.
+    Snapshot(SnapshotArgs),
     /// Explain what a model is compiled to and what is left out, or list what the language offers.
     Explain(ExplainArgs),
     /// Print the JSON Schema of model files, for editors.
@@ -41,12 +43,14 @@ pub(super) enum Command {
     New(NewArgs),
     /// Print a completion script for a shell.
     Completions(CompletionsArgs),
+    /// Print a manual page, or write all of them.
+    Man(ManArgs),
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = RUN_HELP)]
 pub(super) struct RunArgs {
-    /// Model files.
+    /// Model files; `-` is standard input.
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
 
@@ -63,9 +67,8 @@ pub(super) struct RunArgs {
     #[arg(long)]
     pub certify: bool,
 
-    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
-    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
-    pub set: Vec<Override>,
+    #[command(flatten)]
+    pub set: SetArgs,
 
     /// Run this scene only; may be given several times [default: all scenes].
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
@@ -113,7 +116,7 @@ output with all scenes.";
 #[derive(Debug, Args)]
 #[command(after_help = COST_HELP)]
 pub(super) struct CostArgs {
-    /// Model file.
+    /// Model file; `-` is standard input.
     #[arg(value_name = "MODEL")]
     pub model: PathBuf,
 
@@ -129,9 +132,8 @@ pub(super) struct CostArgs {
     #[arg(short, long, value_name = "SECONDS", value_parser = positive, default_value_t = 60.0)]
     pub budget: f64,
 
-    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
-    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
-    pub set: Vec<Override>,
+    #[command(flatten)]
+    pub set: SetArgs,
 
     /// Use this scene of the model.
     #[arg(long, value_name = "NAME")]
@@ -152,10 +154,73 @@ reference that it computes first. Writes cost.csv (one row per setting) and cost
 contain computing times, and so differ from run to run.";
 
 #[derive(Debug, Args)]
-pub(super) struct CheckArgs {
+#[command(after_help = SNAPSHOT_HELP)]
+pub(super) struct SnapshotArgs {
     /// Model files.
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
+
+    /// Compare with what is recorded, and write nothing; the exit status is 4 if a bound has moved.
+    #[arg(long)]
+    pub check: bool,
+
+    /// Folder of the snapshots [default: that of each model].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// This scene only; may be given several times [default: all scenes].
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub scene: Vec<String>,
+
+    /// Number of threads; results do not depend on it [default: one per core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute.
+    #[arg(short, long)]
+    pub yes: bool,
+}
+
+const SNAPSHOT_HELP: &str = "\
+Writes NAME.snap for each model, and NAME.SCENE.snap for each scene: the bounds of every output
+at ten times, with their errors. A bound has moved if it is further from what is recorded than
+both stated errors together, or if its error has more than doubled.";
+
+/// Parameters that the command line sets.
+#[derive(Debug, Args)]
+pub(super) struct SetArgs {
+    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
+    set: Vec<Override>,
+}
+
+impl SetArgs {
+    /// What is set; every parameter at most once.
+    ///
+    /// # Errors
+    /// For the first that is set twice.
+    pub fn overrides(&self) -> Result<&[Override], Failure> {
+        let twice =
+            |&(i, setting): &(usize, &Override)| self.set[..i].iter().any(|earlier| earlier.name == setting.name);
+        match self.set.iter().enumerate().find(twice) {
+            Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
+            None => Ok(&self.set),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArgs {
+    /// Model files; `-` is standard input.
+    #[arg(required = true, value_name = "MODEL")]
+    pub models: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub set: SetArgs,
 
     /// Text for people, or a JSON array with one object per model.
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -192,9 +257,12 @@ quarters and along the three axes. Uncertain lengths of bodies have their tolera
 
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
-    /// Model file.
+    /// Model file; `-` is standard input.
     #[arg(value_name = "MODEL", required_unless_present = "list")]
     pub model: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub set: SetArgs,
 
     /// Use this scene of the model.
     #[arg(long, value_name = "NAME", conflicts_with = "list")]
@@ -260,9 +328,20 @@ impl ListArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {
-    /// The model's name, with a folder before it if wanted; writes NAME.yaml and never overwrites a file.
+    /// The model's name, with folders before it if wanted, which are made; writes NAME.yaml and never overwrites a file.
     #[arg(value_name = "NAME")]
     pub name: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArgs {
+    /// The page of this command, as `mbint man run | man -l -` [default: that of mbint].
+    #[arg(value_name = "COMMAND", conflicts_with = "output")]
+    pub command: Option<String>,
+
+    /// Write the pages of all commands into this folder: mbint.1, mbint-run.1, …
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
-use super::console::{BOLD, Console, count, to_json};
-use super::{Failure, Status, tree};
-use crate::model::{self, Description};
+use super::console::{BOLD, Console, coordinates, count, to_json};
+use super::{Failure, Status, load, tree};
+use crate::model::{self, Description, Override};
 use crate::reduce::{Choices, Reduction};
 use crate::simulate::Assembled;
 use crate::study::{self, RunError};
@@ -70,9 +70,17 @@ struct CheckedScene {
 #[derive(Serialize)]
 struct Counts {
     model: String,
+    /// As in a run's summary.
+    formulation: String,
+    /// Whether a run may find the other formulation shorter: what is large is not compiled here.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    formulation_is_open: bool,
     coordinates: usize,
     constraints: usize,
     degrees_of_freedom: usize,
+    /// Of the model with all its parts, where a run simulates less of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    whole: Option<Whole>,
     uncertain_parameters: Vec<String>,
     redundant_constraints: Vec<String>,
     singular_at_start: Vec<String>,
@@ -85,8 +93,17 @@ struct Counts {
     not_simulated: Vec<String>,
 }
 
+#[derive(Clone, Copy, Serialize)]
+struct Whole {
+    coordinates: usize,
+    constraints: usize,
+    degrees_of_freedom: usize,
+}
+
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
-    let check = |path: &PathBuf| match study::caught("check", || check_one(path)) {
+    load::input_once(&args.models)?;
+    let overrides = args.set.overrides()?;
+    let check = |path: &PathBuf| match study::caught("check", || check_one(path, overrides)) {
         Ok(checked) => checked,
         Err(error) => Checked { error: Some(error.to_string()), is_internal: true, ..Checked::nothing(path) },
     };
@@ -123,8 +140,8 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
     Ok(checked.iter().map(status).max().unwrap_or(Status::Done))
 }
 
-fn check_one(path: &Path) -> Checked {
-    let reading = model::read(path, &[]);
+fn check_one(path: &Path, overrides: &[Override]) -> Checked {
+    let reading = model::read(path, overrides);
     let (diagnostics, found) = (reading.diagnostics.records(), reading.diagnostics.clone());
     let read = Checked { diagnostics, found, ..Checked::nothing(path) };
     let read = Checked { tree: reading.description.as_ref().map(tree::of).unwrap_or_default(), ..read };
@@ -149,23 +166,57 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 }
 
 impl Counts {
-    /// Of the whole model, parts that will not be simulated included.
+    /// Numbers of what is simulated; names of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
         let Assembled { system, mobility, undetermined, shared, .. } = study::assemble_whole(model)?;
-        let constraints = |numbers: &[usize]| numbers.iter().map(|&k| system.constraints[k].name.clone()).collect();
-        Ok(Self {
-            model: model.name.clone(),
+        let whole = Whole {
             coordinates: system.coordinates.len(),
             constraints: system.constraints.len(),
             degrees_of_freedom: mobility.degrees_of_freedom,
+        };
+        let reduction = Reduction::of(model, Choices::default());
+        let is_whole = |part: &Description| {
+            let counts = |model: &Description| [model.bodies.len(), model.joints.len(), model.effects.len()];
+            counts(part) == counts(model)
+        };
+        let (simulated, formulation) = match &reduction.subsystems[..] {
+            [only] if is_whole(&only.description) => (whole, system.formulation.name().to_owned()),
+            _ => Whole::of_parts(&study::assemble_parts(model)?),
+        };
+        let is_less = simulated.coordinates != whole.coordinates || simulated.constraints != whole.constraints;
+        let constraints = |numbers: &[usize]| numbers.iter().map(|&k| system.constraints[k].name.clone()).collect();
+        Ok(Self {
+            model: model.name.clone(),
+            formulation,
+            formulation_is_open: study::formulation_is_open(model),
+            coordinates: simulated.coordinates,
+            constraints: simulated.constraints,
+            degrees_of_freedom: simulated.degrees_of_freedom,
+            whole: is_less.then_some(whole),
             uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             redundant_constraints: constraints(&mobility.redundant),
             singular_at_start: constraints(&mobility.singular_at_start),
             shared_start: shared,
             undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
-            not_simulated: Reduction::of(model, Choices::default()).left_out,
+            not_simulated: reduction.left_out,
         })
+    }
+}
+
+impl Whole {
+    /// Sums over the parts that are simulated, and their formulation.
+    fn of_parts(parts: &[Assembled]) -> (Self, String) {
+        let sum = |of: fn(&Assembled) -> usize| parts.iter().map(of).sum();
+        let numbers = Self {
+            coordinates: sum(|part| part.system.coordinates.len()),
+            constraints: sum(|part| part.system.constraints.len()),
+            degrees_of_freedom: sum(|part| part.mobility.degrees_of_freedom),
+        };
+        let mut names: Vec<&str> = parts.iter().map(|part| part.system.formulation.name()).collect();
+        names.sort_unstable();
+        names.dedup();
+        (numbers, names.join(" and "))
     }
 }
 
@@ -189,10 +240,16 @@ impl Counts {
         let shared = others(&self.shared_start, "a start that the model leaves open, nearest to rest in");
         let undetermined = others(&self.undetermined_outputs, "reactions that are not unique:");
         let left_out = others(&self.not_simulated, "not simulated because no output depends on it:");
+        let whole = self.whole.map_or_else(String::new, |whole| {
+            let constraints = count(whole.constraints, "constraint", "constraints");
+            format!("; the whole model has {} and {constraints}", count(whole.coordinates, "coordinate", "coordinates"))
+        });
+        let open =
+            if self.formulation_is_open { "; a run takes the shorter formulation, which may be the other" } else { "" };
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}{whole}{open}\n",
             self.model,
-            count(self.coordinates, "coordinate", "coordinates"),
+            coordinates(self.coordinates, &self.formulation),
             count(self.constraints, "constraint", "constraints"),
             count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
@@ -208,9 +265,12 @@ mod tests {
     fn counts_on_one_line() {
         let mut counts = Counts {
             model: "slider_crank".into(),
+            formulation: "absolute".into(),
+            formulation_is_open: false,
             coordinates: 7,
             constraints: 6,
             degrees_of_freedom: 1,
+            whole: None,
             uncertain_parameters: vec!["l1".into(), "tau".into()],
             redundant_constraints: vec![],
             singular_at_start: vec![],
@@ -220,9 +280,9 @@ mod tests {
             not_simulated: vec![],
         };
         let plain = |counts: &Counts| crate::cli::console::plain(&counts.line());
-        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
+        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
         counts.redundant_constraints = vec!["pin.x".into(), "pin.y".into()];
         counts.uncertain_parameters.clear();
-        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom, no uncertain parameters, 2 redundant constraints (pin.x, pin.y)");
+        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, no uncertain parameters, 2 redundant constraints (pin.x, pin.y)");
     }
 }

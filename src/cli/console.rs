@@ -131,6 +131,11 @@ pub(super) fn count(n: usize, one: &str, many: &str) -> String {
     }
 }
 
+/// `7 absolute coordinates`.
+pub(super) fn coordinates(n: usize, formulation: &str) -> String {
+    count(n, &format!("{formulation} coordinate"), &format!("{formulation} coordinates"))
+}
+
 /// Indented JSON with a line end; what a terminal could obey is escaped.
 pub(super) fn to_json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use super::args::CostArgs;
 use super::console::{BOLD, Console, count, file_names};
-use super::job::set_once;
 use super::progress::Progress;
 use super::run::results_of;
 use super::table::{Align, Table};
@@ -16,8 +15,7 @@ use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
-    set_once(&args.set)?;
-    let Some(model) = load::load(&args.model, &args.set, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, args.set.overrides()?, args.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
@@ -63,7 +61,9 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     if !study.bounds.is_empty() {
         text += &format!("{}\n", bounds(study).render(2));
     }
-    text += &format!("{}\n", trajectories(study).render(2));
+    if !study.trajectories.is_empty() {
+        text += &format!("{}\n", trajectories(study).render(2));
+    }
     text += "  Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.\n";
     text += match study.is_deterministic() {
         false => {
@@ -74,6 +74,12 @@ fn overview(study: &CostStudy, folder: &Path, files: &[PathBuf]) -> String {
     text += &reference(study);
     for left_out in &study.left_out {
         text += &format!("  left out: {left_out}\n");
+    }
+    if study.has_reference() {
+        text += &format!(
+            "  took {:.1} s of {} s, {:.1} s of it for the reference\n",
+            study.seconds, study.budget, study.reference_seconds
+        );
     }
     text += &format!("\n{BOLD}{}{BOLD:#}\n", choice(study));
     text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
@@ -168,6 +174,9 @@ fn step(stepping: Stepping) -> String {
 /// The reference of the errors, and its own error.
 fn reference(study: &CostStudy) -> String {
     let reference = &study.reference;
+    if !study.has_reference() {
+        return String::new();
+    }
     let [finest, middle, _] = reference.steps.map(step);
     let mut text = format!("  reference: {}", reference.method.label());
     if reference.order > 0 {
@@ -201,14 +210,49 @@ fn choice(study: &CostStudy) -> String {
         let simulations = count(point.simulations, "simulation", "simulations");
         format!("{label}{count_of}, steps of {step}: {simulations} in {}, {off}", seconds(point.seconds))
     };
+    let more = format!("--budget {:.0}", 4.0 * study.budget.max(study.reference_seconds).max(1.0));
+    if !study.has_reference() {
+        return format!(
+            "No setting was finished within {} s: a reference to compare with takes {} or more. {more} allows it; a shorter `duration`, fewer \
+             rows or fewer uncertain parameters (--set) make it cheaper.",
+            study.budget,
+            seconds(study.reference_seconds)
+        );
+    }
     match (study.cheapest(), study.nearest()) {
-        _ if own >= wanted => {
-            format!("No setting can be compared at {wanted:e}: the reference's own error is {own:.1e}.")
+        (_, nearest) if own >= wanted => {
+            let nearest = nearest.map_or_else(String::new, |point| format!(" The nearest is {}.", described(point)));
+            format!(
+                "No setting can be compared at {wanted:e}: the reference's own error is {own:.1e}. {more} allows a finer one, and {} can be \
+                 asked for now.{nearest}",
+                asked(2.0 * own)
+            )
         }
         (Some(point), _) => format!("The cheapest setting within {wanted:e} is {}.", described(point)),
-        (None, Some(point)) => format!("No setting meets {wanted:e}; the nearest is {}.", described(point)),
-        (None, None) => format!("No setting was finished, so none meets {wanted:e}."),
+        (None, Some(point)) => {
+            let nearest = format!("No setting meets {wanted:e}; the nearest is {}.", described(point));
+            // Of those that were not run, dearer ones are nearer.
+            match study.left_out.iter().any(|left_out| left_out.contains("budget")) {
+                true => format!("{nearest} Others were left out: {more} allows them."),
+                false => format!(
+                    "{nearest} `bounds: {{ tolerance: {wanted:e} }}` in the model divides boxes and steps until it is met."
+                ),
+            }
+        }
+        (None, None) => format!(
+            "No setting was finished within {} s, of which the reference took {:.1} s: {more} allows some, a shorter `duration` or fewer \
+             uncertain parameters (--set) make them cheaper.",
+            study.budget, study.reference_seconds
+        ),
     }
+}
+
+/// A tolerance to ask for, rounded up to one digit.
+fn asked(tolerance: f64) -> String {
+    let text = format!("{tolerance:.0e}");
+    let at_least = text.parse::<f64>().is_ok_and(|rounded| rounded >= tolerance);
+    let text = if at_least { text } else { format!("{:.0e}", 1.5 * tolerance) };
+    format!("--tolerance {text}")
 }
 
 #[cfg(test)]
@@ -247,6 +291,9 @@ mod tests {
         CostStudy {
             model: "crank".into(),
             tolerance: 1e-3,
+            budget: 60.0,
+            reference_seconds: 10.0,
+            seconds: 40.0,
             reference,
             bounds: vec![
                 CostPoint { front: true, ..composed.clone() },
@@ -254,7 +301,7 @@ mod tests {
                 point(SCAN, None, Some(5), 0.01, 0.0, 2e-3),
             ],
             trajectories: vec![trajectory],
-            left_out: vec!["Scan: 3 of its settings".into()],
+            left_out: vec!["Scan: 3 of its settings, which the budget of 60 s does not allow".into()],
         }
     }
 
@@ -279,7 +326,8 @@ mod tests {
           Settings on each method's front; * on the front of all methods; ≤ below the reference's own error.
           Errors are relative to the largest width of an output's bounds; too narrow: the part of the range left out.
           reference: Chebyshev, composed of order 16, steps of 1e-4 s and 2e-4 s; its own error 1.0e-5 (steps 1.0e-6, order 16 for 14 9.0e-6), of the trajectory 1.0e-6
-          left out: Scan: 3 of its settings
+          left out: Scan: 3 of its settings, which the budget of 60 s does not allow
+          took 40.0 s of 60 s, 10.0 s of it for the reference
 
         The cheapest setting within 1e-3 is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
           results/crank: cost.csv, cost.svg
@@ -291,8 +339,8 @@ mod tests {
         let at = |tolerance| choice(&CostStudy { tolerance, ..study() });
         insta::assert_snapshot!([at(3e-3), at(1e-4), at(1e-5)].join("\n"), @r"
         The cheapest setting within 3e-3 is Scan with 5 points per parameter, steps of 1e-3 s: 36 simulations in 10.0 ms, too wide by 0, too narrow by 2.0e-3.
-        No setting meets 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
-        No setting can be compared at 1e-5: the reference's own error is 1.0e-5.
+        No setting meets 1e-4; the nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5. Others were left out: --budget 240 allows them.
+        No setting can be compared at 1e-5: the reference's own error is 1.0e-5. --budget 240 allows a finer one, and --tolerance 2e-5 can be asked for now. The nearest is Chebyshev, composed of order 5, steps of 1e-3 s: 36 simulations in 25.0 ms, too wide by 4.0e-4, too narrow by ≤ 1.0e-5.
         ");
     }
 }

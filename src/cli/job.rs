@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::{Failure, Status, interrupt};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
-use crate::results::{Bounds, Method, OutputBounds, Summary};
+use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
 use crate::study;
 
 /// The arguments of a run, checked.
@@ -18,23 +18,34 @@ pub(super) struct Request {
     pub overrides: Vec<Override>,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
-    /// `None` for the model's own methods.
-    methods: Option<Vec<Method>>,
     pub certify: bool,
     pub output: Option<PathBuf>,
-    threads: Option<usize>,
     pub quiet: bool,
     timings: bool,
     overwrite: bool,
-    yes: bool,
-    certify_time: bool,
-    skip_infeasible: bool,
+    settings: Settings,
+}
+
+/// How a model is run.
+#[derive(Default)]
+pub(super) struct Settings {
+    /// `None` for the model's own methods.
+    pub methods: Option<Vec<Method>>,
+    pub threads: Option<usize>,
+    /// Whether what takes long is run.
+    pub yes: bool,
+    pub certify_time: bool,
+    pub skip_infeasible: bool,
+    /// Whether no progress is shown.
+    pub quiet: bool,
 }
 
 /// A model, or a scene of it, with the folder for its results.
 pub(super) struct Job {
     pub model: Description,
     pub folder: PathBuf,
+    /// The files that the model was read from.
+    pub files: Vec<ModelFile>,
 }
 
 /// Outcome of a run.
@@ -49,7 +60,7 @@ pub(super) struct Done {
 
 impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
-        set_once(&args.set)?;
+        let overrides = args.set.overrides()?.to_vec();
         let mut scenes = args.scene;
         scenes.sort_unstable();
         scenes.dedup();
@@ -58,31 +69,36 @@ impl Request {
         methods.dedup();
         Ok(Self {
             models: args.models,
-            overrides: args.set,
+            overrides,
             scenes,
-            methods: if methods.is_empty() { None } else { Some(methods) },
             certify: args.certify,
             output: args.output,
-            threads: args.threads.map(usize::from),
             quiet: args.quiet,
             timings: args.timings,
             overwrite: args.overwrite,
-            yes: args.yes,
-            certify_time: args.certify_time,
-            skip_infeasible: args.skip_infeasible,
+            settings: Settings {
+                methods: if methods.is_empty() { None } else { Some(methods) },
+                threads: args.threads.map(usize::from),
+                yes: args.yes,
+                certify_time: args.certify_time,
+                skip_infeasible: args.skip_infeasible,
+                quiet: args.quiet,
+            },
         })
     }
 }
 
-/// Checks that every parameter is set at most once.
-///
-/// # Errors
-/// For the first that is set twice.
-pub(super) fn set_once(overrides: &[Override]) -> Result<(), Failure> {
-    let twice = |&(i, setting): &(usize, &Override)| overrides[..i].iter().any(|earlier| earlier.name == setting.name);
-    match overrides.iter().enumerate().find(twice) {
-        Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
-        None => Ok(()),
+impl Request {
+    /// What the results depend on.
+    fn asked(&self) -> RunRequest {
+        let methods = self.settings.methods.as_ref();
+        RunRequest {
+            set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
+            methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
+            certify: self.certify,
+            certify_time: self.settings.certify_time,
+            skip_infeasible: self.settings.skip_infeasible,
+        }
     }
 }
 
@@ -93,37 +109,44 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))))
 }
 
-fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
-    let name = &job.model.name;
-    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{name}: {error}"));
-    let progress = Progress::new(name, !request.quiet);
-    // From the first rows on there is something to keep.
+/// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::Wrong`], and was not begun.
+pub(super) fn bounds(
+    model: &Description,
+    settings: &Settings,
+    begun: &(dyn Fn() + Sync),
+) -> Result<(Bounds, Summary), Failure> {
+    let progress = Progress::new(&model.name, !settings.quiet);
     let set_progress = |fraction| {
-        interrupt::keep_results(true);
+        begun();
         progress.set(fraction);
     };
     let options = study::Options {
-        methods: request.methods.clone(),
-        threads: request.threads,
-        certify_time: request.certify_time,
-        skip_infeasible: request.skip_infeasible,
-        costly: request.yes,
+        methods: settings.methods.clone(),
+        threads: settings.threads,
+        certify_time: settings.certify_time,
+        skip_infeasible: settings.skip_infeasible,
+        costly: settings.yes,
         progress: &set_progress,
         interrupted: &interrupt::asked,
     };
-    let (bounds, summary) = study::run(&job.model, options).map_err(|error| match error {
-        study::RunError::Costly(_) => Failure::Wrong(format!("{name}: {error}")),
-        error => failed(&error),
-    })?;
-    drop(progress);
+    study::run(model, options).map_err(|error| {
+        let message = format!("{}: {error}", model.name);
+        if matches!(error, study::RunError::Costly(_)) { Failure::Wrong(message) } else { Failure::Failed(message) }
+    })
+}
 
+fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
+    let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
+    // From the first rows on there is something to keep.
+    let (bounds, summary) = bounds(&job.model, &request.settings, &|| interrupt::keep_results(true))?;
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
-    let files = write_results(&folder, &bounds, &written, interrupted).map_err(|error| failed(&error))?;
+    let provenance = Provenance { model_files: job.files.clone(), request: Some(request.asked()) };
+    let files = write_results(&folder, &bounds, &written, &provenance, interrupted).map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
     let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
     Ok(Done { status, bounds, summary, files, folder })

@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
+
 use super::Failure;
 use super::console::Console;
 use crate::model::{self, Description, Override, Reading};
+use crate::results::ModelFile;
 use crate::study;
 
 /// The models that could be read.
@@ -22,6 +25,10 @@ pub(super) struct Model {
     pub name: String,
     /// Its scenes with their names; one without a name if the model has none.
     pub scenes: Vec<(Option<String>, Description)>,
+    /// Names of all scenes that it has.
+    pub all: Vec<String>,
+    /// The files that it was read from.
+    pub files: Vec<ModelFile>,
 }
 
 /// Reads all models and chooses their scenes: those of these names, or all. If any model has errors, the errors of all models
@@ -35,6 +42,7 @@ pub(super) fn load_all(
     scenes: &[String],
     console: &Console,
 ) -> Result<Option<Loaded>, Failure> {
+    input_once(models)?;
     let mut is_complete = true;
     let mut readings: Vec<(&PathBuf, Option<Reading>)> = Vec::new();
     for path in models {
@@ -47,10 +55,12 @@ pub(super) fn load_all(
         }
     }
     let chosen = |(path, reading): (&PathBuf, Reading)| {
+        let files = files(&reading);
+        let all = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
         let scenes =
             reading.chosen(scenes).map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
-        Ok(Model { path: path.clone(), name, scenes })
+        Ok(Model { path: path.clone(), name, scenes, all, files })
     };
     let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
     let Some(readings) = readings.collect::<Option<Vec<_>>>() else { return Ok(None) };
@@ -73,6 +83,33 @@ pub(super) fn load(
     let chosen = reading.chosen(std::slice::from_ref(scene));
     let chosen = chosen.map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
     Ok(chosen.into_iter().map(|(_, description)| description).next())
+}
+
+/// Checks that standard input is read at most once.
+///
+/// # Errors
+/// If it is named more often.
+pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
+    match models.iter().filter(|path| model::is_standard_input(path)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::Wrong("`-` is named twice, but standard input can be read once only".to_owned())),
+    }
+}
+
+/// The files that were read, the model first, with hashes of their bytes.
+fn files(reading: &Reading) -> Vec<ModelFile> {
+    let mut files: Vec<ModelFile> = Vec::new();
+    for source in reading.diagnostics.sources.all().iter().filter(|source| source.name != "--set") {
+        let name = Path::new(&source.name).file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
+        let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
+        let file = ModelFile { name, sha256 };
+        // A robot alone stands behind the text of the model that is made of it.
+        match files.iter_mut().find(|known| known.name == file.name) {
+            Some(known) => *known = file,
+            None => files.push(file),
+        }
+    }
+    files
 }
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.

@@ -11,6 +11,7 @@ mod job;
 mod joints;
 mod listing;
 mod load;
+mod man;
 mod methods;
 mod new;
 mod overview;
@@ -18,6 +19,7 @@ mod progress;
 mod run;
 mod scenes;
 mod show;
+mod snapshot;
 mod status;
 mod table;
 mod tree;
@@ -32,13 +34,25 @@ use self::console::Console;
 use self::status::Status;
 use crate::study;
 
-/// Why a command ended early, in words for the user.
+/// Why a command ended early, or a model of several was not run, in words for the user.
 #[derive(Debug)]
 enum Failure {
     /// The command or the model has errors.
     Wrong(String),
     /// The command was valid and failed.
     Failed(String),
+}
+
+impl Failure {
+    /// Reports it, and tells what it comes to.
+    fn report(&self, console: &Console) -> Status {
+        let (message, status) = match self {
+            Self::Wrong(message) => (message, Status::Wrong),
+            Self::Failed(message) => (message, Status::Failed),
+        };
+        console.error(message);
+        status
+    }
 }
 
 /// The program: reads the process' arguments, executes the command and returns its exit code.
@@ -63,14 +77,7 @@ pub fn main() -> ExitCode {
     let mut console = Console::default();
     let executed = study::caught("the command", || execute(cli.command, &mut console));
     let executed = executed.unwrap_or_else(|error| Err(Failure::Failed(error.to_string())));
-    let status = executed.unwrap_or_else(|failure| {
-        let (message, status) = match failure {
-            Failure::Wrong(message) => (message, Status::Wrong),
-            Failure::Failed(message) => (message, Status::Failed),
-        };
-        console.error(&message);
-        status
-    });
+    let status = executed.unwrap_or_else(|failure| failure.report(&console));
     let status = if console.has_failed() { status.max(Status::Failed) } else { status };
     ExitCode::from(status)
 }
@@ -79,11 +86,13 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
         Command::Run(args) => run::run(args, console),
         Command::Check(args) => check::check(&args, console),
+        Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),
         Command::Explain(args) => explain::explain(&args, console),
         Command::Show(args) => show::show(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
+        Command::Man(args) => man::man(&args, console),
         Command::Completions(args) => {
             let mut script = Vec::new();
             clap_complete::generate(args.shell, &mut Cli::command(), "mbint", &mut script);

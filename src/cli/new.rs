@@ -2,6 +2,7 @@
 
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use super::args::NewArgs;
 use super::console::Console;
@@ -25,6 +26,11 @@ pub(super) fn new(args: &NewArgs, console: &mut Console) -> Result<Status, Failu
     }
     let path = format!("{stem}.yaml");
     let text = TEMPLATE.replacen(NAME_LINE, &format!("model: {name}\n"), 1).replacen(SCHEMA, "mbint.schema.json", 1);
+    if let Some(folder) = Path::new(&path).parent()
+        && let Err(error) = std::fs::create_dir_all(folder)
+    {
+        return wrong(format!("cannot make the folder {}: {error}", folder.display()));
+    }
     let created = OpenOptions::new().write(true).create_new(true).open(&path);
     match created.and_then(|mut file| file.write_all(text.as_bytes())) {
         Ok(()) => {}

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::console::{BOLD, count, file_names};
+use super::console::{BOLD, coordinates, count, file_names};
 use super::table::{Align, Table};
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
 
@@ -165,7 +165,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
     let mut text = format!(
         "{BOLD}{}{BOLD:#}: {}, {}, {}\n\n{}\n",
         summary.model,
-        count(summary.coordinates, "coordinate", "coordinates"),
+        coordinates(summary.coordinates, &summary.formulation),
         count(summary.constraints, "constraint", "constraints"),
         count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
         table.render(2),
@@ -205,6 +205,7 @@ mod tests {
         let summary = Summary {
             model: "slider_crank".into(),
             mbint: "0.1.0".into(),
+            formulation: "absolute".into(),
             coordinates: 7,
             constraints: 6,
             degrees_of_freedom: 1,
@@ -220,6 +221,7 @@ mod tests {
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
             errors: vec![ErrorSummary {
                 output: "x3".into(),
+                unit: "m".into(),
                 method: "scan".into(),
                 width: 0.2,
                 error: 2e-3,
@@ -237,7 +239,7 @@ mod tests {
         let text = overview(&summary, Path::new("results/slider_crank"), &files);
         let plain = crate::cli::console::plain(&text);
         insta::assert_snapshot!(plain, @r"
-        slider_crank: 7 coordinates, 6 constraints, 1 degree of freedom
+        slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom
 
           method   simulations    steps  Newton iterations  seconds
           nominal            1     2000               4013    0.004

@@ -70,14 +70,7 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
             Kind::Alone(job) => run_and_report(job, &request, console),
             Kind::Scenes(scenes) => scenes.run(&request, console),
         };
-        match done {
-            Ok(done) => status = status.max(done),
-            Err(Failure::Failed(message)) => {
-                console.error(&message);
-                status = status.max(Status::Failed);
-            }
-            Err(wrong) => return Err(wrong),
-        }
+        status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
             return Ok(Status::Interrupted);
         }
@@ -104,7 +97,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes } in models {
+    for load::Model { path, name, scenes, all, files } in models {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -122,7 +115,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
-            (scene, Job { model, folder })
+            (scene, Job { model, folder, files: files.clone() })
         });
         // A single requested scene is run like a model.
         let alone = request.scenes.len() == 1;
@@ -134,7 +127,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             }
             first => first.into_iter().chain(jobs).filter_map(|(scene, job)| Some((scene?, job))).collect(),
         };
-        work.push(Work { path, kind: Kind::Scenes(Scenes::new(name, folder, scenes)) });
+        work.push(Work { path, kind: Kind::Scenes(Scenes::new(name, folder, all, scenes)) });
     }
     Ok(work)
 }

@@ -16,6 +16,8 @@ pub(super) struct Scenes {
     model: String,
     /// Each scene has a folder in it.
     folder: PathBuf,
+    /// Names of all scenes of the model, be they run or not.
+    all: Vec<String>,
     jobs: Vec<(String, Job)>,
 }
 
@@ -28,8 +30,8 @@ struct Ran<'s> {
 }
 
 impl Scenes {
-    pub fn new(model: String, folder: PathBuf, jobs: Vec<(String, Job)>) -> Self {
-        Self { model, folder, jobs }
+    pub fn new(model: String, folder: PathBuf, all: Vec<String>, jobs: Vec<(String, Job)>) -> Self {
+        Self { model, folder, all, jobs }
     }
 
     pub fn jobs(&self) -> impl Iterator<Item = &Job> {
@@ -48,12 +50,10 @@ impl Scenes {
                     status = status.max(done.status);
                     Some(done)
                 }
-                Err(Failure::Failed(message)) => {
-                    console.error(&message);
-                    status = status.max(Status::Failed);
+                Err(failure) => {
+                    status = status.max(failure.report(console));
                     None
                 }
-                Err(wrong) => return Err(wrong),
             };
             ran.push(Ran { scene, seconds: start.elapsed().as_secs_f64(), done });
             if interrupt::asked() {
@@ -64,7 +64,8 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        let files = if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &found) };
+        let files =
+            if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &self.model, &self.all, &found) };
         let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;
@@ -117,7 +118,7 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         }
         if none {
             let [scene, size, seconds] = first;
-            let what = if summary.is_some() { "" } else { "failed" };
+            let what = if summary.is_some() { "" } else { "not run, or failed" };
             table.row([scene, size, seconds, what.to_owned(), String::new(), String::new()]);
         }
     }

@@ -9,6 +9,7 @@ use serde::Serialize;
 pub(super) enum Status {
     Done,
     Unresolved,
+    Moved,
     Failed,
     Interrupted,
     Wrong,
@@ -24,7 +25,8 @@ pub(super) struct StatusDocs {
 
 impl Status {
     /// All of them, by their codes.
-    pub const ALL: [Self; 5] = [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::Interrupted];
+    pub const ALL: [Self; 6] =
+        [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::Moved, Self::Interrupted];
 
     pub const fn docs(self) -> StatusDocs {
         let (code, meaning, results) = match self {
@@ -34,11 +36,20 @@ impl Status {
                 "a run failed, or a bound ended early; the message says where",
                 "finished results; the rest is `NaN`",
             ),
-            Self::Wrong => (2, "the command or a model has errors; nothing was run", "nothing is written"),
+            Self::Wrong => (
+                2,
+                "the command or a model has errors, and nothing was run; or a run was refused because it would take long",
+                "nothing is written for it",
+            ),
             Self::Unresolved => (
                 3,
                 "success, but at some time no method gives reliable bounds of an output",
                 "all results; unreliable rows are marked",
+            ),
+            Self::Moved => (
+                4,
+                "`mbint snapshot --check`: a bound is not as it was recorded, or nothing is recorded",
+                "nothing is written",
             ),
             // 128 and SIGINT's number, as a shell reports it.
             Self::Interrupted => (

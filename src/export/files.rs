@@ -3,15 +3,15 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
-use crate::export::{bounds_csv, contributions_csv, contributions_svg, plot_svg};
-use crate::results::Bounds;
-use crate::results::Summary;
+use crate::export::owned::{SCHEMA, SUMMARY, owned};
+use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, plot_svg};
+use crate::results::{Bounds, PeakSummary, Provenance, Summary};
 
-/// Writes `bounds.csv`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
+/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.
 ///
 /// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files that the summary
@@ -23,10 +23,12 @@ pub fn write_results(
     dir: &Path,
     bounds: &Bounds,
     summary: &Summary,
+    provenance: &Provenance,
     interrupted: bool,
 ) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
+    files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
     }
@@ -42,22 +44,29 @@ pub fn write_results(
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
-    let owned = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
-    let mut json = serde_json::to_vec_pretty(&Written { summary, interrupted, files: owned })?;
+    let names = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
+    let outputs = bounds.outputs.iter().map(|output| Named { name: &output.name, unit: &output.unit }).collect();
+    let peaks = PeakSummary::of(bounds);
+    let written = Written { schema: SCHEMA, summary, provenance, outputs, peaks, interrupted, files: names };
+    let mut json = serde_json::to_vec_pretty(&written)?;
     json.push(b'\n');
     files.add(SUMMARY, &json)?;
-    files.without(Earlier::of(dir).files);
+    files.without(owned(dir));
     files.put_in_place()
 }
-
-/// The summary's file.
-const SUMMARY: &str = "summary.json";
 
 /// The summary as it is written.
 #[derive(Serialize)]
 struct Written<'s> {
+    schema: u32,
     #[serde(flatten)]
     summary: &'s Summary,
+    #[serde(flatten)]
+    provenance: &'s Provenance,
+    /// In the model's order, with SI units.
+    outputs: Vec<Named<'s>>,
+    /// Of every band, in the output's unit.
+    peaks: Vec<PeakSummary>,
     /// Whether the run was interrupted before it was done.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     interrupted: bool,
@@ -65,27 +74,11 @@ struct Written<'s> {
     files: Vec<String>,
 }
 
-/// What an older run says of itself.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct Earlier {
-    model: String,
-    interrupted: bool,
-    files: Vec<String>,
-}
-
-impl Earlier {
-    /// Nothing where there is no summary that can be read.
-    fn of(dir: &Path) -> Self {
-        let text = std::fs::read(dir.join(SUMMARY)).unwrap_or_default();
-        serde_json::from_slice(&text).unwrap_or_default()
-    }
-}
-
-/// Whether a folder holds the results of a run that was not interrupted.
-pub fn holds_complete_results(dir: &Path) -> bool {
-    let earlier = Earlier::of(dir);
-    !earlier.model.is_empty() && !earlier.interrupted
+/// An output's name and SI unit; empty where dimensionless or unknown.
+#[derive(Serialize)]
+struct Named<'s> {
+    name: &'s str,
+    unit: &'s str,
 }
 
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
@@ -145,6 +138,7 @@ mod tests {
         let summary = Summary {
             model: "crank".into(),
             mbint: "0.1.0".into(),
+            formulation: "absolute".into(),
             coordinates: 7,
             constraints: 6,
             degrees_of_freedom: 1,
@@ -181,11 +175,14 @@ mod tests {
         let place = dir.path().join("results/crank");
         let (bounds, summary) = results();
         for _ in 0..2 {
-            let written = write_results(&place, &bounds, &summary, false).unwrap();
+            let written = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap();
             let written: Vec<_> = written.iter().map(|path| path.strip_prefix(&place).unwrap()).collect();
-            assert_eq!(written, ["bounds.csv", "x3.svg", "a_b.svg", "A_b-2.svg", "summary.json"].map(Path::new));
+            assert_eq!(
+                written,
+                ["bounds.csv", "columns.json", "x3.svg", "a_b.svg", "A_b-2.svg", "summary.json"].map(Path::new)
+            );
         }
-        assert_eq!(names(&place), ["A_b-2.svg", "a_b.svg", "bounds.csv", "summary.json", "x3.svg"]);
+        assert_eq!(names(&place), ["A_b-2.svg", "a_b.svg", "bounds.csv", "columns.json", "summary.json", "x3.svg"]);
         let json = fs::read_to_string(place.join("summary.json")).unwrap();
         assert!(json.ends_with("}\n") && json.contains("\"model\": \"crank\""), "{json}");
     }
@@ -196,7 +193,7 @@ mod tests {
         let place = dir.path().join("taken");
         fs::write(&place, "mine").unwrap();
         let (bounds, summary) = results();
-        let error = write_results(&place, &bounds, &summary, false).unwrap_err();
+        let error = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap_err();
         assert!(matches!(&error, ExportError::Folder { path, .. } if *path == place), "{error}");
         assert!(
             error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
@@ -211,11 +208,11 @@ mod tests {
         // A folder stands where a file should.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();
         let (bounds, summary) = results();
-        let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
+        let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
         assert!(!error.to_string().contains(".mbint-"), "{error}");
-        assert_eq!(names(dir.path()), ["bounds.csv", "x3.svg"], "of which one is the folder");
+        assert_eq!(names(dir.path()), ["bounds.csv", "columns.json", "x3.svg"], "of which one is the folder");
     }
 
     #[cfg(unix)]
@@ -227,7 +224,7 @@ mod tests {
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).unwrap();
         // The superuser may write anywhere: nothing to see then.
         if fs::write(dir.path().join("probe"), "").is_err() {
-            let error = write_results(dir.path(), &bounds, &summary, false).unwrap_err();
+            let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
             let path = dir.path().display().to_string();
             assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: perm")), "{error}");
         }

@@ -88,6 +88,18 @@ impl<'d> AtomicFiles<'d> {
     }
 }
 
+/// Writes texts under their names into a folder, which is created if it does not exist. Returns their paths.
+///
+/// # Errors
+/// At the first that cannot be written.
+pub fn write_pages(dir: &Path, pages: &[(String, String)]) -> Result<Vec<PathBuf>, ExportError> {
+    let mut files = AtomicFiles::in_folder(dir)?;
+    for (name, text) in pages {
+        files.add(name, text.as_bytes())?;
+    }
+    files.put_in_place()
+}
+
 /// Creates `dir` if it does not exist, and tests whether a file can be created in it, before a long run rather than after it.
 ///
 /// # Errors

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use csv::WriterBuilder;
+use serde::Serialize;
 
 use super::csv::number;
 use super::error::ExportError;
-use super::files::unique_stems;
+use super::files::{file_stem, unique_stems};
 use super::folder::AtomicFiles;
 use super::overlay::{SceneBounds, overlay_svg};
+use super::owned::{SCENES, SCHEMA, owned, remove_scene, scene_folders};
 use crate::results::OutputBounds;
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
@@ -45,11 +47,18 @@ pub fn scenes_csv(scenes: &[SceneBounds]) -> Result<Vec<u8>, csv::Error> {
     writer.into_inner().map_err(|error| error.into_error().into())
 }
 
-/// Writes an SVG of each output that more than one of the scenes has, and `scenes.csv`, into `dir`. Returns the files written.
+/// Writes an SVG of each output that more than one of the scenes has, `scenes.csv`, and `scenes.json`, which lists them, into `dir`.
+/// Files of an older run that this one does not write are removed, and so are results of scenes that are not among `all` that the model has.
+/// Returns the files written.
 ///
 /// # Errors
 /// As [`write_results`](super::write_results).
-pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, ExportError> {
+pub fn write_scenes(
+    dir: &Path,
+    model: &str,
+    all: &[String],
+    scenes: &[SceneBounds],
+) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     let shared = shared(scenes);
     for (name, stem) in shared.iter().zip(unique_stems(shared.iter().copied())) {
@@ -58,7 +67,34 @@ pub fn write_scenes(dir: &Path, scenes: &[SceneBounds]) -> Result<Vec<PathBuf>, 
         files.add(&format!("{stem}.svg"), svg.as_bytes())?;
     }
     files.add("scenes.csv", &scenes_csv(scenes)?)?;
-    files.put_in_place()
+    let all: Vec<String> = all.iter().map(|name| file_stem(name)).collect();
+    let written: Vec<String> = scenes.iter().map(|scene| file_stem(scene.name)).collect();
+    let (kept, gone): (Vec<String>, Vec<String>) =
+        scene_folders(dir).into_iter().partition(|folder| all.contains(folder));
+    let listed = Listed {
+        schema: SCHEMA,
+        model,
+        scenes: all.into_iter().filter(|folder| written.contains(folder) || kept.contains(folder)).collect(),
+        files: files.names().into_iter().chain([SCENES.to_owned()]).collect(),
+    };
+    let mut json = serde_json::to_vec_pretty(&listed)?;
+    json.push(b'\n');
+    files.add(SCENES, &json)?;
+    files.without(owned(dir));
+    let written = files.put_in_place()?;
+    gone.iter().for_each(|folder| remove_scene(&dir.join(folder)));
+    Ok(written)
+}
+
+/// What is of the scenes' runs together.
+#[derive(Serialize)]
+struct Listed<'s> {
+    schema: u32,
+    model: &'s str,
+    /// Folders of the scenes that have results, in the model's order.
+    scenes: Vec<String>,
+    /// All files beside them, which the next run replaces.
+    files: Vec<String>,
 }
 
 /// Outputs that more than one scene has, in the order of their first occurrence.
@@ -128,7 +164,8 @@ mod tests {
         let scenes = [SceneBounds { name: "one", bounds: &first }, SceneBounds { name: "two", bounds: &second }];
         let dir = tempfile::tempdir().unwrap();
         let place = dir.path().join("door");
-        let written = write_scenes(&place, &scenes).unwrap();
-        assert_eq!(written, ["x.svg", "scenes.csv"].map(|name| place.join(name)));
+        let all = ["one", "two"].map(str::to_owned);
+        let written = write_scenes(&place, "door", &all, &scenes).unwrap();
+        assert_eq!(written, ["x.svg", "scenes.csv", "scenes.json"].map(|name| place.join(name)));
     }
 }

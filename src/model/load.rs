@@ -7,7 +7,7 @@ use super::description::{Description, Space};
 use super::file;
 use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
-use super::text_file::{MAX_BYTES, read_text};
+use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
 use crate::grammar::names::GROUND;
@@ -95,14 +95,22 @@ pub fn shown(path: &Path) -> String {
     harmless(&path.display().to_string()).replace(['\n', '\t'], "\u{fffd}")
 }
 
-/// Like [`load`], with the warnings of a model that can be used.
+/// Whether a path stands for standard input.
+pub fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Like [`load`], with the warnings of a model that can be used. The path `-` is standard input, whose model is called `stdin` if it does
+/// not say otherwise, and finds other files from the working directory.
 pub fn read(path: &Path, overrides: &[Override]) -> Reading {
-    let name = shown(path);
+    let from_input = is_standard_input(path);
+    let name = if from_input { "stdin".to_owned() } else { shown(path) };
     if urdf::is_urdf(path) {
         // A model of nothing but the robot; what is wrong is wrong in the robot's file.
         return read_str(&name, &urdf::model_of(path), overrides);
     }
-    match read_text(path, MAX_BYTES) {
+    let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_text(path, MAX_BYTES) };
+    match text {
         Ok(text) => read_str(&name, &text, overrides),
         Err(error) => {
             let mut diagnostics = Diagnostics::new(name, "");

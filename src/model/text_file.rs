@@ -11,31 +11,23 @@ pub(super) const MAX_BYTES: u64 = 10_000_000;
 
 /// The text of a file of at most so many bytes.
 pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
-    let cannot = |error: std::io::Error| {
-        let reason = match error.kind() {
-            std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
-            _ => error.to_string(),
-        };
-        Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))
-    };
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
         return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));
     }
-    let too_large = |length: u64| {
-        let megabytes = length as f64 / 1e6;
-        let limit = most / 1_000_000;
-        Err(Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB"))))
-    };
     if metadata.len() > most {
-        return too_large(metadata.len());
+        return Err(too_large(metadata.len(), most));
     }
+    text_of(fs::File::open(path).map_err(cannot)?, most)
+}
+
+/// The text that can be read somewhere, of at most so many bytes.
+pub(super) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
     // What is not a regular file (a pipe) says no length: never read more than allowed.
     let mut bytes = Vec::new();
-    fs::File::open(path).map_err(cannot)?.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    source.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > most {
-        return too_large(bytes.len() as u64);
+        return Err(too_large(bytes.len() as u64, most));
     }
     String::from_utf8(bytes).map_err(|error| {
         let offset = error.utf8_error().valid_up_to();
@@ -43,4 +35,18 @@ pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic
         let message = format!("the file is not UTF-8 text: byte {} in line {line}", offset + 1);
         Box::new(Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned()))
     })
+}
+
+fn cannot(error: std::io::Error) -> Box<Diagnostic> {
+    let reason = match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission is denied".to_owned(),
+        _ => error.to_string(),
+    };
+    Box::new(Diagnostic::of_file(format!("the file cannot be read: {reason}")))
+}
+
+fn too_large(length: u64, most: u64) -> Box<Diagnostic> {
+    let (megabytes, limit) = (length as f64 / 1e6, most / 1_000_000);
+    Box::new(Diagnostic::of_file(format!("the file has {megabytes:.1} MB; a model may have {limit} MB")))
 }

@@ -4,6 +4,9 @@ use super::summary::MethodSummary;
 use super::{Band, Bounds, Contribution, EffectCost, Explanation, InstructionCounts, LeftOut, OutputBounds, Summary};
 use crate::numerics::{BandError, EMPTY, Range, largest, union};
 
+/// The formulation of subsystems that differ in it.
+const BOTH: &str = "absolute and joint";
+
 impl MethodSummary {
     /// Adds what the same method took elsewhere.
     pub fn add(&mut self, other: &Self) {
@@ -44,6 +47,9 @@ impl Summary {
             }
         }
         let add = |mut whole: Self, other: Self| {
+            if whole.formulation != other.formulation {
+                whole.formulation = BOTH.to_owned();
+            }
             whole.coordinates += other.coordinates;
             whole.constraints += other.constraints;
             whole.degrees_of_freedom += other.degrees_of_freedom;

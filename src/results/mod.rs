@@ -7,6 +7,8 @@ mod drawing;
 mod effect_cost;
 mod explanation;
 mod merge;
+mod peaks;
+mod provenance;
 mod summary;
 
 pub use crate::methods::Method;
@@ -19,6 +21,8 @@ pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
+pub use peaks::PeakSummary;
+pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,

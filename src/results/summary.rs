@@ -12,6 +12,8 @@ pub struct Summary {
     pub model: String,
     /// Version of this package.
     pub mbint: String,
+    /// Which coordinates: `absolute`, `joint`, or `absolute and joint` where subsystems differ.
+    pub formulation: String,
     /// Number of coordinates.
     pub coordinates: usize,
     /// Number of constraint equations, redundant ones included.
@@ -139,6 +141,8 @@ pub struct SubsystemSummary {
 pub struct ErrorSummary {
     /// Name of the output.
     pub output: String,
+    /// Its SI unit, in which the numbers are; empty where dimensionless or unknown.
+    pub unit: String,
     /// Name of the method.
     pub method: String,
     /// Largest width of the band.
@@ -226,6 +230,7 @@ impl ErrorSummary {
     pub fn of(bounds: &Bounds) -> Vec<Self> {
         let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
             output: output.name.clone(),
+            unit: output.unit.clone(),
             method: band.method.name().to_owned(),
             width: band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower).fold(0.0, f64::max),
             error: band.error.largest(),

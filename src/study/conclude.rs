@@ -178,6 +178,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     Summary {
         model: study.description.name.clone(),
         mbint: env!("CARGO_PKG_VERSION").to_owned(),
+        formulation: system.formulation.name().to_owned(),
         coordinates: system.q.len(),
         constraints: system.lambda.len(),
         degrees_of_freedom: mobility.degrees_of_freedom,

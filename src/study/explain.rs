@@ -53,11 +53,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
     Explanation {
         model: model.to_owned(),
         space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
-        formulation: format!(
-            "{} coordinates: {}",
-            if system.formulation.joint { "joint" } else { "absolute" },
-            system.formulation.why
-        ),
+        formulation: format!("{} coordinates: {}", system.formulation.name(), system.formulation.why),
         coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,

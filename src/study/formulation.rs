@@ -101,6 +101,11 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
     }
 }
 
+/// Whether [`assembled`] leaves it to [`compiled`] to find the shorter formulation.
+pub(super) fn is_open(description: &Description) -> bool {
+    description.simulation.formulation == Formulation::Auto && description.bodies.len() > FEW_BODIES
+}
+
 /// What a model asks for; where that takes too many operations, the other formulation.
 fn within_budget<T>(
     description: &Description,

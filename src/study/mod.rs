@@ -137,6 +137,19 @@ pub fn assemble_whole(description: &Description) -> Result<Assembled, RunError> 
     formulation::assembled(description)
 }
 
+/// What is simulated of a model, assembled: a part for each subsystem, as a run has them.
+///
+/// # Errors
+/// As for [`run`].
+pub fn assemble_parts(description: &Description) -> Result<Vec<Assembled>, RunError> {
+    subsystems::assembled(description)
+}
+
+/// Whether only a run finds out in which coordinates it is shorter: what is large is not compiled to be checked.
+pub fn formulation_is_open(description: &Description) -> bool {
+    formulation::is_open(description)
+}
+
 /// The model's scheme.
 fn scheme(description: &Description) -> Scheme {
     Scheme::Hht { alpha: description.simulation.alpha }

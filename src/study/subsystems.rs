@@ -18,7 +18,7 @@ use crate::reduce::{Choices, Reduction, Subsystem, narrow};
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
 };
-use crate::simulate::Simulator;
+use crate::simulate::{Assembled, Simulator};
 
 /// A subsystem, compiled.
 pub struct Prepared {
@@ -60,22 +60,39 @@ impl Prepared {
 /// Where a subsystem cannot be built or assembled.
 pub(super) fn prepare(description: &Description, choices: Choices) -> Result<(Reduction, Vec<Prepared>), RunError> {
     let mut reduction = Reduction::of(description, choices);
-    let prepared = std::mem::take(&mut reduction.subsystems).into_iter().map(|subsystem| {
-        // Joint coordinates that the model asks for may not exist in every subsystem.
-        let by_joints = description.simulation.formulation == Formulation::Joint;
-        let absolute = by_joints.then(|| subsystem.clone());
-        match (Prepared::new(subsystem), absolute) {
-            (Err(RunError::Build(BuildError::NoJointCoordinates { .. })), Some(mut subsystem))
-                if assemble::build(description).is_ok() =>
-            {
-                subsystem.description.simulation.formulation = Formulation::Absolute;
-                Prepared::new(subsystem)
-            }
-            (prepared, _) => prepared,
-        }
-    });
+    let subsystems = std::mem::take(&mut reduction.subsystems).into_iter();
+    let prepared = subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem, Prepared::new));
     let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
     Ok((reduction, prepared))
+}
+
+/// Reduces a model to what has to be simulated, and assembles that.
+///
+/// # Errors
+/// As for [`prepare`].
+pub(super) fn assembled(description: &Description) -> Result<Vec<Assembled>, RunError> {
+    let assembled = |subsystem: Subsystem| formulation::assembled(&subsystem.description);
+    let subsystems = Reduction::of(description, Choices::default()).subsystems.into_iter();
+    subsystems.map(|subsystem| as_far_as_joints_go(description, subsystem, assembled)).collect()
+}
+
+/// Makes something of a subsystem. Joint coordinates that the model asks for may not exist in every one: then it has absolute ones.
+fn as_far_as_joints_go<T>(
+    description: &Description,
+    subsystem: Subsystem,
+    make: impl Fn(Subsystem) -> Result<T, RunError>,
+) -> Result<T, RunError> {
+    let by_joints = description.simulation.formulation == Formulation::Joint;
+    let absolute = by_joints.then(|| subsystem.clone());
+    match (make(subsystem), absolute) {
+        (Err(RunError::Build(BuildError::NoJointCoordinates { .. })), Some(mut subsystem))
+            if assemble::build(description).is_ok() =>
+        {
+            subsystem.description.simulation.formulation = Formulation::Absolute;
+            make(subsystem)
+        }
+        (made, _) => made,
+    }
 }
 
 /// Runs every subsystem and merges the results.

@@ -62,6 +62,11 @@ impl Sources {
         start
     }
 
+    /// All texts, in the order in which they were read.
+    pub fn all(&self) -> &[Source] {
+        &self.all
+    }
+
     /// The first text: the model file.
     pub fn first(&self) -> Option<&Source> {
         self.all.first()

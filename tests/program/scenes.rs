@@ -245,11 +245,14 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
     door(&place);
     let (output, errors) = place.run("run door.yaml", 0);
     assert_eq!(errors, "");
-    assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv"]);
+    assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv", "scenes.json"]);
     for text in ["door: 3 scenes", "angle.chebyshev", "lost.chebyshev", "angle.scan", "seconds", "largest width"] {
         assert!(output.contains(text), "{text} in\n{output}");
     }
-    assert!(output.ends_with("  results/door: angle.svg, scenes.csv; ideal/, friction/, long/\n"), "{output}");
+    assert!(
+        output.ends_with("  results/door: angle.svg, scenes.csv, scenes.json; ideal/, friction/, long/\n"),
+        "{output}"
+    );
     let summary = fs::read_to_string(place.path().join("results/door/ideal/summary.json")).unwrap();
     assert!(summary.contains("\"model\": \"door/ideal\"") && !summary.contains("seconds"), "{summary}");
 
@@ -304,12 +307,12 @@ fn scenes_are_chosen_by_name() {
     door(&place);
     // One by itself is run as a model is.
     let (output, _) = place.run("run door.yaml --scene friction -o one --timings", 0);
-    assert!(output.starts_with("door/friction: 1 coordinate"), "{output}");
+    assert!(output.starts_with("door/friction: 1 joint coordinate,"), "{output}");
     assert_eq!(place.files("one"), ["friction"]);
     assert!(fs::read_to_string(place.path().join("one/friction/summary.json")).unwrap().contains("\"seconds\""));
     let (output, _) = place.run("run door.yaml --scene long --scene ideal -o two", 0);
     assert!(output.starts_with("door: 2 scenes"), "{output}");
-    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "scenes.csv"]);
+    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "scenes.csv", "scenes.json"]);
     place.run("run door.yaml --scene long,ideal -o three -q", 0);
     assert_eq!(place.files("three"), place.files("two"));
     // Scenes of several models have the models' folders.
@@ -347,7 +350,7 @@ fn check_and_explain_know_scenes() {
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(lines.len(), 3, "{output}");
     assert!(
-        lines[0].starts_with("ok door/ideal: 1 coordinate") && lines[0].contains("1 uncertain parameter,"),
+        lines[0].starts_with("ok door/ideal: 1 joint coordinate,") && lines[0].contains("1 uncertain parameter,"),
         "{output}"
     );
     assert!(lines[1].starts_with("ok door/friction: ") && lines[1].contains("2 uncertain parameters"), "{output}");
@@ -391,7 +394,7 @@ bounds: { scan: { points: 3 } }
     assert_eq!(errors.matches("error").count(), 1, "{errors}");
     let failed = output.lines().find(|line| line.trim_start().starts_with("short")).unwrap();
     assert!(failed.ends_with("failed"), "{output}");
-    assert!(output.ends_with("angle.svg, scenes.csv; fine/, also_fine/\n"), "{output}");
+    assert!(output.ends_with("angle.svg, scenes.csv, scenes.json; fine/, also_fine/\n"), "{output}");
     let table = fs::read_to_string(place.path().join("results/rocker/scenes.csv")).unwrap();
     let named: BTreeSet<&str> = table.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(named.into_iter().collect::<Vec<_>>(), ["also_fine", "fine"]);

@@ -19,6 +19,8 @@
 //! what its formula may depend on, `dimension = …` where its unit depends on earlier keys, `above = key` of an earlier key that must be smaller, `positive`, `nonnegative`, `nonzero` or `requires = REQUIREMENT`. A `#[derived]` field is no key;
 //! it is its type's default, and an `Option` of something that has `formulas()`.
 
+#![forbid(unsafe_code)]
+
 mod attributes;
 mod choice;
 mod element;

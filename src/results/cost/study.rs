@@ -12,6 +12,12 @@ pub struct CostStudy {
     pub model: String,
     /// The error that is wanted, at most.
     pub tolerance: f64,
+    /// Time that it was given, s.
+    pub budget: f64,
+    /// Time that it took until its reference was there, s.
+    pub reference_seconds: f64,
+    /// Time that it took, s.
+    pub seconds: f64,
     /// What errors are measured against.
     pub reference: CostReference,
     /// Bounding methods, in the order in which they were run.
@@ -26,6 +32,11 @@ impl CostStudy {
     /// Whether nothing is uncertain, so that there is nothing to bound.
     pub fn is_deterministic(&self) -> bool {
         matches!(self.reference.method, CostMethod::Scheme(_))
+    }
+
+    /// Whether there was time for a reference to measure errors by.
+    pub fn has_reference(&self) -> bool {
+        self.reference.trajectory_error.is_finite()
     }
 
     /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
@@ -242,6 +253,9 @@ pub(crate) mod tests {
         CostStudy {
             model: "crank".into(),
             tolerance: 1e-3,
+            budget: 60.0,
+            reference_seconds: 10.0,
+            seconds: 40.0,
             reference: CostReference {
                 method: COMPOSED,
                 order: 12,

@@ -16,18 +16,19 @@ use std::time::Instant;
 use super::RunError;
 use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
 use crate::model::Description;
-use crate::results::{CostMethod, CostPoint, CostStudy, pareto};
+use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, pareto};
 
-use grid::{Setting, settings, uncertain};
+use grid::{Setting, settings, smoothest, uncertain};
 use plan::Plan;
 use reference::Reference;
 use timing::{method, timed};
 
 /// How to study.
+#[derive(Clone, Copy)]
 pub struct CostOptions<'a> {
     /// Error that is wanted, relative to each output's scale.
     pub tolerance: f64,
-    /// s, about; the reference takes what it needs.
+    /// s, about. The reference is as fine as a third of it allows; without time for a coarse one, nothing is run.
     pub budget: f64,
     /// Threads; all cores where absent.
     pub threads: Option<usize>,
@@ -46,6 +47,9 @@ pub enum CostError {
     /// The reference was not computed to the end.
     #[error("the reference did not come to its end: {0}")]
     Reference(String),
+    /// A reference would take most of the budget, or more.
+    #[error("even a coarse reference takes {seconds:.1} s")]
+    TooDear { seconds: f64 },
     /// A reference would take too many simulations.
     #[error("{parameters} uncertain parameters: even a coarse reference takes {simulations:.1e} simulations")]
     TooMany { parameters: usize, simulations: f64 },
@@ -54,6 +58,10 @@ pub enum CostError {
 /// Shares of the progress bar: the reference is done, the bounds are done.
 const REFERENCE_DONE: f64 = 0.3;
 const BOUNDS_DONE: f64 = 0.95;
+
+/// Share of the budget that is kept for the schemes on the nominal trajectory, and most of it, s.
+const FOR_SCHEMES: f64 = 0.2;
+const MOST_FOR_SCHEMES: f64 = 5.0;
 
 /// Studies a model: every setting of the grid that the budget allows, cheap ones first.
 ///
@@ -64,8 +72,25 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let system = super::prepare(model)?.system;
     let k = uncertain(model);
     let composable = can_compose(k, system.q.len());
-    let plan = Plan::within_budget(model, composable, options)?;
-    let reference = Reference::compute(model, &plan, options, &|done| (options.progress)(REFERENCE_DONE * done))?;
+    let is_over = |budget: f64| move || (options.interrupted)() || begun.elapsed().as_secs_f64() > budget;
+    let over = is_over(options.budget);
+    let within = CostOptions { interrupted: &over, ..*options };
+    let progress = |done| (options.progress)(REFERENCE_DONE * done);
+    let planned = Plan::within_budget(model, composable, &within)
+        .and_then(|plan| Ok((Reference::compute(model, &plan, &within, &progress)?, plan)));
+    let (reference, plan) = match planned {
+        Ok(found) => found,
+        Err(CostError::TooDear { seconds }) if !(options.interrupted)() => {
+            return Ok(without_reference(model, composable, options, seconds.max(begun.elapsed().as_secs_f64())));
+        }
+        // What was cut short at the end of the budget.
+        Err(CostError::Reference(_)) if !(options.interrupted)() && over() => {
+            return Ok(without_reference(model, composable, options, begun.elapsed().as_secs_f64()));
+        }
+        Err(error) => return Err(error),
+    };
+    let reference_seconds = begun.elapsed().as_secs_f64();
+    let for_bounds = options.budget - (FOR_SCHEMES * options.budget).min(MOST_FOR_SCHEMES);
 
     let at_rest = reference.known.at_rest().map(|output| format!("`{output}`: it has nothing to measure errors by"));
     let mut left_out: Vec<String> = at_rest.collect();
@@ -79,25 +104,29 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         }
         let settings = settings(&model.simulation, composable);
         let skipped;
-        (bounds, skipped) = run_settings(model, &settings, &reference, options, begun);
-        left_out.extend(skipped.into_iter().map(|(method, count)| {
-            format!(
-                "{}: {count} of its settings, which the budget of {} s does not allow",
-                method.label(),
-                options.budget
-            )
-        }));
+        let over = is_over(for_bounds);
+        let within = CostOptions { budget: for_bounds, interrupted: &over, ..*options };
+        (bounds, skipped) = run_settings(model, &settings, &reference, (&within, plan.rate), begun);
+        // An interruption is another reason.
+        let skipped = skipped.into_iter().filter(|_| !(options.interrupted)());
+        left_out.extend(skipped.map(|(method, count)| beyond_budget(method, count, options)));
     }
     let progress = |done: f64| (options.progress)(BOUNDS_DONE + (1.0 - BOUNDS_DONE) * done);
-    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, options.interrupted)?;
+    let over = is_over(options.budget);
+    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, &over)?;
     if (options.interrupted)() {
         left_out.push("what was not done when the study was interrupted".to_owned());
+    } else if over() {
+        left_out.push(format!("schemes that the budget of {} s does not allow", options.budget));
     }
     mark(&mut bounds, reference.summary.bounds_error);
     mark(&mut trajectories, reference.summary.trajectory_error);
     Ok(CostStudy {
         model: model.name.clone(),
         tolerance: options.tolerance,
+        budget: options.budget,
+        reference_seconds,
+        seconds: begun.elapsed().as_secs_f64(),
         reference: reference.summary,
         bounds,
         trajectories,
@@ -105,13 +134,45 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     })
 }
 
-/// Runs settings by rising work as long as the budget lasts: what a method's last run took tells what its next will. The
-/// points are in the settings' order; also how many settings of which method were skipped.
+/// A study without anything to measure errors by, which would have taken `seconds` or more.
+fn without_reference(model: &Description, composable: bool, options: &CostOptions, seconds: f64) -> CostStudy {
+    let k = uncertain(model);
+    let mut skipped: Vec<(CostMethod, usize)> = Vec::new();
+    if k > 0 {
+        settings(&model.simulation, composable).iter().for_each(|setting| *entry(&mut skipped, setting.method, 0) += 1);
+    }
+    CostStudy {
+        model: model.name.clone(),
+        tolerance: options.tolerance,
+        budget: options.budget,
+        reference_seconds: seconds,
+        seconds: options.budget,
+        reference: CostReference {
+            method: if k > 0 { smoothest(composable) } else { CostMethod::Scheme(super::scheme(model)) },
+            order: 0,
+            steps: [model.simulation.stepping; 3],
+            bounds_error: f64::INFINITY,
+            trajectory_error: f64::INFINITY,
+            parts: Vec::new(),
+        },
+        bounds: Vec::new(),
+        trajectories: Vec::new(),
+        left_out: skipped.into_iter().map(|(method, count)| beyond_budget(method, count, options)).collect(),
+    }
+}
+
+fn beyond_budget(method: CostMethod, count: usize, options: &CostOptions) -> String {
+    format!("{}: {count} of its settings, which the budget of {} s does not allow", method.label(), options.budget)
+}
+
+/// Runs settings by rising work as long as the budget lasts: what a method's last run took on the clock tells what its next will, and the
+/// `rate` what its first will. A run that goes beyond it nevertheless is ended. The points are in the settings' order; also how many settings
+/// of which method were skipped.
 fn run_settings(
     model: &Description,
     settings: &[Setting],
     reference: &Reference,
-    options: &CostOptions,
+    (options, rate): (&CostOptions, f64),
     begun: Instant,
 ) -> (Vec<CostPoint>, Vec<(CostMethod, usize)>) {
     let k = uncertain(model);
@@ -122,26 +183,23 @@ fn run_settings(
     let mut rates: Vec<(CostMethod, f64)> = Vec::new();
     let (mut points, mut skipped) = (vec![None; settings.len()], Vec::new());
     for place in by_work {
-        if (options.interrupted)() {
-            break;
-        }
         let setting = &settings[place];
         let work = setting.work(k);
         let progress = |fraction: f64| {
             let share = (done + fraction * work) / total;
             (options.progress)(REFERENCE_DONE + (BOUNDS_DONE - REFERENCE_DONE) * share);
         };
-        let rate = entry(&mut rates, setting.method, 0.0);
-        let late = begun.elapsed().as_secs_f64() + *rate * work > options.budget;
-        if late || setting.simulations(k) > MOST_SIMULATIONS {
-            *entry(&mut skipped, setting.method, 0) += 1;
-        } else {
+        let rate = entry(&mut rates, setting.method, rate);
+        let this = Instant::now();
+        let late = (options.interrupted)() || begun.elapsed().as_secs_f64() + *rate * work > options.budget;
+        if !late && setting.simulations(k) <= MOST_SIMULATIONS {
             let point = point(model, setting, reference, options, &progress);
-            if point.seconds.is_finite() {
-                *rate = point.seconds / work;
-            }
+            *rate = this.elapsed().as_secs_f64() / work;
             // A run that was cut short measures nothing.
             points[place] = Some(point).filter(|_| !(options.interrupted)());
+        }
+        if points[place].is_none() {
+            *entry(&mut skipped, setting.method, 0) += 1;
         }
         done += work;
     }

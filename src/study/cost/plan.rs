@@ -1,7 +1,7 @@
 //! Which reference can be had within the budget.
 
 use super::grid::{SCAN, Setting, finer, smoothest, uncertain};
-use super::timing::timed;
+use super::timing::spent;
 use super::{CostError, CostOptions};
 use crate::model::Description;
 use crate::results::CostMethod;
@@ -11,14 +11,14 @@ use crate::study::scheme;
 const ORDERS: [usize; 3] = [24, 16, 10];
 const FEW: usize = 7;
 
-/// The order is not lowered below this for the time's sake.
-const LEAST_ORDER: usize = 4;
+/// The order is not lowered below this for the time's sake, nor the steps made coarser.
+const LEAST_ORDER: usize = 2;
 
 /// Simulations of one run of the reference.
 const MOST_SIMULATIONS: f64 = 1e4;
 
 /// How much finer the reference's finest steps may be than the model's.
-const FINEST: [f64; 3] = [16.0, 8.0, 4.0];
+const FINEST: [f64; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
 
 /// Points of the dense scan, a parameter, for one, two and three: odd, so that every second of them makes a scan too.
 const DENSE: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]];
@@ -26,8 +26,11 @@ const DENSE: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]];
 /// Points of a scan that tells what many samples take.
 const SCAN_TRIAL: [usize; 3] = [64, 8, 4];
 
+/// The coarsest reference may take this share; with more, nothing would be left to compare with it.
+const MOST: f64 = 0.7;
+
 /// Shares of the budget that the reference's surrogate and its scan may take.
-const SHARE: f64 = 0.25;
+const SHARE: f64 = 0.35;
 const SCAN_SHARE: f64 = 0.25;
 
 /// What is run for the reference: with three step sizes, each twice the one before.
@@ -38,6 +41,8 @@ pub(super) struct Plan {
     pub(super) parts: f64,
     /// Points of the dense scan.
     pub(super) scan: Option<usize>,
+    /// What a run takes on the clock for each of a setting's work, s, about; 0 where it is not known.
+    pub(super) rate: f64,
 }
 
 impl Plan {
@@ -45,7 +50,7 @@ impl Plan {
     /// where none is.
     ///
     /// # Errors
-    /// Where a run fails, or there are too many parameters for any.
+    /// Where a run fails, or even the coarsest takes too long, or there are too many parameters for any.
     pub(super) fn within_budget(
         model: &Description,
         composable: bool,
@@ -55,7 +60,13 @@ impl Plan {
         let simulation = &model.simulation;
         if k == 0 {
             // One simulation, which is cheap.
-            return Ok(Self { method: CostMethod::Scheme(scheme(model)), order: 0, parts: FINEST[0], scan: None });
+            return Ok(Self {
+                method: CostMethod::Scheme(scheme(model)),
+                order: 0,
+                parts: FINEST[0],
+                scan: None,
+                rate: 0.0,
+            });
         }
         let method = smoothest(composable);
         let setting = |count, parts| Setting { method, count, stepping: finer(simulation, parts) };
@@ -67,16 +78,19 @@ impl Plan {
             return Err(CostError::TooMany { parameters: k, simulations: simulations(highest) });
         }
 
-        // Seconds are a constant, which is the composition's, and a rate times the work.
-        let trials = [setting(2, 1.0), setting(2, 4.0)];
-        let [short, long] = [measured(model, &trials[0], options)?, measured(model, &trials[1], options)?];
-        let rate = ((long - short) / (trials[1].work(k) - trials[0].work(k))).max(0.0);
-        let constant = (short - rate * trials[0].work(k)).max(0.0);
+        // Seconds on the clock are a constant, in which the model is compiled, and a rate times what is simulated: by the method, and beside
+        // it, which takes as many simulations at every order.
+        let trials = [setting(2, 0.5), setting(2, 1.0)];
+        let [coarse, fine] = [spent(model, &trials[0], options)?, spent(model, &trials[1], options)?];
+        let rate = ((fine.seconds - coarse.seconds) / (fine.work - coarse.work)).max(0.0);
+        let rate = if rate.is_finite() { rate } else { 0.0 };
+        let constant = (fine.seconds - rate * fine.work).max(0.0);
+        let of_method = (fine.work - fine.beside) / trials[1].work(k);
+        let run = |order, parts| constant + rate * (parts * fine.beside + of_method * setting(order, parts).work(k));
         let seconds = |order, parts: f64| {
-            [parts, parts / 2.0, parts / 4.0]
-                .map(|parts| constant + rate * setting(order, parts).work(k))
-                .iter()
-                .sum::<f64>()
+            let lower = if order > LEAST_ORDER { order - 2 } else { 1 };
+            [parts, parts / 2.0, parts / 4.0].map(|parts| run(order, parts)).iter().sum::<f64>()
+                + run(lower, parts / 4.0)
         };
         let least = LEAST_ORDER.min(highest);
         let orders = (least..=highest).rev().step_by(2);
@@ -84,7 +98,12 @@ impl Plan {
             .flat_map(|order| FINEST.map(|parts| (order, parts)))
             .find(|&(order, parts)| seconds(order, parts) <= SHARE * options.budget)
             .unwrap_or((least, FINEST[FINEST.len() - 1]));
-        Ok(Self { method, order, parts, scan: dense_scan(model, parts, options)? })
+        let least_seconds = seconds(order, parts);
+        if (options.interrupted)() || least_seconds > MOST * options.budget {
+            return Err(CostError::TooDear { seconds: least_seconds });
+        }
+        let rate = fine.seconds / trials[1].work(k);
+        Ok(Self { method, order, parts, scan: dense_scan(model, parts, options)?, rate })
     }
 
     /// The order that tells how far the reference's is off, where it has one.
@@ -93,18 +112,13 @@ impl Plan {
     }
 }
 
-/// What a setting takes, s.
-fn measured(model: &Description, setting: &Setting, options: &CostOptions) -> Result<f64, CostError> {
-    Ok(timed(model, setting, options, &|_| {})?.1)
-}
-
 /// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many parameters.
 fn dense_scan(model: &Description, parts: f64, options: &CostOptions) -> Result<Option<usize>, CostError> {
     let k = uncertain(model);
     let (Some(&few), Some(dense)) = (SCAN_TRIAL.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
     let scan = |count, parts| Setting { method: SCAN, count, stepping: finer(&model.simulation, parts) };
     let trial = scan(few, 1.0);
-    let rate = measured(model, &trial, options)? / trial.work(k);
+    let rate = spent(model, &trial, options)?.seconds / trial.work(k);
     let seconds = |points: usize| {
         let runs = [(points, parts), (points, parts / 2.0), (points / 2 + 1, parts), (points / 2 + 1, parts / 2.0)];
         runs.map(|(points, parts)| rate * scan(points, parts).work(k)).iter().sum::<f64>()

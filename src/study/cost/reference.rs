@@ -7,6 +7,8 @@
 //! - *Order.* How far the bounds are from those of order p − 2: rather the latter's error.
 //! - *Scan.* Its samples lie in the true range. What is left is taken to be as much as it adds to a scan of half its density.
 
+use std::cell::Cell;
+
 use super::deviation::Known;
 use super::grid::{SCAN, Setting, finer};
 use super::plan::Plan;
@@ -31,12 +33,17 @@ impl Reference {
         model: &Description,
         plan: &Plan,
         options: &CostOptions,
-        progress: &dyn Fn(f64),
+        progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Self, CostError> {
         let steppings = [1.0, 0.5, 0.25].map(|share| finer(&model.simulation, share * plan.parts));
         let [h, h2, h4] = steppings;
-        let run = |method: CostMethod, count: usize, stepping: Stepping| {
-            let (bounds, summary) = bounds(model, &Setting { method, count, stepping }, options, &|_| {})?;
+        let done = Cell::new(0.0);
+        // Each run has a part of the bar, by about what it takes.
+        let run = |method: CostMethod, count: usize, stepping: Stepping, share: f64| {
+            let setting = Setting { method, count, stepping };
+            let before = done.replace(done.get() + share);
+            progress(before);
+            let (bounds, summary) = bounds(model, &setting, options, &|fraction| progress(before + share * fraction))?;
             summary.failure.map_or(Ok(bounds), |failure| Err(CostError::Reference(failure)))
         };
         let limit = |fine: &Bounds, coarse: &Bounds| match h {
@@ -44,25 +51,23 @@ impl Reference {
             Stepping::Tolerance(_) => fine.outputs.clone(),
         };
 
-        let fine = run(plan.method, plan.order, h)?;
-        progress(0.4);
-        let (middle, coarse) = (run(plan.method, plan.order, h2)?, run(plan.method, plan.order, h4)?);
-        progress(0.7);
+        let fine = run(plan.method, plan.order, h, 0.4)?;
+        let (middle, coarse) = (run(plan.method, plan.order, h2, 0.2)?, run(plan.method, plan.order, h4, 0.1)?);
         let mut known = Known::new(limit(&fine, &middle));
         let before = limit(&middle, &coarse);
         let of_steps = known.of_bounds(&before).largest() / 3.0;
         let of_courses = known.of_courses(before.iter().map(|output| &output.nominal[..])).largest() / 3.0;
         let mut parts = Vec::new();
         if let Some(lower) = plan.lower_order() {
-            let lower_bounds = run(plan.method, lower, h4)?;
+            let lower_bounds = run(plan.method, lower, h4, 0.05)?;
             let of_order = known.with(coarse.outputs).of_bounds(&lower_bounds.outputs).largest();
             parts.extend([("steps".to_owned(), of_steps), (format!("order {} for {lower}", plan.order), of_order)]);
         }
         if let Some(points) = plan.scan {
             let scan = |points| {
-                let fine = run(SCAN, points, h)?;
+                let fine = run(SCAN, points, h, 0.08)?;
                 match h {
-                    Stepping::Fixed(_) => Ok(extrapolated(&fine, &run(SCAN, points, h2)?)),
+                    Stepping::Fixed(_) => Ok(extrapolated(&fine, &run(SCAN, points, h2, 0.04)?)),
                     Stepping::Tolerance(_) => Ok::<_, CostError>(fine.outputs),
                 }
             };

@@ -68,6 +68,27 @@ pub(super) fn timed(
     best_of(|| bounds(model, setting, options, progress), seconds)
 }
 
+/// What a run takes on the clock, s, and what for: simulations times steps of all that it simulates, of which so much beside the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spent {
+    pub(super) seconds: f64,
+    pub(super) work: f64,
+    pub(super) beside: f64,
+}
+
+/// Runs a setting once.
+///
+/// # Errors
+/// As [`bounds`].
+pub(super) fn spent(model: &Description, setting: &Setting, options: &CostOptions) -> Result<Spent, RunError> {
+    let begun = Instant::now();
+    let (_, summary) = bounds(model, setting, options, &|_| {})?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let work = |line: &MethodSummary| line.simulations as f64 * line.steps as f64;
+    let all: f64 = summary.methods.iter().map(work).sum();
+    Ok(Spent { seconds, work: all, beside: all - work(method(&summary, setting)) })
+}
+
 /// What the setting's method took; the nominal run stands before it.
 pub(super) fn method<'s>(summary: &'s Summary, setting: &Setting) -> &'s MethodSummary {
     let of = |method: Method| summary.methods.iter().find(|line| line.method == method.name());

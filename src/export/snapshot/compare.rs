@@ -1,0 +1,219 @@
+//! What is not as it was recorded.
+
+use super::read::{Curve, Kind, Output, Snapshot};
+
+/// A stated error that grew by more than this counts as moved: it would hide all else.
+const GROWN: f64 = 2.0;
+
+/// A curve that moved by more than the errors stated then and now, where it did so most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moved {
+    /// E.g. `x3.chebyshev.upper`, or an output alone.
+    pub what: String,
+    /// SI unit, empty where dimensionless.
+    pub unit: String,
+    /// When it moved most, s; empty where that is no matter of a time.
+    pub time: String,
+    /// What was recorded.
+    pub before: String,
+    /// What is so now.
+    pub after: String,
+    /// How far it may move there: the sum of both stated errors and of what rounding hides.
+    pub allowed: Option<f64>,
+    /// At how many of the times it moved, and of how many.
+    pub times: Option<(usize, usize)>,
+}
+
+impl Moved {
+    /// What is no matter of a time.
+    fn whole(what: String, unit: &str, before: &str, after: &str) -> Self {
+        let [before, after] = [before, after].map(str::to_owned);
+        Self { what, unit: unit.to_owned(), time: String::new(), before, after, allowed: None, times: None }
+    }
+}
+
+/// What is not as it was recorded, in the order of the model's outputs; last what is no more.
+///
+/// A bound may move by the sum of the errors that are stated of it, the nominal course by the smallest sum of those of a method. An
+/// error may double. What is rounded may differ in its last digit.
+pub fn moved(before: &Snapshot, after: &Snapshot) -> Vec<Moved> {
+    let mut found = Vec::new();
+    for now in &after.outputs {
+        match before.outputs.iter().find(|then| then.name == now.name) {
+            Some(then) => of_output(then, now, &mut found),
+            None => found.push(Moved::whole(now.name.clone(), &now.unit, "–", "new")),
+        }
+    }
+    for then in &before.outputs {
+        if !after.outputs.iter().any(|now| now.name == then.name) {
+            found.push(Moved::whole(then.name.clone(), &then.unit, "recorded", "gone"));
+        }
+    }
+    found
+}
+
+fn of_output(then: &Output, now: &Output, found: &mut Vec<Moved>) {
+    let name = &now.name;
+    if then.unit != now.unit {
+        found.push(Moved::whole(format!("{name} (unit)"), "", &then.unit, &now.unit));
+        return;
+    }
+    if then.times != now.times {
+        found.push(Moved::whole(format!("{name} (times)"), "s", &ends(&then.times), &ends(&now.times)));
+    }
+    let shared: Vec<(usize, usize)> = (0..then.times.len())
+        .filter_map(|row| Some((row, now.times.iter().position(|time| *time == then.times[row])?)))
+        .collect();
+    for curve in &now.curves {
+        let what = || match curve.kind {
+            Kind::Nominal => format!("{name}.nominal"),
+            kind => format!("{name}.{}.{}", curve.method, kind.name()),
+        };
+        match then.curve(&curve.method, curve.kind) {
+            Some(_) => found.extend(of_curve(then, now, curve, &shared).map(|moved| Moved { what: what(), ..moved })),
+            None => found.push(Moved::whole(what(), &now.unit, "–", "new")),
+        }
+    }
+    for curve in &then.curves {
+        if now.curve(&curve.method, curve.kind).is_none() {
+            let what = format!("{name}.{}.{}", curve.method, curve.kind.name());
+            found.push(Moved::whole(what, &now.unit, "recorded", "gone"));
+        }
+    }
+}
+
+/// The first and the last time.
+fn ends(times: &[String]) -> String {
+    match times {
+        [] => "none".to_owned(),
+        [only] => only.clone(),
+        [first, .., last] => format!("{} times, {first} to {last}", times.len()),
+    }
+}
+
+/// The time at which a curve moved most, relative to what is allowed; `None` if it did not. `what` is left empty.
+fn of_curve(then: &Output, now: &Output, curve: &Curve, shared: &[(usize, usize)]) -> Option<Moved> {
+    let earlier = then.curve(&curve.method, curve.kind)?;
+    let mut worst: Option<(f64, Moved)> = None;
+    let mut count = 0;
+    for &(row_then, row_now) in shared {
+        let (before, after) = (&earlier.cells[row_then], &curve.cells[row_now]);
+        let allowed = match curve.kind {
+            Kind::Error => GROWN * value(before) + finest(then, row_then),
+            _ => then.error(curve, row_then) + now.error(curve, row_now) + rounding(before) + rounding(after),
+        };
+        let distance = match curve.kind {
+            Kind::Error => value(after),
+            _ => (value(after) - value(before)).abs(),
+        };
+        let is_same = before == after || value(before) == value(after);
+        // An unknown number is as far from a known one as can be.
+        let excess = if distance.is_nan() || allowed.is_nan() { f64::INFINITY } else { distance / allowed };
+        if is_same || excess <= 1.0 + 1e-9 {
+            continue;
+        }
+        count += 1;
+        if worst.as_ref().is_none_or(|(other, _)| excess > *other) {
+            let moved = Moved {
+                time: now.times[row_now].clone(),
+                allowed: Some(allowed).filter(|allowed| allowed.is_finite()),
+                ..Moved::whole(String::new(), &now.unit, before, after)
+            };
+            worst = Some((excess, moved));
+        }
+    }
+    worst.map(|(_, moved)| Moved { times: Some((count, shared.len())), ..moved })
+}
+
+impl Output {
+    fn curve(&self, method: &str, kind: Kind) -> Option<&Curve> {
+        self.curves.iter().find(|curve| curve.method == method && curve.kind == kind)
+    }
+
+    /// The stated error of a bound in a row; of the nominal course, which has none, the smallest of a method. Where it is not known, 0.
+    fn error(&self, curve: &Curve, row: usize) -> f64 {
+        let errors = self.curves.iter().filter(|other| other.kind == Kind::Error);
+        let errors = errors.filter(|other| curve.kind == Kind::Nominal || other.method == curve.method);
+        // Proven bounds have no error, which is nothing that the nominal course could keep.
+        let known = errors.map(|error| value(&error.cells[row])).filter(|error| *error > 0.0 && error.is_finite());
+        known.reduce(f64::min).unwrap_or(0.0)
+    }
+}
+
+/// The last digit that is shown of an output's bounds in a row.
+fn finest(output: &Output, row: usize) -> f64 {
+    let known = output.curves.iter().filter(|curve| curve.kind != Kind::Error).map(|curve| rounding(&curve.cells[row]));
+    2.0 * known.fold(0.0, f64::max)
+}
+
+/// A number that was checked when it was read.
+fn value(cell: &str) -> f64 {
+    cell.parse().unwrap_or(f64::NAN)
+}
+
+/// Half of the last digit of a number with a decimal point, or none.
+fn rounding(cell: &str) -> f64 {
+    let decimals = cell.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    0.5 * format!("1e-{decimals}").parse::<f64>().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::snapshot_table;
+    use super::super::table::tests::bounds;
+    use super::*;
+    use crate::results::Bounds;
+
+    fn snapshot(bounds: &Bounds) -> Snapshot {
+        Snapshot::read(&snapshot_table(bounds)).unwrap()
+    }
+
+    fn names(found: &[Moved]) -> Vec<&str> {
+        found.iter().map(|moved| moved.what.as_str()).collect()
+    }
+
+    #[test]
+    fn bounds_may_move_by_both_errors() {
+        let before = snapshot(&bounds(&[1.0, 2.0, 1.5], 0.5, 1e-2));
+        let after = |shift: f64| snapshot(&bounds(&[1.0 + shift, 2.0, 1.5 + 2.0 * shift], 0.5, 1e-2));
+        assert_eq!(moved(&before, &before), []);
+        assert_eq!(moved(&before, &after(0.009)), []);
+        let found = moved(&before, &after(0.02));
+        assert_eq!(names(&found), ["x.nominal", "x.scan.lower", "x.scan.upper"]);
+        let upper = &found[2];
+        assert_eq!((upper.time.as_str(), upper.before.as_str(), upper.after.as_str()), ("0.2000", "1.7500", "1.7900"));
+        assert_eq!((upper.unit.as_str(), upper.times), ("m", Some((1, 3))));
+        assert!((upper.allowed.unwrap() - 0.0201).abs() < 1e-12, "{upper:?}");
+    }
+
+    #[test]
+    fn an_error_that_grows_hides_nothing() {
+        let [before, doubled, grown] = [1e-2, 2e-2, 3e-2].map(|error| snapshot(&bounds(&[1.0, 2.0], 0.5, error)));
+        assert_eq!(moved(&before, &doubled), []);
+        assert_eq!(names(&moved(&before, &grown)), ["x.scan.error"]);
+        let [none, rounding] = [0.0, 1e-14].map(|error| snapshot(&bounds(&[1.0, 2.0], 0.5, error)));
+        assert_eq!(moved(&none, &rounding), []);
+        assert_eq!(names(&moved(&none, &before)), ["x.scan.error"]);
+    }
+
+    #[test]
+    fn what_comes_goes_or_is_unknown_has_moved() {
+        let before = bounds(&[1.0, 2.0], 0.5, 1e-2);
+        let mut renamed = before.clone();
+        renamed.outputs[0].name = "y".into();
+        let found = moved(&snapshot(&before), &snapshot(&renamed));
+        assert_eq!(names(&found), ["y", "x"]);
+        assert_eq!((found[0].after.as_str(), found[1].after.as_str()), ("new", "gone"));
+        let mut certain = before.clone();
+        certain.outputs[0].bands.clear();
+        assert_eq!(moved(&snapshot(&before), &snapshot(&certain)).len(), 3);
+        let mut other = before.clone();
+        other.outputs[0].unit = "mm".into();
+        assert_eq!(names(&moved(&snapshot(&before), &snapshot(&other))), ["x (unit)"]);
+        let ended = bounds(&[1.0, f64::NAN], 0.5, 1e-2);
+        assert_eq!(moved(&snapshot(&before), &snapshot(&ended)).len(), 3);
+        assert_eq!(moved(&snapshot(&ended), &snapshot(&ended)), []);
+        let longer = bounds(&[1.0, 2.0, 3.0], 0.5, 1e-2);
+        assert_eq!(names(&moved(&snapshot(&before), &snapshot(&longer))), ["x (times)"]);
+    }
+}

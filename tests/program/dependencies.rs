@@ -1,0 +1,68 @@
+//! What the project depends on: licences, and no unsafe code of its own where none is needed.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The licences that `deny.toml` allows.
+fn allowed() -> BTreeSet<String> {
+    let text = fs::read_to_string(Path::new(ROOT).join("deny.toml")).unwrap();
+    let list = text.split("allow = [").nth(1).unwrap().split(']').next().unwrap();
+    list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// Whether one of the ways in which an SPDX expression can be fulfilled is allowed.
+fn is_allowed(expression: &str, allowed: &BTreeSet<String>) -> bool {
+    // `(A OR B) AND C`: no licence here has more than one level of parentheses.
+    let mut conditions = vec![String::new()];
+    let mut depth = 0;
+    let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
+    for word in spaced.split_whitespace() {
+        match word {
+            "(" => depth += 1,
+            ")" => depth -= 1,
+            "AND" if depth == 0 => conditions.push(String::new()),
+            word => conditions.last_mut().unwrap().push_str(&format!("{word} ")),
+        }
+    }
+    conditions.iter().all(|condition| condition.split(" OR ").any(|licence| allowed.contains(licence.trim())))
+}
+
+#[test]
+fn licences_of_all_dependencies_are_allowed() {
+    let allowed = allowed();
+    assert!(allowed.contains("MIT") && is_allowed("(GPL-3.0 OR MIT) AND Zlib", &allowed));
+    assert!(!is_allowed("(MIT OR Apache-2.0) AND GPL-3.0", &allowed) && !is_allowed("GPL-2.0/AGPL-3.0", &allowed));
+    let metadata = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked", "--manifest-path"])
+        .arg(Path::new(ROOT).join("Cargo.toml"))
+        .output()
+        .unwrap();
+    assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
+    let metadata: serde_json::Value = serde_json::from_slice(&metadata.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    assert!(packages.len() > 50);
+    let wrong: Vec<String> = packages
+        .iter()
+        .filter(|package| !is_allowed(package["license"].as_str().unwrap_or("none"), &allowed))
+        .map(|package| format!("{} {}: {}", package["name"], package["version"], package["license"]))
+        .collect();
+    assert!(wrong.is_empty(), "not in deny.toml: {wrong:#?}");
+}
+
+/// The evaluation of programs has two functions that the compiler makes twice; nothing else is unsafe.
+#[test]
+fn unsafe_code_is_forbidden_in_every_crate_but_one() {
+    for root in ["src/lib.rs", "src/main.rs", "crates/mbint-derive/src/lib.rs"] {
+        let text = fs::read_to_string(Path::new(ROOT).join(root)).unwrap();
+        assert!(text.lines().any(|line| line == "#![forbid(unsafe_code)]"), "{root}");
+    }
+    let crates: BTreeSet<String> = fs::read_dir(Path::new(ROOT).join("crates"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(crates.iter().collect::<Vec<_>>(), ["mbint-derive", "symdiff"], "a new crate forbids it, too");
+}
