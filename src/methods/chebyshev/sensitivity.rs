@@ -9,6 +9,9 @@ use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate
 /// the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
 const DEGREES: [usize; 3] = [24, 12, 8];
 
+/// Widths without a parameter are known to this share of the whole: nothing hangs on them but the order of the parameters.
+const RESOLVED: f64 = 1e-3;
+
 /// What is the same in all rows.
 pub(super) struct SensitivityAnalysis {
     /// ξ of the nominal parameters.
@@ -60,7 +63,8 @@ impl SensitivityAnalysis {
             let insert = |xi: &Vec<f64>| [&xi[..axis], &[self.nominal[axis]], &xi[axis..]].concat();
             let evaluate = |points: &[Vec<f64>]| row.evaluate(&points.iter().map(insert).collect::<Vec<_>>());
             let others: Vec<usize> = (0..self.nominal.len()).filter(|&other| other != axis).collect();
-            let ranges = extremes(found.len(), &intervals(row.degrees(), &others, false), evaluate);
+            let resolved: Vec<f64> = found.iter().map(|found| RESOLVED * found.range.width()).collect();
+            let ranges = extremes(&intervals(row.degrees(), &others, false), &resolved, evaluate);
             return ranges.into_iter().map(|found| found.range.width()).collect();
         }
         let replaced = |place: &Vec<f64>| {

@@ -34,6 +34,9 @@ const DISAGREES: (f64, f64) = (0.25, 1e-3);
 /// So many independent coordinates are moved one by one.
 const MOST_MOVED: usize = 4;
 
+/// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
+const FAR: f64 = 0.01;
+
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
 
@@ -214,26 +217,37 @@ impl<'r> Row<'r> {
     /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
     ///
     /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
-    /// moved together: all one way, or every other one against the rest.
+    /// moved together: all one way, or every other one against the rest. Where that moves an end by little, the extreme stays where it
+    /// is, to first order; else it is searched for again.
     fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
         let coordinates = errors.len() / 2;
         let one_by_one = coordinates <= MOST_MOVED;
         let rounds = if one_by_one { coordinates } else { 2 };
-        let mut moved = vec![0.0; found.len()];
-        for round in 0..rounds {
-            let weight = |coordinate: usize| match (one_by_one, coordinate == round) {
-                (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-                (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
-                (false, _) => 1.0,
+        let weight = |round: usize, coordinate: usize| match (one_by_one, coordinate == round) {
+            (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
+            (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
+            (false, _) => 1.0,
+        };
+        let shift = |round: usize, sign: f64| -> Vec<(usize, f64)> {
+            let of_line = |(place, &(line, error)): (usize, &(usize, f64))| match weight(round, place / 2) {
+                0.0 => None,
+                weight => Some((line, sign * weight * error)),
             };
+            errors.iter().enumerate().filter_map(of_line).collect()
+        };
+        let shifts: Vec<Vec<(usize, f64)>> =
+            (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| shift(round, sign))).collect();
+        let mut moved = vec![0.0; found.len()];
+        let at_extremes = self.moved_at_extremes(found, &shifts);
+        for (shifts, at_extremes) in shifts.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
             let mut own = vec![0.0; found.len()];
-            for sign in [1.0, -1.0] {
-                let shift = |(place, &(line, error)): (usize, &(usize, f64))| match weight(place / 2) {
-                    0.0 => None,
-                    weight => Some((line, sign * weight * error)),
-                };
-                let shift: Vec<(usize, f64)> = errors.iter().enumerate().filter_map(shift).collect();
-                let shifted = self.range_near(range_search, found, &shift);
+            for (shift, at_extremes) in shifts.iter().zip(at_extremes) {
+                own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
+                let moves_far = |(found, &moved): (&Extent, &f64)| moved > FAR * found.range.width();
+                if !found.iter().zip(at_extremes).any(moves_far) {
+                    continue;
+                }
+                let shifted = self.range_near(range_search, found, shift);
                 for ((own, found), shifted) in own.iter_mut().zip(found).zip(&shifted) {
                     let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
                     *own = largest(ends.into_iter().chain([*own]));
@@ -246,6 +260,20 @@ impl<'r> Row<'r> {
         moved
     }
 
+    /// For each shift of lines, how far it moves every output at the places of its extremes.
+    fn moved_at_extremes(&self, found: &[Extent], shifts: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
+        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
+        let all: Vec<Vec<(usize, f64)>> = [Vec::new()].into_iter().chain(shifts.iter().cloned()).collect();
+        let values = self.evaluate_shifted(&places, &all);
+        let at = |output: usize, shift: usize, end: usize| {
+            values[(output * all.len() + shift) * places.len() + 2 * output + end]
+        };
+        let of_output = |shift: usize, output: usize| {
+            largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)))
+        };
+        (1..all.len()).map(|shift| (0..found.len()).map(|output| of_output(shift, output)).collect()).collect()
+    }
+
     /// Every output's range over the box.
     pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Found {
         let outputs = self.ensemble.outputs();
@@ -255,6 +283,7 @@ impl<'r> Row<'r> {
         let all: Vec<Vec<f64>> = points.iter().cloned().chain(nodes).collect();
         let values = self.evaluate(&all);
         let every: Vec<usize> = (0..outputs).collect();
+        let rounding: Vec<f64> = every.iter().map(|&output| self.rounding(output)).collect();
         let own = self.own_polynomials(&every, points);
         let (mut polynomials, mut composed) = (Vec::new(), Vec::new());
         let (mut defects, mut expanded) = (vec![0.0; outputs], vec![false; outputs]);
@@ -265,7 +294,7 @@ impl<'r> Row<'r> {
             let defect = surrogate_error(own, here);
             if expanded[output] {
                 polynomials.push(output);
-            } else if defect <= self.rounding(output) {
+            } else if defect <= ALIKE * Range::of(self.own_samples(output)).width() + rounding[output] {
                 defects[output] = defect;
                 polynomials.push(output);
             } else {
@@ -282,7 +311,7 @@ impl<'r> Row<'r> {
             wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
         };
         let composed_values = of(&composed, &values, all.len());
-        let functions = self.functions(composed, false, &places, &by_closure);
+        let functions = self.functions(composed, false, (&rounding, &places), &by_closure);
         for (&output, extent) in
             functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
         {
@@ -295,7 +324,7 @@ impl<'r> Row<'r> {
         }
         let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
         let own_values = of(&polynomials, &own, points.len());
-        let functions = self.functions(polynomials, true, &places, &by_coefficients);
+        let functions = self.functions(polynomials, true, (&rounding, &places), &by_coefficients);
         for (&output, mut extent) in functions.outputs.iter().zip(range_search.range(&functions, &own_values, previous))
         {
             extent.gap += defects[output];
@@ -308,10 +337,10 @@ impl<'r> Row<'r> {
         &'f self,
         outputs: Vec<usize>,
         are_polynomials: bool,
-        places: &'f [Vec<f64>],
+        (rounding, places): (&'f [f64], &'f [Vec<f64>]),
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
-        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, places, evaluate }
+        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, rounding, places, evaluate }
     }
 
     /// Highest degree along each axis.
@@ -319,10 +348,11 @@ impl<'r> Row<'r> {
         self.surrogate.basis().orders()
     }
 
-    /// What is too small a difference of an output to be one.
+    /// What of an output is too small a difference to be one.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
-        ALIKE * range.width() + ROUNDING * range.lower.abs().max(range.upper.abs())
+        // Of what is not a number nothing is known.
+        ROUNDING * range.lower.abs().max(range.upper.abs()).max(0.0)
     }
 
     /// Samples at which outputs are held against the simulation, spread over all.
@@ -375,7 +405,8 @@ impl<'r> Row<'r> {
 
     /// Ranges with some lines shifted, near those that are known.
     fn range_near(&self, range_search: &RangeSearch, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
-        let evaluate = |points: &[Vec<f64>]| self.evaluate_shifted(points, shift);
+        let shifts = [shift.to_vec()];
+        let evaluate = |points: &[Vec<f64>]| self.evaluate_shifted(points, &shifts);
         let Some(search) = range_search.climbs() else { return extremes_near(near, evaluate) };
         let near: Vec<Extremes> = near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
         let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
