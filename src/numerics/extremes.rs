@@ -17,6 +17,10 @@ const SIGNS: [f64; 2] = [-1.0, 1.0];
 /// An end is found when a step changes less than this share of the range's width, or this one of what does not matter.
 const SETTLED: f64 = 1e-10;
 const SETTLED_OF_LEAST: f64 = 1.0 / 64.0;
+/// The best place is that of the peak where the quadratic's is no further from it.
+const STAYS: f64 = 1e-9;
+/// Neighbours that are nearer than this tell no peak from the best place.
+const FINEST: f64 = 1e-5;
 /// Most steps of the search for an end.
 const ROUNDS: usize = 16;
 /// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside it tell: fewer
@@ -85,7 +89,8 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
             (lattice, intervals) = (Lattice::new(&finer), finer);
             continue;
         }
-        let search = |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
+        let search =
+            |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
         let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
@@ -286,10 +291,14 @@ impl End {
         } else {
             // Nothing better around the best, or the quadratic led away from it.
             self.gap = 0.0;
-            self.found = self.is_near && self.xi == self.best_xi;
+            let vertex = self.around.vertex(&values[..values.len() - 1], self.sign);
+            let stays = vertex.iter().zip(&self.best_xi).all(|(vertex, best)| (vertex - best).abs() <= STAYS);
+            // Neighbours so near show nothing more, and those that are not numbers do not either.
+            let is_last = self.around.is_within(FINEST) || values.iter().any(|value| value.is_nan());
+            self.found = stays || (self.is_near && is_last);
             self.is_near = true;
-            self.xi.clone_from(&self.best_xi);
-            self.around = self.around.nearer(&self.xi);
+            self.xi = if is_last { self.best_xi.clone() } else { vertex };
+            self.around = self.around.nearer(&self.best_xi);
         }
     }
 }
@@ -359,6 +368,22 @@ mod tests {
         let dense = (0..=1_000_000).map(|i| f(-1.0 + 2e-3 * f64::from(i % 1001), -1.0 + 2e-3 * f64::from(i / 1001)));
         let truth = dense.fold(f64::NEG_INFINITY, f64::max);
         assert!(found.range.upper >= truth && found.range.upper < truth + 1e-4, "{found:?}, {truth}");
+    }
+
+    /// Of equal crests it does not matter which one is refined.
+    #[test]
+    fn every_crest_is_climbed_to_its_top() {
+        for shift in [0.0, 0.013, 0.1, 0.37, 0.71] {
+            let f =
+                |x: f64, y: f64| (9.0 * x + 0.3 * x * x + shift).sin() * (7.0 * y + 0.5 * x * y + 2.0 * shift).cos();
+            let (found, permuted) = (range(2, 16, |xi| f(xi[0], xi[1])), range(2, 16, |xi| f(xi[1], xi[0])));
+            for found in [found, permuted] {
+                assert!(
+                    (found.range.upper - 1.0).abs() < 1e-10 && (found.range.lower + 1.0).abs() < 1e-10,
+                    "{found:?}"
+                );
+            }
+        }
     }
 
     #[test]

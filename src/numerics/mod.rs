@@ -50,7 +50,7 @@ pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;
-pub use sparse_basis::SparseWork;
+pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::SparseGrid;
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;

@@ -172,7 +172,7 @@ impl Functions<'_> {
 }
 
 /// Intervals of the first lattice along some axes, for polynomials or what is composed of them.
-pub(super) fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
+fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
     let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
     let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };
     let along = |&axis: &usize| LEAST_INTERVALS[place].max(each * usize::from(degrees[axis])).next_multiple_of(2);

@@ -24,7 +24,7 @@ const MOST_COORDINATES: usize = 300;
 
 /// An output is the polynomial through its samples where both differ by less than this share of its range, and so many units of
 /// rounding of its values.
-const ALIKE: f64 = 1e-7;
+const ALIKE: f64 = 1e-10;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// An output does not follow from the coordinates where it differs from its simulated samples by this share of their range and this
@@ -35,7 +35,7 @@ const DISAGREES: (f64, f64) = (0.25, 1e-3);
 const MOST_MOVED: usize = 4;
 
 /// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
-const FAR: f64 = 0.01;
+const FAR: f64 = 0.1;
 
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
@@ -243,14 +243,11 @@ impl<'r> Row<'r> {
             let mut own = vec![0.0; found.len()];
             for (shift, at_extremes) in shifts.iter().zip(at_extremes) {
                 own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
-                let moves_far = |(found, &moved): (&Extent, &f64)| moved > FAR * found.range.width();
-                if !found.iter().zip(at_extremes).any(moves_far) {
-                    continue;
-                }
-                let shifted = self.range_near(range_search, found, shift);
-                for ((own, found), shifted) in own.iter_mut().zip(found).zip(&shifted) {
-                    let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
-                    *own = largest(ends.into_iter().chain([*own]));
+                let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
+                let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
+                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), shift)) {
+                    let (from, to) = (found[output].range, shifted.range);
+                    own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
                 }
             }
             for (moved, own) in moved.iter_mut().zip(own) {
@@ -268,9 +265,8 @@ impl<'r> Row<'r> {
         let at = |output: usize, shift: usize, end: usize| {
             values[(output * all.len() + shift) * places.len() + 2 * output + end]
         };
-        let of_output = |shift: usize, output: usize| {
-            largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)))
-        };
+        let of_output =
+            |shift: usize, output: usize| largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)));
         (1..all.len()).map(|shift| (0..found.len()).map(|output| of_output(shift, output)).collect()).collect()
     }
 
@@ -343,11 +339,6 @@ impl<'r> Row<'r> {
         Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, rounding, places, evaluate }
     }
 
-    /// Highest degree along each axis.
-    pub fn degrees(&self) -> &[u8] {
-        self.surrogate.basis().orders()
-    }
-
     /// What of an output is too small a difference to be one.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
@@ -403,17 +394,31 @@ impl<'r> Row<'r> {
         seeds
     }
 
-    /// Ranges with some lines shifted, near those that are known.
-    fn range_near(&self, range_search: &RangeSearch, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
+    /// Ranges of some outputs with some lines shifted, near those that are known of all.
+    fn range_near(
+        &self,
+        range_search: &RangeSearch,
+        (outputs, known): (&[usize], &[Extent]),
+        shift: &[(usize, f64)],
+    ) -> Vec<Extent> {
+        if outputs.is_empty() {
+            return Vec::new();
+        }
         let shifts = [shift.to_vec()];
-        let evaluate = |points: &[Vec<f64>]| self.evaluate_shifted(points, &shifts);
-        let Some(search) = range_search.climbs() else { return extremes_near(near, evaluate) };
-        let near: Vec<Extremes> = near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
+        let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
+            let values = self.evaluate_shifted(points, &shifts);
+            outputs.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
+        };
+        let near = outputs.iter().map(|&output| &known[output]);
+        let Some(search) = range_search.climbs() else {
+            return extremes_near(&near.cloned().collect::<Vec<_>>(), evaluate);
+        };
+        let near: Vec<Extremes> = near.map(|near| Extremes::at(near.range, near.places.clone())).collect();
         let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
             values.copy_from_slice(&evaluate(points));
             Ok::<(), Infallible>(())
         };
-        let Ok(found) = search.extremes(self.ensemble.outputs(), &near, &[], evaluate);
+        let Ok(found) = search.extremes(outputs.len(), &near, &[], evaluate);
         found.into_iter().map(extent).collect()
     }
 
