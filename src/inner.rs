@@ -32,7 +32,7 @@ pub mod model {
 }
 
 pub mod numerics {
-    pub use crate::numerics::RangeKind;
+    pub use crate::numerics::{RangeKind, Sample};
 }
 
 pub mod results {

@@ -9,6 +9,7 @@ mod scalar;
 
 use std::time::Instant;
 
+use mbint::inner::numerics::Sample;
 use mbint::inner::results::Method;
 use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator};
 use mbint::inner::study;
@@ -55,7 +56,7 @@ fn best<T>(repetitions: usize, mut run: impl FnMut() -> T) -> (f64, T) {
 }
 
 /// Samples over the parameters' intervals; the nominal one where it is one.
-fn samples(simulator: &Simulator, count: usize) -> Vec<Vec<f64>> {
+fn samples(simulator: &Simulator, count: usize) -> Vec<Sample> {
     let parameters = &simulator.system.parameters;
     if count == 1 {
         return vec![parameters.iter().map(|parameter| parameter.nominal).collect()];
@@ -68,10 +69,10 @@ fn samples(simulator: &Simulator, count: usize) -> Vec<Vec<f64>> {
 
 /// A whole run, assembly included: the outputs of all rows.
 fn run(simulator: &Simulator, count: usize, schedule: &Schedule) -> Vec<f64> {
-    let mut fleet =
+    let mut ensemble =
         EnsembleRun::start(simulator, &samples(simulator, count), STEP).expect("all samples can be assembled");
     let mut values = Vec::new();
-    let stops = fleet.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
+    let stops = ensemble.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
     assert!(stops.is_empty(), "all samples reach the end");
     values
 }

@@ -5,7 +5,7 @@ use symdiff::{Formula, Scalar};
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
 use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, ReactionComponent, Sensor, Symbol, TimeOrder};
-use crate::model::{Description, Rotation};
+use crate::model::{Description, Output, Rotation};
 use crate::multibody::{BuildError, Context, Quaternion, Vector, rotation};
 
 impl<'g> Mechanism<'g, '_> {
@@ -132,7 +132,8 @@ impl<'g> Mechanism<'g, '_> {
         outputs
             .map(|output| {
                 let expr = self.formula(&output.formula, Context::Everything)?.expr();
-                Ok(OutputInfo { name: output.name.clone(), unit: output.unit.clone(), expr })
+                let Output { name, unit, dimension, .. } = output.clone();
+                Ok(OutputInfo { name, unit, dimension, expr })
             })
             .collect()
     }

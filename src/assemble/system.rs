@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use symdiff::{Expr, Graph};
 
+use crate::grammar::quantity::Dimension;
 use crate::model::Space;
 
 /// A mechanism's equations of motion over the symbols of `graph`.
@@ -147,6 +148,8 @@ pub struct OutputInfo {
     pub name: String,
     /// Its SI unit; empty where none is known.
     pub unit: String,
+    /// What kind of quantity it is; `None` where unknown.
+    pub dimension: Option<Dimension>,
     /// Its value.
     pub expr: Expr,
 }

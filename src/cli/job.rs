@@ -107,12 +107,12 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         threads: request.threads,
         certify_time: request.certify_time,
         skip_infeasible: request.skip_infeasible,
-        dear: request.yes,
+        costly: request.yes,
         progress: &set_progress,
         interrupted: &interrupt::asked,
     };
     let (bounds, summary) = study::run(&job.model, options).map_err(|error| match error {
-        study::RunError::Dear(_) => Failure::Wrong(format!("{name}: {error}")),
+        study::RunError::Costly(_) => Failure::Wrong(format!("{name}: {error}")),
         error => failed(&error),
     })?;
     drop(progress);

@@ -8,7 +8,7 @@ use std::ops::Range as Rows;
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::numerics::ParameterBox;
+use crate::numerics::{ParameterBox, Sample};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -106,11 +106,11 @@ pub struct Simulated {
     /// What they took.
     pub effort: Effort,
     /// The sample with the largest error ratio (sum of its local errors over the tolerance), and that ratio.
-    pub worst_ratio: Option<(Vec<f64>, f64)>,
+    pub worst_ratio: Option<(Sample, f64)>,
     /// The first row before which such a sum is more than 1.
     pub beyond_tolerance_from: Option<usize>,
     /// The first sample that stopped, with its parameters.
-    pub stop: Option<(Stop, Vec<f64>)>,
+    pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
     pub stopped: Vec<usize>,
     /// Rows at the end that are not known.
@@ -170,7 +170,7 @@ pub trait Ensemble: Sync {
     /// Where a sample cannot be assembled.
     fn simulate(
         &self,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;

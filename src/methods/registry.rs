@@ -131,7 +131,7 @@ pub trait BoundingMethod: Debug {
 
     /// Simulations that it counts as in progress reports.
     fn work(&self, budget: &Budget) -> usize {
-        self.samples().map_or(budget.solves, |samples| samples as usize)
+        self.samples().map_or(budget.simulations, |samples| samples as usize)
     }
 
     /// Highest degree in a parameter of its surrogate; 0 where it has none, or where the degree follows from the response.

@@ -22,14 +22,14 @@ pub const MOST_SIMULATIONS: f64 = 1e7;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Simulations.
-    pub solves: usize,
+    pub simulations: usize,
     /// s
     pub seconds: Option<f64>,
 }
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { solves: 3000, seconds: None }
+        Self { simulations: 3000, seconds: None }
     }
 }
 
@@ -106,8 +106,8 @@ fn tolerance<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Opt
 
 fn budget<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields) -> Budget {
     let mut budget = Budget::default();
-    if let Some(solves) = fields.get("solves").and_then(|node| reader.count(node, 1, MOST_SIMULATIONS as usize)) {
-        budget.solves = solves;
+    if let Some(simulations) = fields.get("solves").and_then(|node| reader.count(node, 1, MOST_SIMULATIONS as usize)) {
+        budget.simulations = simulations;
     }
     if let Some(node) = fields.get("seconds")
         && let Some(seconds) = reader.number(node, Dimension::TIME)

@@ -8,7 +8,7 @@ use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, ScanBounds, TensorGrid, largest};
+use crate::numerics::{ParameterBox, Sample, ScanBounds, TensorGrid, largest};
 
 /// Fewest and most samples that are simulated at once.
 const SHARD: usize = 2048;
@@ -132,8 +132,8 @@ impl BoundingMethod for Scan {
                 total.missing = rows;
                 break;
             }
-            let sample = |index| ensemble.domain().point(&grid.sample(index));
-            let shard: Vec<Vec<f64>> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
+            let sample = |index| ensemble.domain().sample(&grid.sample(index));
+            let shard: Vec<Sample> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
             let simulated = ensemble.simulate(&shard, sampling, &mut |rows, values| {
                 for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
                     for (output, values) in values.chunks_exact(shard.len()).enumerate() {

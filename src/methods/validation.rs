@@ -2,7 +2,7 @@
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
-    BandError, Correction, Differences, Range, corrections, largest, probes, time_error, validation,
+    BandError, Correction, Differences, Range, Sample, corrections, largest, step_validation, time_error, validation,
 };
 
 /// Width of an output's range, relative to its values, that is rounding.
@@ -26,7 +26,7 @@ impl ValidationTable {
     /// Where one cannot be assembled.
     pub fn of(
         ensemble: &dyn Ensemble,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
         observed: Observed,
         finish: bool,
     ) -> Result<(Self, Simulated), EnsembleError> {
@@ -135,7 +135,7 @@ impl OddSteps {
         places.sort_unstable();
         places.dedup();
         let chosen: Vec<Vec<f64>> = places.iter().map(|&place| points[place].clone()).collect();
-        let samples = ensembles.direct.domain().points(&chosen);
+        let samples = ensembles.direct.domain().samples(&chosen);
         let (table, simulated) = ValidationTable::of(ensembles.odd, &samples, Observed::Outputs, finish)?;
         Ok((Self { places, table, ratio: ensembles.ratio }, simulated.effort))
     }
@@ -150,8 +150,8 @@ impl Validation {
         let Ensembles { direct: ensemble, halved, .. } = ensembles;
         let domain = ensemble.domain();
         let points = validation(domain.dimension(), degree);
-        let first = probes(domain.dimension()).len();
-        let samples = domain.points(&points);
+        let first = step_validation(domain.dimension()).len();
+        let samples = domain.samples(&points);
         let (direct, simulated) = ValidationTable::of(ensemble, &samples, observed, false)?;
         let (halved, with_halved_steps) = ValidationTable::of(halved, &samples[..first], observed, false)?;
         let (odd, with_odd_steps) = OddSteps::run(ensembles, &points[..first], false)?;
@@ -174,7 +174,7 @@ impl Validation {
         let at = |row: usize| nominal.iter().map(move |ranges| ranges[row].lower);
         let values = (0..reached).flat_map(at).collect();
         let direct = ValidationTable { motions: 0, outputs: ensemble.outputs(), samples: points.len(), values };
-        let samples = ensemble.domain().points(&points);
+        let samples = ensemble.domain().samples(&points);
         let (halved, simulated) = ValidationTable::of(halved, &samples, Observed::Outputs, true)?;
         let (odd, with_odd_steps) = OddSteps::run(ensembles, &points, true)?;
         let simulations = points.len() + odd.places.len();

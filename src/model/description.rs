@@ -10,6 +10,7 @@ use symdiff::Formula;
 
 use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
+use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
@@ -136,6 +137,8 @@ pub struct Output {
     pub formula: Formula,
     /// SI unit derived from the formula, for axes; empty where dimensionless or unknown.
     pub unit: String,
+    /// What kind of quantity it is; `None` where unknown.
+    pub dimension: Option<Dimension>,
 }
 
 impl Description {

@@ -129,22 +129,25 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
 
 fn output(reader: &mut Reader, entry: &Entry) -> Option<Output> {
     let node = &entry.value;
-    let (formula, unit) = match reader.written(node)? {
-        Written::Quantity { value, unit } => (symdiff::Formula::number(unit.to_si(value)), unit.dimension.unit()),
+    let (formula, unit, dimension) = match reader.written(node)? {
+        Written::Quantity { value, unit } => {
+            (symdiff::Formula::number(unit.to_si(value)), unit.dimension.unit(), Some(unit.dimension))
+        }
         Written::Formula(formula) => {
             reader.check_names(node, &formula, 0, Context::Output).then_some(())?;
-            let unit = match (reader.kind(node, &formula, 0), natural_unit(reader, &formula)) {
-                (_, Some(unit)) => unit,
-                (Kind::Known { dimension, .. }, None) => dimension.unit(),
-                _ => String::new(),
+            let dimension = match reader.kind(node, &formula, 0) {
+                Kind::Known { dimension, .. } => Some(dimension),
+                Kind::Number(_) | Kind::Any => None,
             };
-            (formula, unit)
+            let natural = natural_unit(reader, &formula);
+            let unit = natural.unwrap_or_else(|| dimension.map_or_else(String::new, Dimension::unit));
+            (formula, unit, dimension)
         }
     };
     if formula.names().next().is_none() {
         reader.error(node.span.clone(), "constant output: it refers to no variable", None);
     }
-    Some(Output { name: entry.key.clone(), formula, unit })
+    Some(Output { name: entry.key.clone(), formula, unit, dimension })
 }
 
 /// The unit of a formula that is just a name, where its dimension alone does not say it.

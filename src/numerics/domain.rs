@@ -1,10 +1,38 @@
 //! The box of uncertain parameters and its unit coordinates.
+//!
+//! Searches, grids and surrogates know points of [−1, 1]^k only, as slices of numbers; a simulation takes a [`Sample`].
+
+use std::ops::Deref;
+
+/// Values of the k parameters in their units: what one simulation runs with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample(Vec<f64>);
+
+impl From<Vec<f64>> for Sample {
+    fn from(values: Vec<f64>) -> Self {
+        Self(values)
+    }
+}
+
+impl FromIterator<f64> for Sample {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        Self(values.into_iter().collect())
+    }
+}
+
+impl Deref for Sample {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.0
+    }
+}
 
 /// k parameters, each known to lie in an interval.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterBox {
     /// What the parameters are meant to be; anywhere in the box.
-    pub nominal: Vec<f64>,
+    pub nominal: Sample,
     /// Smallest values.
     pub lower: Vec<f64>,
     /// Largest values; none below its `lower`.
@@ -45,38 +73,29 @@ impl ParameterBox {
         }
     }
 
-    /// The point at ξ ∈ [−1, 1]^k; `xi` and `out` have k entries.
-    pub fn map(&self, xi: &[f64], out: &mut [f64]) {
-        for (parameter, (value, &xi)) in out.iter_mut().zip(xi).enumerate() {
-            *value = self.value(parameter, xi);
-        }
+    /// The sample at ξ ∈ [−1, 1]^k.
+    pub fn sample(&self, xi: &[f64]) -> Sample {
+        xi.iter().enumerate().map(|(parameter, &xi)| self.value(parameter, xi)).collect()
     }
 
-    /// The same, as a point of its own.
-    pub fn point(&self, xi: &[f64]) -> Vec<f64> {
-        let mut point = vec![0.0; xi.len()];
-        self.map(xi, &mut point);
-        point
-    }
-
-    /// ξ of a point; 0 along what has no width.
-    pub fn xi(&self, point: &[f64]) -> Vec<f64> {
+    /// ξ of a sample; 0 along what has no width.
+    pub fn xi(&self, sample: &Sample) -> Vec<f64> {
         let along = |axis: usize| match self.half_width(axis) {
-            half if half > 0.0 => (point[axis] - self.midpoint(axis)) / half,
+            half if half > 0.0 => (sample[axis] - self.midpoint(axis)) / half,
             _ => 0.0,
         };
-        (0..point.len()).map(along).collect()
+        (0..sample.len()).map(along).collect()
     }
 
-    /// Whether a point lies in the box.
-    pub fn contains(&self, point: &[f64]) -> bool {
+    /// Whether a sample lies in the box.
+    pub fn contains(&self, sample: &Sample) -> bool {
         let ends = self.lower.iter().zip(&self.upper);
-        point.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
+        sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
     }
 
-    /// The points at many ξ.
-    pub fn points(&self, xi: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        xi.iter().map(|xi| self.point(xi)).collect()
+    /// The samples at many ξ.
+    pub fn samples(&self, xi: &[Vec<f64>]) -> Vec<Sample> {
+        xi.iter().map(|xi| self.sample(xi)).collect()
     }
 
     /// Both halves, cut across an axis in its middle.
@@ -96,26 +115,25 @@ mod tests {
 
     #[test]
     fn the_papers_crank_length() {
-        let domain = ParameterBox { nominal: vec![0.15], lower: vec![0.1485], upper: vec![0.1515] };
+        let domain = ParameterBox { nominal: vec![0.15].into(), lower: vec![0.1485], upper: vec![0.1515] };
         assert!((domain.midpoint(0) - 0.15).abs() < 1e-16);
         assert!((domain.half_width(0) - 0.0015).abs() < 1e-16);
-        let mut point = [0.0];
-        domain.map(&[0.5], &mut point);
-        assert!((point[0] - 0.15 * (1.0 + 0.01 * 0.5)).abs() < 1e-16);
+        let sample = domain.sample(&[0.5]);
+        assert!((sample[0] - 0.15 * (1.0 + 0.01 * 0.5)).abs() < 1e-16);
     }
 
     proptest! {
         #[test]
         fn ends_are_exact_and_nothing_lies_outside(a in -1e3..1e3_f64, b in -1e3..1e3_f64, xi in -1.0..=1.0_f64) {
             let (lower, upper) = (a.min(b), a.max(b));
-            let domain = ParameterBox { nominal: vec![a], lower: vec![lower], upper: vec![upper] };
+            let domain = ParameterBox { nominal: vec![a].into(), lower: vec![lower], upper: vec![upper] };
             prop_assert_eq!(domain.value(0, -1.0), lower);
             prop_assert_eq!(domain.value(0, 1.0), upper);
             prop_assert!((lower..=upper).contains(&domain.value(0, xi)));
-            prop_assert!(domain.contains(&domain.point(&[xi])) && !domain.contains(&[upper.next_up()]));
-            let back = domain.xi(&domain.point(&[xi]))[0];
+            prop_assert!(domain.contains(&domain.sample(&[xi])) && !domain.contains(&vec![upper.next_up()].into()));
+            let back = domain.xi(&domain.sample(&[xi]))[0];
             prop_assert!((back - xi).abs() * domain.half_width(0) <= 1e-12 * (1.0 + a.abs().max(b.abs())));
-            let certain = ParameterBox { nominal: vec![a], lower: vec![a], upper: vec![a] };
+            let certain = ParameterBox { nominal: vec![a].into(), lower: vec![a], upper: vec![a] };
             prop_assert_eq!(certain.value(0, xi), a);
             prop_assert_eq!(certain.half_width(0), 0.0);
         }

@@ -1,10 +1,10 @@
 //! How far a bound may be from the truth: the surrogate's error, and the time steps'.
 //!
-//! *Surrogate.* At held-out samples (`probes`) the surrogate is compared with the simulation itself; its error is the largest
+//! *Surrogate.* At validation samples the surrogate is compared with the simulation itself; its error is the largest
 //! difference. A scan's is what its own points say of the space between them.
 //!
-//! *Time.* The probes are simulated with halved steps too. The scheme is of second order, so that a value at step h is off by
-//! 4/3 of what halving changes (Richardson). What counts for an end of a band are the probes that carry it: those whose
+//! *Time.* Some of them are simulated with halved steps too. The scheme is of second order, so that a value at step h is off by
+//! 4/3 of what halving changes (Richardson). What counts for an end of a band are the validation samples that carry it: those whose
 //! values lie near it.
 //!
 //! Both differences change sign now and then, where they say nothing of the error beside; each error is therefore held up by
@@ -13,7 +13,7 @@
 use super::envelope::envelope;
 use super::range::Range;
 
-/// A probe whose value lies within this share of the band's width from its end carries that end.
+/// A validation sample whose value lies within this share of the band's width from its end carries that end.
 const CARRIES: f64 = 0.25;
 
 /// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
@@ -53,7 +53,7 @@ pub struct BandError {
     pub unresolved: Vec<bool>,
 }
 
-/// Largest difference between what a surrogate says of the probes and what they do; unknown where either is.
+/// Largest difference between what a surrogate says of the validation samples and what they do; unknown where either is.
 pub fn surrogate_error(surrogate: &[f64], direct: &[f64]) -> f64 {
     largest(surrogate.iter().zip(direct).map(|(surrogate, direct)| surrogate - direct))
 }
@@ -63,7 +63,7 @@ pub fn step_error(direct: &[f64], halved: &[f64]) -> f64 {
     largest(direct.iter().zip(halved).map(|(direct, halved)| RICHARDSON * (halved - direct)))
 }
 
-/// Error of a band's ends from its probes' values, with the steps as they are and halved: the worse end's. Probes without
+/// Error of a band's ends from its validation samples' values, with the steps as they are and halved: the worse end's. Samples without
 /// halved steps, after the others, do not count.
 pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     let direct = &direct[..halved.len()];

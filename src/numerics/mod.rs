@@ -37,7 +37,7 @@ mod taylor;
 mod tensor;
 
 pub use decay::truncation;
-pub use domain::ParameterBox;
+pub use domain::{ParameterBox, Sample};
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
@@ -45,7 +45,7 @@ pub use extremes::{Extent, extremes, extremes_near};
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};
-pub use samples::{TensorGrid, corners, probes, spread, validation};
+pub use samples::{TensorGrid, corners, spread, step_validation, validation};
 pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
 pub use separation::Separation;

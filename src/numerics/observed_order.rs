@@ -105,8 +105,8 @@ mod tests {
         // The error is 1, halving changes 0.5, and 4/3 of that is 2/3.
         assert!((first.of(2.0 / 3.0) - 1.0).abs() < 1e-6, "{first:?}");
         // No convergence at all.
-        let stuck = Differences { halved: 1e-6, finer: 0.3, all: 0.3 };
-        assert_eq!(corrections(&[stuck; 2], 0.37)[0].of(1e-6), OF_DIFFERENCES * 0.3);
+        let wrong_alike = Differences { halved: 1e-6, finer: 0.3, all: 0.3 };
+        assert_eq!(corrections(&[wrong_alike; 2], 0.37)[0].of(1e-6), OF_DIFFERENCES * 0.3);
     }
 
     #[test]

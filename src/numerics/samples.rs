@@ -88,17 +88,17 @@ pub fn spread(k: usize, count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|index| (0..k).map(|axis| 2.0 * at(index, axis) - 1.0).collect()).collect()
 }
 
-/// All points at which a surrogate of so high a degree is held against the simulation: [`probes`], then those held out, which are two
+/// All points at which a surrogate of so high a degree is held against the simulation: [`step_validation`], then those held out, which are two
 /// more than the degree: a polynomial that wiggles as often as it can shows at one of them.
 pub fn validation(k: usize, degree: usize) -> Vec<Vec<f64>> {
-    let mut points = probes(k);
+    let mut points = step_validation(k);
     points.extend(spread(k, if k == 0 { 0 } else { HELD_OUT.max(k).max(degree + 2) }));
     points
 }
 
 /// Points at which steps are halved, and a surrogate is held against the simulation too: centre, faces and corners, all 3^k
 /// of them for up to three axes, else the centre, both ends of every axis and 16 corners.
-pub fn probes(k: usize) -> Vec<Vec<f64>> {
+pub fn step_validation(k: usize) -> Vec<Vec<f64>> {
     if k <= 3 {
         let lattice = TensorGrid::full_factorial(&vec![3; k]);
         return (0..lattice.len()).map(|index| lattice.sample(index)).collect();

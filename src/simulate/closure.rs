@@ -25,8 +25,10 @@ pub struct Closure<'s> {
     simulator: &'s Simulator,
     independent: Vec<usize>,
     program: StartProgram,
-    /// Whether outputs depend on velocities; on accelerations or reactions.
-    needs: (bool, bool),
+    /// Whether outputs depend on velocities.
+    needs_velocities: bool,
+    /// Whether outputs depend on accelerations or reactions.
+    needs_accelerations: bool,
 }
 
 /// Points at which the closure is evaluated: values by point within each row.
@@ -80,8 +82,8 @@ impl<'s> Closure<'s> {
         let program = compile_start(&system, &simulator.mobility.redundant, &simulator.nominal)
             .map_err(|none| no_factors(&simulator.system, &none))?;
         let accelerations = system.observes_accelerations();
-        let needs = (accelerations || system.observes_velocities(), accelerations);
-        Ok(Self { simulator, independent, program, needs })
+        let needs_velocities = accelerations || system.observes_velocities();
+        Ok(Self { simulator, independent, program, needs_velocities, needs_accelerations: accelerations })
     }
 
     /// The independent coordinates.
@@ -91,7 +93,7 @@ impl<'s> Closure<'s> {
 
     /// Whether outputs depend on velocities; if not, those of [`Points`] are ignored.
     pub fn needs_velocities(&self) -> bool {
-        self.needs.0
+        self.needs_velocities
     }
 
     /// Outputs at all points: output by output, point by point; NaN where the closure has no solution near the point's
@@ -130,12 +132,11 @@ impl<'s> Closure<'s> {
 
     fn close(&self, assembly: &mut Assembly) {
         let layout = &self.program.layout;
-        let (velocities, accelerations) = self.needs;
         assembly.correct_until_settled(self.program.position(), layout.q.start);
-        if velocities {
+        if self.needs_velocities {
             assembly.correct_until_settled(self.program.velocity(), layout.v.start);
         }
-        if accelerations {
+        if self.needs_accelerations {
             assembly.correct_until_settled(self.program.acceleration(), layout.w.start);
         }
         assembly.tile_mut().run(self.program.position());

@@ -14,6 +14,7 @@ use crate::compile::{
     Equation, Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
     compile_start, compile_switches,
 };
+use crate::numerics::Sample;
 
 /// Samples that are assembled together where nothing else is asked.
 const ASSEMBLED_AT_ONCE: usize = 8;
@@ -140,8 +141,8 @@ impl Simulator {
     ///
     /// # Errors
     /// The first sample that cannot be assembled, with its parameters.
-    pub fn assemble(&self, width: usize, h: f64, sample: impl Fn(usize) -> Vec<f64>) -> Result<Tile, SimulationError> {
-        let samples: Vec<Vec<f64>> = (0..width).map(sample).collect();
+    pub fn assemble(&self, width: usize, h: f64, sample: impl Fn(usize) -> Sample) -> Result<Tile, SimulationError> {
+        let samples: Vec<Sample> = (0..width).map(sample).collect();
         let (mut assembly, open) = self.assembly(&samples);
         if let Some(worst) = open.first() {
             return Err(assembly_error(&self.system, worst, &samples[worst.lane]));
@@ -157,12 +158,12 @@ impl Simulator {
     }
 
     /// Whether each of some samples can be assembled.
-    pub fn can_assemble(&self, samples: &[Vec<f64>]) -> Vec<bool> {
-        let of_tile = |samples: &[Vec<f64>]| {
+    pub fn can_assemble(&self, samples: &[Sample]) -> Vec<bool> {
+        let of_tile = |samples: &[Sample]| {
             let mut can = vec![true; samples.len()];
             // Lanes beyond the samples repeat the last one.
             let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
-            let lanes: Vec<Vec<f64>> = (0..width).map(|lane| samples[lane.min(samples.len() - 1)].clone()).collect();
+            let lanes: Vec<Sample> = (0..width).map(|lane| samples[lane.min(samples.len() - 1)].clone()).collect();
             for open in self.assembly(&lanes).1 {
                 can.get_mut(open.lane).into_iter().for_each(|can| *can = false);
             }
@@ -174,7 +175,7 @@ impl Simulator {
     /// A tile of samples assembled from the nominal one, and the residuals of those that cannot be assembled. A sample far
     /// from the nominal one is reached by small changes of the parameters (continuation), which keeps it on the same branch
     /// of the linkage.
-    fn assembly(&self, samples: &[Vec<f64>]) -> (Assembly<'_>, Vec<ConstraintResidual>) {
+    fn assembly(&self, samples: &[Sample]) -> (Assembly<'_>, Vec<ConstraintResidual>) {
         let at = |share: f64| {
             move |parameter: usize, lane: usize| {
                 let (nominal, value) = (self.system.parameters[parameter].nominal, samples[lane][parameter]);

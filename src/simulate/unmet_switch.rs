@@ -150,7 +150,7 @@ impl Observing<'_> {
         split: usize,
         mut look: impl FnMut(usize, &[f64], &[Signs]),
     ) -> Result<Vec<[Vec<Signs>; 2]>, SimulationError> {
-        let samples = self.domain.points(xi);
+        let samples = self.domain.samples(xi);
         let mut run = EnsembleRun::start(self.simulator, &samples, self.schedule.first_step())?;
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();

@@ -6,7 +6,7 @@ use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
-use crate::numerics::{BandError, time_error, time_error_certified};
+use crate::numerics::{BandError, Sample, time_error, time_error_certified};
 use crate::results::{
     Band, Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds,
     ParameterSummary, SingularSummary, Summary,
@@ -120,9 +120,9 @@ fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Ba
 }
 
 /// What happened where a sample stopped, for people.
-fn failure(study: &Study, schedule: &Schedule, stop: &Stop, values: &[f64]) -> String {
-    let parameters = study.simulator.with_names(values);
-    let Stop { sample, time, cause, .. } = *stop;
+fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> String {
+    let parameters = study.simulator.with_names(sample);
+    let Stop { sample: index, time, cause, .. } = *stop;
     match cause {
         StopCause::SingularJet => {
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
@@ -132,12 +132,12 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, values: &[f64]) -> S
             format!("{locked}; results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {
-            if let Some(term) = no_number(study, schedule, stop.row, values) {
+            if let Some(term) = no_number(study, schedule, stop.row, sample) {
                 let failed = SimulationError::NotFinite { term, time, parameters };
                 return format!("{failed}; results up to that time are kept");
             }
             let equation = study.simulator.equation_name(equation);
-            let failed = SimulationError::NotConverged { sample, time, equation, parameters };
+            let failed = SimulationError::NotConverged { sample: index, time, equation, parameters };
             format!(
                 "{failed}; bounds that need it are kept up to that time, a scan is of those that went on. Try a smaller step"
             )
@@ -146,8 +146,8 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, values: &[f64]) -> S
 }
 
 /// The term that is no finite number where a sample stops, if there is one: the sample runs once more, alone.
-fn no_number(study: &Study, schedule: &Schedule, row: usize, sample: &[f64]) -> Option<String> {
-    let mut run = EnsembleRun::start(&study.simulator, &[sample.to_vec()], schedule.first_step()).ok()?;
+fn no_number(study: &Study, schedule: &Schedule, row: usize, sample: &Sample) -> Option<String> {
+    let mut run = EnsembleRun::start(&study.simulator, std::slice::from_ref(sample), schedule.first_step()).ok()?;
     let stops = run.advance(schedule, 0..row + 1, None, Observed::Outputs, &mut Vec::new());
     run.not_finite(stops.first()?)
 }

@@ -4,7 +4,7 @@ use super::ensemble::Progress;
 use super::outcome::Ran;
 use super::single::{Study, simulation_error};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
-use crate::numerics::corners;
+use crate::numerics::{Sample, corners};
 use crate::simulate::{Controller, SimulationError, ToleranceSchedule, schedule_for_tolerance};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
@@ -23,7 +23,7 @@ const ROUNDS: usize = 4;
 const MOST_GROWTH: f64 = 6.0;
 const FEW_STEPS: f64 = 400_000.0;
 
-/// An output that moves less than this, relative to the largest value of its unit, is constant.
+/// An output that moves less than this, relative to the largest value of its dimension, is constant.
 const CONSTANT: f64 = 1e-9;
 
 /// So is one that moves less than this, relative to the largest value of all: rounding.
@@ -50,7 +50,7 @@ impl Study<'_> {
     fn schedule_within(
         &self,
         tolerance: f64,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
     ) -> Result<(ToleranceSchedule, Controller), SimulationError> {
         let (duration, output_step) = (self.description.simulation.duration, self.description.simulation.output_step);
         let mut controller = Controller { tolerance, duration };
@@ -87,7 +87,7 @@ impl Study<'_> {
         &self,
         controlled: &ToleranceSchedule,
         controller: Controller,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
     ) -> Result<f64, SimulationError> {
         let progress = Progress::new(usize::MAX, self.progress);
         let schedule = &controlled.schedule;
@@ -102,16 +102,16 @@ impl Study<'_> {
             Ok(values)
         };
         let (direct, halved) = (values(schedule, controller)?, values(&halved, controller.for_parts(2))?);
-        let units: Vec<&str> = self.simulator.system.outputs.iter().map(|output| output.unit.as_str()).collect();
+        let outputs = &self.simulator.system.outputs;
         let lines = |values: &[f64]| -> Vec<Vec<f64>> {
-            let line = |output: usize| values.chunks_exact(samples.len()).skip(output).step_by(units.len()).flatten();
-            (0..units.len()).map(|output| line(output).copied().collect()).collect()
+            let line = |output: usize| values.chunks_exact(samples.len()).skip(output).step_by(outputs.len()).flatten();
+            (0..outputs.len()).map(|output| line(output).copied().collect()).collect()
         };
         let (direct, halved) = (lines(&direct), lines(&halved));
         let sizes: Vec<f64> = direct.iter().map(|values| largest(values.iter().copied())).collect();
         let most = sizes.iter().copied().fold(0.0, f64::max);
         let share = |output: usize| {
-            let same = sizes.iter().zip(&units).filter(|(_, unit)| **unit == units[output]);
+            let same = sizes.iter().zip(outputs).filter(|(_, other)| other.dimension == outputs[output].dimension);
             let size = same.map(|(size, _)| *size).fold(0.0, f64::max);
             let error = RICHARDSON * largest(direct[output].iter().zip(&halved[output]).map(|(a, b)| a - b));
             let [moves, moves_halved] = [&direct, &halved].map(|values| width(&values[output]));
@@ -121,13 +121,13 @@ impl Study<'_> {
             // What moves by the steps' errors alone, as an energy does, moves less with halved steps.
             error / if moves_halved < STEADY * moves { size } else { moves }
         };
-        Ok((0..units.len()).map(share).fold(0.0, f64::max))
+        Ok((0..outputs.len()).map(share).fold(0.0, f64::max))
     }
 
     /// The nominal sample and corners of the box.
-    pub(super) fn controlling_samples(&self) -> Vec<Vec<f64>> {
+    pub(super) fn controlling_samples(&self) -> Vec<Sample> {
         let mut samples = vec![self.domain.nominal.clone()];
-        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.point(xi)) {
+        for corner in corners(self.domain.dimension(), CONTROLLING_CORNERS).iter().map(|xi| self.domain.sample(xi)) {
             if !samples.contains(&corner) {
                 samples.push(corner);
             }

@@ -7,10 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
 };
-use crate::numerics::{ParameterBox, Range};
+use crate::numerics::{ParameterBox, Range, Sample};
 use crate::simulate::{
     Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
     Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
@@ -103,7 +104,7 @@ impl<'a> Motions<'a> {
     fn advance(
         &self,
         run: &mut EnsembleRun,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Simulated {
@@ -183,13 +184,13 @@ impl Ensemble for Motions<'_> {
         // told.
         let step = self.schedule.first_step();
         AT_REST
-            * match self.simulator.system.outputs[output].unit.as_str() {
-                "rad" => 1.0,
-                "m" => length,
-                "rad/s" => 1.0 / duration,
-                "m/s" => length / duration,
-                "rad/s^2" => 1.0 / (duration * step),
-                "m/s^2" => length / (duration * step),
+            * match self.simulator.system.outputs[output].dimension {
+                Some(Dimension::ANGLE) => 1.0,
+                Some(Dimension::LENGTH) => length,
+                Some(Dimension::ANGULAR_VELOCITY) => 1.0 / duration,
+                Some(Dimension::VELOCITY) => length / duration,
+                Some(Dimension::ANGULAR_ACCELERATION) => 1.0 / (duration * step),
+                Some(Dimension::ACCELERATION) => length / (duration * step),
                 _ => 0.0,
             }
     }
@@ -200,7 +201,7 @@ impl Ensemble for Motions<'_> {
 
     fn simulate(
         &self,
-        samples: &[Vec<f64>],
+        samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
@@ -230,7 +231,7 @@ impl Ensemble for Motions<'_> {
             self.over.fetch_add(1, Ordering::Relaxed);
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
-        let stop = stop.map(|stop| (stopped_at(&stop), center));
+        let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
         Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
     }
 

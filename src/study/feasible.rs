@@ -78,7 +78,7 @@ fn survey(study: &Study, first: SimulationError) -> Survey {
     let domain = &study.domain;
     let mut points = validation(domain.dimension(), study.request.degree());
     points.extend(spread(domain.dimension(), SURVEYED));
-    let can = study.simulator.can_assemble(&domain.points(&points));
+    let can = study.simulator.can_assemble(&domain.samples(&points));
     let failing: Vec<&Vec<f64>> = points.iter().zip(&can).filter(|(_, can)| !**can).map(|(xi, _)| xi).collect();
     let place = |axis: usize| {
         let along = failing.iter().map(|xi| xi[axis]);
@@ -182,7 +182,7 @@ fn axis_to_cut(whole: &ParameterBox, piece: &ParameterBox, failing: &[Vec<f64>])
 /// Tries a piece's held-out samples.
 fn trial(study: &Study) -> Result<Found, RunError> {
     let points = validation(study.domain.dimension(), study.request.degree());
-    let can = study.simulator.can_assemble(&study.domain.points(&points));
+    let can = study.simulator.can_assemble(&study.domain.samples(&points));
     if !can.contains(&true) {
         return Ok(Found::Nothing);
     }

@@ -53,7 +53,7 @@ pub struct Options<'a> {
     /// Whether the part of the box is left out in which the mechanism cannot be assembled, or does not move to the end.
     pub skip_infeasible: bool,
     /// Whether to run what takes long without being allowed by the model.
-    pub dear: bool,
+    pub costly: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
@@ -68,7 +68,7 @@ impl Default for Options<'_> {
             threads: None,
             certify_time: false,
             skip_infeasible: false,
-            dear: true,
+            costly: true,
             progress: &|_| (),
             interrupted: &|| false,
         }
@@ -92,7 +92,7 @@ pub enum RunError {
     Infeasible(Box<Survey>),
     /// It would take long, and nobody has allowed it.
     #[error(transparent)]
-    Dear(Price),
+    Costly(Price),
     /// An error of this program.
     #[error(transparent)]
     Internal(#[from] InternalError),

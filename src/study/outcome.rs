@@ -2,6 +2,7 @@
 
 use super::internal::InternalError;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
+use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{ExcitedMode, Schedule, SingularPass};
 
@@ -37,7 +38,7 @@ impl Results {
     }
 
     /// Samples that stopped.
-    pub fn stops(&self) -> impl Iterator<Item = &(Stop, Vec<f64>)> {
+    pub fn stops(&self) -> impl Iterator<Item = &(Stop, Sample)> {
         let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.stop.as_ref());
         self.outcomes().filter_map(|outcome| outcome.result.simulated.stop.as_ref()).chain(validation)
     }

@@ -54,7 +54,7 @@ impl Price {
     }
 
     /// Whether it is to be asked for, where a model allows so many simulations.
-    pub fn is_dear(&self, allowed: usize) -> bool {
+    pub fn is_costly(&self, allowed: usize) -> bool {
         let much = self.simulations > MOST_SIMULATIONS || self.seconds > MOST_SECONDS;
         much && self.simulations > allowed as f64
     }

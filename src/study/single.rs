@@ -10,7 +10,7 @@ use crate::methods::{
     Stop, Validation, can_compose,
 };
 use crate::model::{Description, Stepping};
-use crate::numerics::{ParameterBox, probes, validation};
+use crate::numerics::{ParameterBox, Sample, step_validation, validation};
 use crate::results::MethodSummary;
 use crate::simulate::{
     Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance, unmet_switch,
@@ -111,7 +111,7 @@ impl<'a> Study<'a> {
                 let samples = self.controlling_samples();
                 let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
                 // The nominal sample may be of another part of the box.
-                let inside = |sample: &Vec<f64>| samples[0] != *sample || self.domain.contains(sample);
+                let inside = |sample: &Sample| samples[0] != *sample || self.domain.contains(sample);
                 let going = (0..samples.len()).filter(|sample| !controlled.dropped.contains(sample));
                 Ok(Tried {
                     reached: controlled.complete_rows.min(controlled.schedule.rows),
@@ -305,8 +305,11 @@ impl<'a> Study<'a> {
         let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
         let methods: usize = self.request.methods().iter().map(work).sum();
         let k = self.domain.dimension();
-        let held_out =
-            if self.request.is_empty() { 0 } else { probes(k).len() + validation(k, self.request.degree()).len() };
+        let held_out = if self.request.is_empty() {
+            0
+        } else {
+            step_validation(k).len() + validation(k, self.request.degree()).len()
+        };
         (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }

@@ -103,8 +103,8 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
     let price = Price::of(&studies);
-    if !options.dear && price.is_dear(description.bounds.budget.solves) {
-        return Err(RunError::Dear(price));
+    if !options.costly && price.is_costly(description.bounds.budget.simulations) {
+        return Err(RunError::Costly(price));
     }
     let mut ran = Vec::with_capacity(count);
     let mut lost = 0;
@@ -138,7 +138,7 @@ fn share_budget(prepared: &mut [Prepared]) {
     let uncertain = prepared.iter().filter(|prepared| !prepared.subsystem.parameters.is_empty()).count().max(1);
     for prepared in prepared {
         let budget = &mut prepared.subsystem.description.bounds.budget;
-        budget.solves /= uncertain;
+        budget.simulations /= uncertain;
         budget.seconds = budget.seconds.map(|seconds| seconds / uncertain as f64);
     }
 }

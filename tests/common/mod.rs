@@ -129,6 +129,7 @@ impl Vary for Description {
             name: (*formula).to_owned(),
             formula: symdiff::Formula::parse(formula).unwrap(),
             unit: String::new(),
+            dimension: None,
         };
         self.outputs = formulas.iter().map(output).collect();
         self

@@ -31,6 +31,7 @@ fn against_scan(output: &OutputBounds) -> (f64, f64) {
 /// in the slider's own position can follow (it misses the true range by up to 44 % of its width). Measured here: 1.0004
 /// of the scan's mean width, and 0.7 % outside at the worst time.
 #[test]
+#[ignore = "20 s: ten seconds of motion"]
 fn ten_seconds_of_the_slider_crank_are_bounded_within_a_percent() {
     let mut long = model("slider_crank_one");
     long.simulation.duration = 10.0;

@@ -132,8 +132,8 @@ fn bodies_that_no_output_needs_change_nothing() {
     assert_eq!(summary.not_simulated, Vec::<String>::new());
     assert_eq!(full_summary.not_simulated.len(), 10 + 10 + 11);
     assert_eq!(full_summary.not_simulated[0], "body idle0");
-    let solves = |summary: &Summary| summary.methods.iter().map(|method| method.simulations).collect::<Vec<_>>();
-    assert_eq!(solves(&summary), solves(&full_summary));
+    let simulations = |summary: &Summary| summary.methods.iter().map(|method| method.simulations).collect::<Vec<_>>();
+    assert_eq!(simulations(&summary), simulations(&full_summary));
     assert_eq!(full_summary.parameters.len(), 2);
     // The one that nothing depends on has no part in anything.
     let idle = &full_bounds.contributions[0][1];
@@ -164,14 +164,14 @@ fn subsystems_are_models_run_apart() {
         }
     }
     // 5 nodes of one parameter twice, and not 25; and the certain one not at all.
-    let solves = |name: &str| summary.methods.iter().find(|method| method.method == name).unwrap().simulations;
-    assert_eq!((solves("nominal"), solves("chebyshev"), solves("scan")), (3, 10, 10));
+    let simulations = |name: &str| summary.methods.iter().find(|method| method.method == name).unwrap().simulations;
+    assert_eq!((simulations("nominal"), simulations("chebyshev"), simulations("scan")), (3, 10, 10));
     // Its own, and two with shorter steps for its error.
     let certain = &summary.subsystems[2];
     assert_eq!(certain.parameters, Vec::<String>::new());
-    let solves: Vec<(&str, usize)> =
+    let simulations: Vec<(&str, usize)> =
         certain.methods.iter().map(|method| (method.method.as_str(), method.simulations)).collect();
-    assert_eq!(solves, [("nominal", 1), ("validation", 2), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
+    assert_eq!(simulations, [("nominal", 1), ("validation", 2), ("chebyshev", 0), ("taylor", 0), ("scan", 0)]);
     for output in together.outputs.iter().filter(|output| output.name.ends_with("_c")) {
         for band in &output.bands {
             assert_eq!(band.lower, output.nominal);
@@ -192,9 +192,9 @@ fn subsystems_simulated_together_give_the_same() {
     joined.outputs += "  mixed: a.B.x - b.B.x\n";
     let ((apart, of_apart), (joined, of_joined)) = (run(&apart.model()), run(&joined.model()));
     assert_eq!((of_apart.subsystems.len(), of_joined.subsystems.len()), (2, 0));
-    let solves =
+    let simulations =
         |summary: &Summary| summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().simulations;
-    assert_eq!((solves(&of_apart), solves(&of_joined)), (10, 25));
+    assert_eq!((simulations(&of_apart), simulations(&of_joined)), (10, 25));
     for (apart, joined) in apart.outputs.iter().zip(&joined.outputs) {
         assert_eq!(apart.name, joined.name);
         for (one, other) in apart.bands.iter().zip(&joined.bands) {
@@ -525,8 +525,8 @@ bounds: { chebyshev: { order: 4 } }
 ",
     );
     let (bounds, summary) = run(&model);
-    let solves = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().simulations;
-    assert_eq!((solves, summary.parameters.len()), (5, 2));
+    let simulations = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap().simulations;
+    assert_eq!((simulations, summary.parameters.len()), (5, 2));
     let total = |number: usize| bounds.contributions[0][number].total[20];
     assert!((total(0) - 1.0).abs() < 1e-9 && total(1) == 0.0, "{} {}", total(0), total(1));
 }

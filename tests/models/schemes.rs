@@ -3,6 +3,7 @@
 use mbint::inner::assemble;
 use mbint::inner::compile::Scheme;
 use mbint::inner::model::Description;
+use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{EnsembleRun, JetRun, Observed, Schedule, Simulator, Stepper, schedule_for_tolerance};
 use nalgebra::Matrix3;
 use symdiff::jet::JetSpace;
@@ -26,12 +27,12 @@ fn compiled(description: &Description, scheme: Scheme, h: f64) -> Simulator {
     Simulator::new(assemble::build(description).unwrap(), scheme, h).unwrap()
 }
 
-fn nominal_sample(simulator: &Simulator) -> Vec<f64> {
+fn nominal_sample(simulator: &Simulator) -> Sample {
     simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect()
 }
 
 /// Every output's course of a sample.
-fn courses(simulator: &Simulator, schedule: &Schedule, sample: Vec<f64>) -> Vec<Vec<f64>> {
+fn courses(simulator: &Simulator, schedule: &Schedule, sample: Sample) -> Vec<Vec<f64>> {
     let mut ensemble = EnsembleRun::start(simulator, &[sample], schedule.first_step()).unwrap();
     let mut values = Vec::new();
     let stops = ensemble.advance(schedule, 0..schedule.rows, None, Observed::Outputs, &mut values);
@@ -117,7 +118,7 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.1 }
 fn amplification(scheme: Scheme, h: f64) -> Matrix3<f64> {
     let simulator = compiled(&oscillator(), scheme, h);
     let layout = &simulator.program.layout;
-    let start = simulator.assemble(4, h, |_| Vec::new()).unwrap();
+    let start = simulator.assemble(4, h, |_| Sample::default()).unwrap();
     let mut stepper = Stepper::new(&simulator.program, &start);
     let unit = [1.0, 1.0 / h, 1.0 / (h * h)];
     let registers = [layout.q.start, layout.v.start, layout.a.start];
@@ -156,7 +157,7 @@ fn the_local_error_is_the_one_that_is_made() {
     for scheme in SCHEMES {
         let h = 1e-5;
         let simulator = compiled(&oscillator(), scheme, h);
-        let start = simulator.assemble(1, h, |_| Vec::new()).unwrap();
+        let start = simulator.assemble(1, h, |_| Sample::default()).unwrap();
         let mut stepper = Stepper::new(&simulator.program, &start);
         stepper.estimate_errors();
         assert_eq!(stepper.step(h, h), []);
@@ -203,7 +204,7 @@ fn jets_are_the_derivatives_of_every_scheme() {
         let mut jets = Vec::new();
         let mut run = JetRun::start(&simulator, &space, &sample, &[1.0, 1.0], h).unwrap();
         assert_eq!(run.advance(&schedule, 0..schedule.rows, &mut jets), None);
-        let moved = |by: f64| courses(&simulator, &schedule, vec![sample[0] + by, sample[1]]);
+        let moved = |by: f64| courses(&simulator, &schedule, vec![sample[0] + by, sample[1]].into());
         let (above, below) = (moved(half), moved(-half));
         for (place, jet) in jets.chunks_exact(space.len()).enumerate() {
             let (row, output) = (place / 2, place % 2);

@@ -7,10 +7,10 @@ use mbint::inner::results::{Bounds, Method};
 use crate::common::runge_kutta::runge_kutta;
 use crate::common::{Vary, band, load, model, model_files, read, reference, run, run_methods};
 
-fn within(mut description: Description, tolerance: f64, solves: usize) -> Description {
+fn within(mut description: Description, tolerance: f64, simulations: usize) -> Description {
     description.bounds = BoundsRequest {
         tolerance: Some(tolerance),
-        budget: Budget { solves, ..Budget::default() },
+        budget: Budget { simulations, ..Budget::default() },
         chebyshev: Some(Chebyshev::ADAPTIVE),
         ..Default::default()
     };
@@ -51,9 +51,9 @@ fn the_tolerance_is_met() {
 fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
     let description = within(model("slider_crank"), 1e-4, 60);
     let (bounds, summary) = run_methods(&description, None);
-    let solves: usize =
+    let simulations: usize =
         summary.methods.iter().filter(|method| method.method != "nominal").map(|method| method.simulations).sum();
-    assert!(solves <= 60 + 26, "{solves}");
+    assert!(simulations <= 60 + 26, "{simulations}");
     assert!(unresolved(&bounds) > 0);
     assert!(summary.errors[0].unresolved_from.is_some());
 }
@@ -170,8 +170,8 @@ fn eight_parameters_take_five_hundred_simulations() {
         assert!((found - expected).abs() < 1e-8, "the other equations are wrong: {found}, {expected}");
     }
     let (bounds, summary) = run_methods(&within(eight().rows_every(0.1), 2e-3, 500), None);
-    let solves: usize = summary.methods.iter().map(|method| method.simulations).sum();
-    assert!(solves <= 501, "{solves}");
+    let simulations: usize = summary.methods.iter().map(|method| method.simulations).sum();
+    assert!(simulations <= 501, "{simulations}");
     let band = band(&bounds.outputs[0], Method::Chebyshev);
     let (mut width, mut true_width, mut covered) = (0.0, 0.0, 0);
     let rows = [2, 5, 8, 10, 12, 13, 14, 15, 16, 17, 18, 19, 20];

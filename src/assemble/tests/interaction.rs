@@ -101,7 +101,7 @@ fn what_takes_nothing_has_its_potential() {
 
 /// Friction of a contact takes power, and no more than the load times the speed.
 #[test]
-fn rubbing_takes_power() {
+fn friction_takes_power() {
     let contact = |friction: Option<Friction>| {
         let mut m = two_bodies();
         let between = m.between("a.P", "b.P");

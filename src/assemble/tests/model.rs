@@ -146,7 +146,7 @@ impl Model {
     }
 
     pub fn output(&mut self, text: &str) {
-        let output = Output { name: text.to_owned(), formula: formula(text), unit: String::new() };
+        let output = Output { name: text.to_owned(), formula: formula(text), unit: String::new(), dimension: None };
         self.0.outputs.push(output);
     }
 

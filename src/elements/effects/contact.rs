@@ -187,8 +187,8 @@ impl<'g> Touch<'g> {
                 let distance = square.sqrt();
                 let normal = across / distance;
                 let together = outer + self.radius;
-                let touching = together * together;
-                Gap { gap: distance - together, normal, overlap: touching - square }
+                let square_of_sum = together * together;
+                Gap { gap: distance - together, normal, overlap: square_of_sum - square }
             }
             Shape::Hollow(clearance) => {
                 let (across, square) = self.across(pair, offset);
@@ -196,8 +196,8 @@ impl<'g> Touch<'g> {
                 let smooth = square + centred * centred;
                 let distance = smooth.sqrt();
                 let outward = across / distance;
-                let touching = clearance * clearance;
-                Gap { gap: clearance - distance, overlap: smooth - touching, normal: -outward }
+                let square_of_clearance = clearance * clearance;
+                Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward }
             }
         }
     }

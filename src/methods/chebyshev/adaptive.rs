@@ -131,10 +131,10 @@ impl<'r> Adaptation<'r> {
     }
 
     fn is_spent(&self) -> bool {
-        let Budget { solves, seconds } = self.goal.budget;
+        let Budget { simulations, seconds } = self.goal.budget;
         self.exhausted
             || self.ensemble.is_interrupted()
-            || self.goal.spent >= solves
+            || self.goal.spent >= simulations
             || seconds.is_some_and(|seconds| self.begun.elapsed().as_secs_f64() >= seconds)
     }
 
@@ -148,7 +148,7 @@ impl<'r> Adaptation<'r> {
 
     /// Validation samples of a sub-box.
     fn hold_out(&mut self, domain: &ParameterBox) -> Result<ValidationTable, EnsembleError> {
-        let samples = domain.points(&self.validation.points);
+        let samples = domain.samples(&self.validation.points);
         let (direct, simulated) = ValidationTable::of(self.ensemble, &samples, Observed::Motion, true)?;
         self.simulated.add(self.goal.spent, simulated);
         self.goal.spent += samples.len();
@@ -157,7 +157,7 @@ impl<'r> Adaptation<'r> {
 
     /// Motions and outputs of new nodes.
     fn simulate(&mut self, domain: &ParameterBox, nodes: &[Vec<f64>]) -> Result<(usize, Vec<f64>), EnsembleError> {
-        let samples = domain.points(nodes);
+        let samples = domain.samples(nodes);
         let mut motions = Vec::new();
         let sampling = Sampling { observed: Observed::Motion, until: Until::FirstStop, finish: true };
         let simulated =
@@ -169,7 +169,7 @@ impl<'r> Adaptation<'r> {
 
     /// A round: adds the indices with the largest expected surplus.
     fn refine(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
-        let room = self.goal.budget.solves.saturating_sub(self.goal.spent);
+        let room = self.goal.budget.simulations.saturating_sub(self.goal.spent);
         let mut added = sub_box.expected(sub_box.grid.candidates());
         let most = added.first().map_or(0.0, |(_, expected)| *expected);
         added.retain(|(_, expected)| *expected >= ADDED * most);

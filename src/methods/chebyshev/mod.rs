@@ -20,7 +20,7 @@ use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::{
-    ParameterBox, PolynomialRange, RangeKind, SparseWork, Surrogate, SurrogateWork, largest, truncation,
+    ParameterBox, PolynomialRange, RangeKind, Sample, SparseWork, Surrogate, SurrogateWork, largest, truncation,
 };
 use adaptive::{Adaptation, Goal};
 pub use composition::can_compose;
@@ -264,7 +264,7 @@ impl BoundingMethod for Chebyshev {
     ) -> Result<MethodResult, EnsembleError> {
         let Degree::Fixed { order, nodes } = &self.degree else { return adapted(ensemble, validation, request) };
         let surrogate = Surrogate::tensor(order, nodes);
-        let samples = ensemble.domain().points(surrogate.samples());
+        let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
         let (bands, simulated) = match self.expand {
             Expand::Coordinates if composes => composed(ensemble, &surrogate, &samples, validation)?,
@@ -307,7 +307,7 @@ fn adapted(
 fn composed(
     ensemble: &dyn Ensemble,
     surrogate: &Surrogate,
-    samples: &[Vec<f64>],
+    samples: &[Sample],
     validation: &Validation,
 ) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let domain: &ParameterBox = ensemble.domain();
@@ -345,7 +345,7 @@ fn expanded(
     ensemble: &dyn Ensemble,
     surrogate: &Surrogate,
     range: PolynomialRange,
-    samples: &[Vec<f64>],
+    samples: &[Sample],
     validation: &Validation,
 ) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());

@@ -7,6 +7,7 @@ use symdiff::Formula;
 use super::algebra::{self, Value};
 use super::robot::{Kind, Number};
 use super::source::{Built, Pose, Source, coordinate, formula, formulas};
+use crate::grammar::quantity::Dimension;
 use crate::grammar::{Coordinate, Rotation, TimeOrder};
 use crate::model::description::{Output, StartValue};
 use crate::model::names::Reader;
@@ -70,24 +71,27 @@ fn body_of(value: &StartValue) -> Option<usize> {
 
 /// What is observed where the model says nothing: the joints' positions, and the place of a base that floats.
 pub fn outputs(reader: &mut Reader, source: &Source, built: &Built) {
-    let mut push = |name: String, text: String, unit: &str| {
+    let mut push = |name: String, text: String, dimension: Dimension| {
         let formula = formula(reader, &Value::Text(text));
-        reader.model.outputs.push(Output { name, formula, unit: unit.to_owned() });
+        reader.model.outputs.push(Output { name, formula, unit: dimension.unit(), dimension: Some(dimension) });
     };
     if source.floating {
         let root = &source.robot.links[source.robot.root].name;
-        ["x", "y", "z"].into_iter().for_each(|axis| push(format!("{root}_{axis}"), format!("{root}.{axis}"), "m"));
+        ["x", "y", "z"]
+            .into_iter()
+            .for_each(|axis| push(format!("{root}_{axis}"), format!("{root}.{axis}"), Dimension::LENGTH));
     }
     for &index in &source.robot.order {
         let joint = &source.robot.joints[index];
         let child = &source.robot.links[joint.child].name;
         match (coordinate(joint.kind), built.joints[index]) {
             (Some((_, position, _)), Some(_)) => {
-                let unit = if joint.kind.turns() { "rad" } else { "m" };
-                push(joint.name.clone(), format!("{}.{position}", joint.name), unit);
+                let dimension = if joint.kind.turns() { Dimension::ANGLE } else { Dimension::LENGTH };
+                push(joint.name.clone(), format!("{}.{position}", joint.name), dimension);
             }
             (None, _) if joint.kind != Kind::Fixed && built.places[joint.child].0.is_some() => {
-                let mut part = |axis: &str| push(format!("{}_{axis}", joint.name), format!("{child}.{axis}"), "m");
+                let mut part =
+                    |axis: &str| push(format!("{}_{axis}", joint.name), format!("{child}.{axis}"), Dimension::LENGTH);
                 ["x", "y", "z"].into_iter().for_each(&mut part);
             }
             _ => {}

@@ -57,7 +57,7 @@ impl<'s> Adaptive<'s> {
     }
 
     /// Whether the step size is too small to go on with.
-    pub fn is_stuck(&self) -> bool {
+    pub fn has_failed(&self) -> bool {
         self.h < self.controller.least()
     }
 

@@ -5,6 +5,7 @@ use symdiff::WIDTHS;
 use super::adaptive::{Adaptive, Attempt};
 use super::controller::Controller;
 use super::schedule::Schedule;
+use crate::numerics::Sample;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
@@ -43,7 +44,7 @@ pub struct ToleranceSchedule {
 /// Where a controlling sample cannot be assembled.
 pub fn schedule_for_tolerance(
     simulator: &Simulator,
-    samples: &[Vec<f64>],
+    samples: &[Sample],
     duration: f64,
     output_step: f64,
     tolerance: f64,
@@ -87,7 +88,7 @@ pub fn schedule_for_tolerance(
 /// The controlling samples in step.
 struct Control<'s> {
     simulator: &'s Simulator,
-    samples: &'s [Vec<f64>],
+    samples: &'s [Sample],
     output_step: f64,
     steps: Adaptive<'s>,
     functions: Option<TimeFunctions>,
@@ -109,7 +110,7 @@ enum Outcome {
 impl<'s> Control<'s> {
     fn start(
         simulator: &'s Simulator,
-        samples: &'s [Vec<f64>],
+        samples: &'s [Sample],
         controller: Controller,
         output_step: f64,
     ) -> Result<Self, SimulationError> {
@@ -143,7 +144,7 @@ impl<'s> Control<'s> {
             _ => goal,
         };
         let attempt = self.steps.attempt(time, goal_of_step);
-        if self.steps.is_stuck() || self.count == MOST_STEPS {
+        if self.steps.has_failed() || self.count == MOST_STEPS {
             Outcome::Dropped(self.drop_failing(&attempt, time, goal))
         } else if attempt.accepted {
             self.count += 1;

@@ -39,7 +39,7 @@ impl<'s> JetRun<'s> {
         half_width: &[f64],
         first_step: f64,
     ) -> Result<Self, SimulationError> {
-        let assembled = simulator.assemble(1, first_step, |_| center.to_vec())?;
+        let assembled = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
         let order = space.monomials().order();
         let set_parameters = |memory: &mut JetMemory<'s>| {
             for (variable, register) in simulator.start.layout.parameters.clone().enumerate() {
@@ -60,8 +60,8 @@ impl<'s> JetRun<'s> {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
         memory.run(program.sample());
-        let solves = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
-        let accelerations = solves.then_some(start);
+        let recomputed = simulator.solves_row_accelerations() || simulator.projects_row_velocities();
+        let accelerations = recomputed.then_some(start);
         let center = Stepper::new(program, &assembled);
         Ok(Self { simulator, order, center, memory, accelerations, projects: false, step_size: f64::NAN })
     }

@@ -127,7 +127,7 @@ impl<'s> LaneSteps<'s> {
         let (mut time, mut sum, mut reached) = (start, 0.0, false);
         for _ in 0..MOST_STEPS {
             let attempt = alone.attempt(time, end);
-            if alone.is_stuck() {
+            if alone.has_failed() {
                 break;
             }
             if attempt.accepted {

@@ -19,8 +19,10 @@ use crate::simulate::step::Stepper;
 pub(super) struct RowAccelerations<'s> {
     layout: &'s Layout,
     assembly: Assembly<'s>,
-    /// Whether velocities are made consistent, and whether accelerations are solved for.
-    solves: (bool, bool),
+    /// Whether velocities are made consistent.
+    projects_velocities: bool,
+    /// Whether accelerations are solved for.
+    solves_accelerations: bool,
     /// v, a, w and λ of the steps.
     own: Vec<f64>,
 }
@@ -29,14 +31,16 @@ impl<'s> RowAccelerations<'s> {
     /// For the samples of an assembled tile; `None` where outputs do not depend on what is solved for, or no constraint
     /// disturbs it. `controlled` says whether steps follow a tolerance.
     pub fn new(simulator: &'s Simulator, start: &Tile, controlled: bool) -> Option<Self> {
-        let solves = (controlled && simulator.projects_row_velocities(), simulator.solves_row_accelerations());
-        if solves == (false, false) {
+        let projects_velocities = controlled && simulator.projects_row_velocities();
+        let solves_accelerations = simulator.solves_row_accelerations();
+        if !projects_velocities && !solves_accelerations {
             return None;
         }
         let parameters = simulator.start.layout.parameters.clone();
         let parameter = |parameter: usize, lane: usize| start.lane(parameters.start + parameter)[lane];
         let assembly = Assembly::new(&simulator.start, &simulator.system, start.width(), parameter);
-        Some(Self { layout: &simulator.start.layout, assembly, solves, own: Vec::new() })
+        let layout = &simulator.start.layout;
+        Some(Self { layout, assembly, projects_velocities, solves_accelerations, own: Vec::new() })
     }
 
     /// The outputs of the state, as [`Stepper::observe`] gives them, with these accelerations. A lane in which they are not
@@ -51,13 +55,12 @@ impl<'s> RowAccelerations<'s> {
         tile.lane_mut(time).copy_from_slice(stepper.tile().lane(time));
         self.own.clear();
         self.own.extend_from_slice(&stepper.tile().values()[block(unknowns.clone())]);
-        let (velocities, accelerations) = self.solves;
         let mut settled = vec![true; width];
         let mut also = |lanes: Vec<bool>| settled.iter_mut().zip(lanes).for_each(|(settled, lane)| *settled &= lane);
-        if velocities {
+        if self.projects_velocities {
             also(self.assembly.project_velocities());
         }
-        if accelerations {
+        if self.solves_accelerations {
             also(self.assembly.accelerate());
         }
         for register in unknowns.clone() {

@@ -6,6 +6,7 @@ use symdiff::WIDTHS;
 use super::lane_steps::LaneSteps;
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
+use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
@@ -116,7 +117,7 @@ impl<'s> EnsembleRun<'s> {
     ///
     /// # Errors
     /// The first sample that cannot be assembled.
-    pub fn start(simulator: &'s Simulator, samples: &[Vec<f64>], first_step: f64) -> Result<Self, SimulationError> {
+    pub fn start(simulator: &'s Simulator, samples: &[Sample], first_step: f64) -> Result<Self, SimulationError> {
         let observes_accelerations = simulator.system.observes_accelerations();
         let tiles = tiles(samples.len(), simulator.program.registers(), rayon::current_num_threads());
         let assembled: Vec<Result<TileRun<'s>, SimulationError>> = tiles

@@ -7,6 +7,7 @@ use super::timing::best_of;
 use crate::assemble::System;
 use crate::compile::Scheme;
 use crate::model::{Description, Simulation, Stepping};
+use crate::numerics::Sample;
 use crate::results::{CostMethod, CostPoint};
 use crate::simulate::{Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
 use crate::study::{RunError, first_step, scheme as model_scheme};
@@ -59,14 +60,14 @@ struct Course {
 
 impl Course {
     fn run(simulator: &Simulator, simulation: &Simulation, stepping: Stepping) -> Result<Self, SimulationError> {
-        let nominal: Vec<f64> = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let (schedule, mut failure) = match stepping {
             Stepping::Fixed(step) => (Schedule::fixed(simulation.duration, step, simulation.output_step), None),
             Stepping::Tolerance(tolerance) => {
                 let samples = std::slice::from_ref(&nominal);
-                let piloted =
+                let controlled =
                     schedule_for_tolerance(simulator, samples, simulation.duration, simulation.output_step, tolerance)?;
-                (piloted.schedule, piloted.failure.map(|failure| failure.to_string()))
+                (controlled.schedule, controlled.failure.map(|failure| failure.to_string()))
             }
         };
         let start = simulator.assemble(1, schedule.first_step(), |_| nominal.clone())?;
@@ -76,8 +77,8 @@ impl Course {
         let mut steps = 0;
         for row in 0..schedule.rows {
             for (h, end) in schedule.steps_to(row) {
-                if let Some(stuck) = stepper.step(h, end).first() {
-                    failure = Some(format!("did not converge at t = {} s", stuck.time));
+                if let Some(failed) = stepper.step(h, end).first() {
+                    failure = Some(format!("did not converge at t = {} s", failed.time));
                     return Ok(Self { outputs, steps, failure });
                 }
                 steps += 1;

@@ -24,7 +24,7 @@ const FINEST: [f64; 3] = [16.0, 8.0, 4.0];
 const DENSE: [[usize; 3]; 3] = [[401, 201, 101], [61, 41, 21], [21, 13, 9]];
 
 /// Points of a scan that tells what many samples take.
-const SCAN_PROBE: [usize; 3] = [64, 8, 4];
+const SCAN_TRIAL: [usize; 3] = [64, 8, 4];
 
 /// Shares of the budget that the reference's surrogate and its scan may take.
 const SHARE: f64 = 0.25;
@@ -68,10 +68,10 @@ impl Plan {
         }
 
         // Seconds are a constant, which is the composition's, and a rate times the work.
-        let probes = [setting(2, 1.0), setting(2, 4.0)];
-        let [short, long] = [measured(model, &probes[0], options)?, measured(model, &probes[1], options)?];
-        let rate = ((long - short) / (probes[1].work(k) - probes[0].work(k))).max(0.0);
-        let constant = (short - rate * probes[0].work(k)).max(0.0);
+        let trials = [setting(2, 1.0), setting(2, 4.0)];
+        let [short, long] = [measured(model, &trials[0], options)?, measured(model, &trials[1], options)?];
+        let rate = ((long - short) / (trials[1].work(k) - trials[0].work(k))).max(0.0);
+        let constant = (short - rate * trials[0].work(k)).max(0.0);
         let seconds = |order, parts: f64| {
             [parts, parts / 2.0, parts / 4.0]
                 .map(|parts| constant + rate * setting(order, parts).work(k))
@@ -101,10 +101,10 @@ fn measured(model: &Description, setting: &Setting, options: &CostOptions) -> Re
 /// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many parameters.
 fn dense_scan(model: &Description, parts: f64, options: &CostOptions) -> Result<Option<usize>, CostError> {
     let k = uncertain(model);
-    let (Some(&few), Some(dense)) = (SCAN_PROBE.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
+    let (Some(&few), Some(dense)) = (SCAN_TRIAL.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
     let scan = |count, parts| Setting { method: SCAN, count, stepping: finer(&model.simulation, parts) };
-    let probe = scan(few, 1.0);
-    let rate = measured(model, &probe, options)? / probe.work(k);
+    let trial = scan(few, 1.0);
+    let rate = measured(model, &trial, options)? / trial.work(k);
     let seconds = |points: usize| {
         let runs = [(points, parts), (points, parts / 2.0), (points / 2 + 1, parts), (points / 2 + 1, parts / 2.0)];
         runs.map(|(points, parts)| rate * scan(points, parts).work(k)).iter().sum::<f64>()

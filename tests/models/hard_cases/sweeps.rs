@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use mbint::inner::numerics::Sample;
 use mbint::inner::simulate::{Simulator, Stepper};
 use mbint::inner::study;
 use nalgebra::DMatrix;
@@ -58,7 +59,7 @@ fn small_steps_lose_no_accuracy_in_a_million_of_them() {
 
 /// Condition number (largest over smallest singular value) of the Newton matrix, equilibrated as the solver sees it.
 fn condition(simulator: &Simulator, h: f64) -> f64 {
-    let sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect::<Vec<_>>();
+    let sample: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
     let start = simulator.assemble(1, h, |_| sample.clone()).unwrap();
     let mut stepper = Stepper::new(&simulator.program, &start);
     assert_eq!(stepper.step(h, h), []);

@@ -2,7 +2,7 @@
 //! the parameters; every output follows from them through the loop closure and its own formula.
 //!
 //! Where an output that is composed in this way is the same polynomial as the one through its own samples, that polynomial takes its
-//! place: its range costs no closure. Where it is not a number, or not what the samples' simulations say, so does that polynomial, as
+//! place: its range costs no closure. Where it is NaN, or not what the samples' simulations say, so does that polynomial, as
 //! with `expand: output`.
 
 mod evaluation;
@@ -104,7 +104,7 @@ impl<'a> Composer<'a> {
         motion: &[f64],
     ) -> Result<usize, EnsembleError> {
         let middle = surrogate.middle();
-        let parameters = domain.point(&surrogate.samples()[middle]);
+        let parameters = domain.sample(&surrogate.samples()[middle]);
         let values: Vec<f64> = motion.chunks_exact(surrogate.samples().len()).map(|line| line[middle]).collect();
         let independent = self.ensemble.independent(&parameters, &values, time);
         if let Some(known) = self.closures.iter().position(|closure| closure.independent() == independent) {
@@ -352,7 +352,7 @@ impl<'r> Row<'r> {
         (0..count).step_by(count.div_ceil(COMPARED)).collect()
     }
 
-    /// Whether an output that follows from the coordinates is not what was simulated; what is not a number is not.
+    /// Whether an output that follows from the coordinates is not what was simulated; NaN is not.
     fn disagrees(&self, output: usize, compared: &[usize], values: &[f64]) -> bool {
         let simulated = self.own_samples(output);
         let range = Range::of(simulated);
