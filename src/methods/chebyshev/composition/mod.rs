@@ -5,19 +5,14 @@
 //! place: its range costs no closure. Where it is NaN, or not what the samples' simulations say, so does that polynomial, as
 //! with `expand: output`.
 
+mod errors;
 mod evaluation;
-
-use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use super::range_search::{Evaluate, Functions, Previous, RangeSearch, extent};
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
-use crate::methods::validation::ValidationTable;
-use crate::numerics::{
-    Extent, Extremes, ParameterBox, Range, Surrogate, SurrogateWork, corners, extremes_near, largest, step_error,
-    surrogate_error, truncation,
-};
+use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error};
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
 const MOST_COORDINATES: usize = 300;
@@ -30,12 +25,6 @@ const ROUNDING: f64 = 256.0 * f64::EPSILON;
 /// An output does not follow from the coordinates where it differs from its simulated samples by this share of their range and this
 /// one of their values. (Accelerations and reactions of the samples have errors of the scheme that those which follow do not have.)
 const DISAGREES: (f64, f64) = (0.25, 1e-3);
-
-/// So many independent coordinates are moved one by one.
-const MOST_MOVED: usize = 4;
-
-/// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
-const FAR: f64 = 0.1;
 
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
@@ -145,6 +134,19 @@ pub(super) struct Found {
     pub expanded: Vec<bool>,
 }
 
+/// Outputs by how their ranges are found.
+#[derive(Default)]
+struct Sorted {
+    /// They are the polynomials through their own samples,
+    alike: Vec<usize>,
+    /// they follow from the coordinates,
+    composed: Vec<usize>,
+    /// or are not what follows from them.
+    lost: Vec<usize>,
+    /// How far each is from its own polynomial.
+    defects: Vec<f64>,
+}
+
 impl<'r> Row<'r> {
     fn new(
         ensemble: &'r dyn Ensemble,
@@ -170,106 +172,6 @@ impl<'r> Row<'r> {
         self.surrogate
     }
 
-    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
-    /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
-    pub fn errors(
-        &self,
-        range_search: &RangeSearch,
-        (points, direct): (&[Vec<f64>], &ValidationTable),
-        row: usize,
-        Found { extents, expanded }: &Found,
-    ) -> Vec<f64> {
-        if row >= direct.rows() {
-            return vec![f64::NAN; extents.len()];
-        }
-        let moved = self.moved(range_search, extents, &self.coordinate_errors(points, direct.motion(row)));
-        let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
-            let simulated = direct.at(row, output);
-            if expanded[output] {
-                let own = self.own_polynomials(&[output], points);
-                let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
-                return found.gap + largest([surrogate_error(&own, &simulated), tail]);
-            }
-            let outside = simulated.into_iter().map(|value| found.range.distance(value));
-            found.gap + largest(outside.chain([moved]))
-        };
-        extents.iter().zip(moved).enumerate().map(error).collect()
-    }
-
-    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
-    /// and with halved ones, move the ends.
-    pub fn step_errors(
-        &self,
-        range_search: &RangeSearch,
-        (direct, halved): (&ValidationTable, &ValidationTable),
-        row: usize,
-        Found { extents, expanded }: &Found,
-    ) -> Vec<f64> {
-        if row >= direct.rows() || row >= halved.rows() {
-            return vec![f64::NAN; extents.len()];
-        }
-        let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        let moved = self.moved(range_search, extents, &errors);
-        // Of what does not follow from coordinates, their errors say nothing.
-        moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
-    }
-
-    /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
-    ///
-    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
-    /// moved together: all one way, or every other one against the rest. Where that moves an end by little, the extreme stays where it
-    /// is, to first order; else it is searched for again.
-    fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
-        let coordinates = errors.len() / 2;
-        let one_by_one = coordinates <= MOST_MOVED;
-        let rounds = if one_by_one { coordinates } else { 2 };
-        let weight = |round: usize, coordinate: usize| match (one_by_one, coordinate == round) {
-            (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-            (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
-            (false, _) => 1.0,
-        };
-        let shift = |round: usize, sign: f64| -> Vec<(usize, f64)> {
-            let of_line = |(place, &(line, error)): (usize, &(usize, f64))| match weight(round, place / 2) {
-                0.0 => None,
-                weight => Some((line, sign * weight * error)),
-            };
-            errors.iter().enumerate().filter_map(of_line).collect()
-        };
-        let shifts: Vec<Vec<(usize, f64)>> =
-            (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| shift(round, sign))).collect();
-        let mut moved = vec![0.0; found.len()];
-        let at_extremes = self.moved_at_extremes(found, &shifts);
-        for (shifts, at_extremes) in shifts.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
-            let mut own = vec![0.0; found.len()];
-            for (shift, at_extremes) in shifts.iter().zip(at_extremes) {
-                own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
-                let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
-                let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
-                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), shift)) {
-                    let (from, to) = (found[output].range, shifted.range);
-                    own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
-                }
-            }
-            for (moved, own) in moved.iter_mut().zip(own) {
-                *moved = if one_by_one { *moved + own } else { largest([*moved, own]) };
-            }
-        }
-        moved
-    }
-
-    /// For each shift of lines, how far it moves every output at the places of its extremes.
-    fn moved_at_extremes(&self, found: &[Extent], shifts: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
-        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
-        let all: Vec<Vec<(usize, f64)>> = [Vec::new()].into_iter().chain(shifts.iter().cloned()).collect();
-        let values = self.evaluate_shifted(&places, &all);
-        let at = |output: usize, shift: usize, end: usize| {
-            values[(output * all.len() + shift) * places.len() + 2 * output + end]
-        };
-        let of_output =
-            |shift: usize, output: usize| largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)));
-        (1..all.len()).map(|shift| (0..found.len()).map(|output| of_output(shift, output)).collect()).collect()
-    }
-
     /// Every output's range over the box.
     pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Found {
         let outputs = self.ensemble.outputs();
@@ -281,22 +183,11 @@ impl<'r> Row<'r> {
         let every: Vec<usize> = (0..outputs).collect();
         let rounding: Vec<f64> = every.iter().map(|&output| self.rounding(output)).collect();
         let own = self.own_polynomials(&every, points);
-        let (mut polynomials, mut composed) = (Vec::new(), Vec::new());
-        let (mut defects, mut expanded) = (vec![0.0; outputs], vec![false; outputs]);
-        for output in 0..outputs {
+        let at = |output: usize| {
             let (here, at_nodes) = values[output * all.len()..][..all.len()].split_at(points.len());
-            let own = &own[output * points.len()..][..points.len()];
-            expanded[output] = self.disagrees(output, &compared, at_nodes);
-            let defect = surrogate_error(own, here);
-            if expanded[output] {
-                polynomials.push(output);
-            } else if defect <= ALIKE * Range::of(self.own_samples(output)).width() + rounding[output] {
-                defects[output] = defect;
-                polynomials.push(output);
-            } else {
-                composed.push(output);
-            }
-        }
+            (here, at_nodes, &own[output * points.len()..][..points.len()])
+        };
+        let Sorted { alike, mut composed, mut lost, defects } = self.sorted(&compared, &rounding, at);
         let of = |outputs: &[usize], values: &[f64], stride: usize| -> Vec<Vec<f64>> {
             outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
         };
@@ -306,6 +197,22 @@ impl<'r> Row<'r> {
             let values = self.evaluate(points);
             wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
         };
+        let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
+        let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
+            let functions = self.functions(outputs.to_vec(), true, (&rounding, &places), &by_coefficients);
+            range_search.range(&functions, &of(outputs, &own, points.len()), previous)
+        };
+        let found = of_polynomials(&alike, previous);
+        for ((&output, mut extent), apart) in alike.iter().zip(found.clone()).zip(self.apart_at_ends(&alike, &found)) {
+            // A kink beside all samples shows where the range ends. Written so that NaN does too.
+            if apart <= self.alike(output, &rounding) + extent.gap {
+                extent.gap += largest([defects[output], apart]);
+                extents[output] = extent;
+            } else {
+                composed.push(output);
+            }
+        }
+        composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
         let functions = self.functions(composed, false, (&rounding, &places), &by_closure);
         for (&output, extent) in
@@ -314,19 +221,56 @@ impl<'r> Row<'r> {
             if extent.range.width().is_finite() {
                 extents[output] = extent;
             } else {
-                expanded[output] = true;
-                polynomials.push(output);
+                lost.push(output);
             }
         }
-        let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
-        let own_values = of(&polynomials, &own, points.len());
-        let functions = self.functions(polynomials, true, (&rounding, &places), &by_coefficients);
-        for (&output, mut extent) in functions.outputs.iter().zip(range_search.range(&functions, &own_values, previous))
-        {
-            extent.gap += defects[output];
-            extents[output] = extent;
+        let mut expanded = vec![false; outputs];
+        for (&output, extent) in lost.iter().zip(of_polynomials(&lost, previous)) {
+            (extents[output], expanded[output]) = (extent, true);
         }
         Found { extents, expanded }
+    }
+
+    /// What becomes of each output, given its values at some points and at the compared samples, and its own polynomial's at the points.
+    fn sorted<'v>(
+        &self,
+        compared: &[usize],
+        rounding: &[f64],
+        at: impl Fn(usize) -> (&'v [f64], &'v [f64], &'v [f64]),
+    ) -> Sorted {
+        let mut sorted = Sorted::default();
+        for output in 0..self.ensemble.outputs() {
+            let (here, at_nodes, own) = at(output);
+            let defect = surrogate_error(own, here);
+            sorted.defects.push(defect);
+            if self.disagrees(output, compared, at_nodes) {
+                sorted.lost.push(output);
+            } else if defect <= self.alike(output, rounding) {
+                sorted.alike.push(output);
+            } else {
+                sorted.composed.push(output);
+            }
+        }
+        sorted
+    }
+
+    /// By how much an output and its own polynomial may differ and still be the same.
+    fn alike(&self, output: usize, rounding: &[f64]) -> f64 {
+        ALIKE * Range::of(self.own_samples(output)).width() + rounding[output]
+    }
+
+    /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are attained.
+    fn apart_at_ends(&self, outputs: &[usize], found: &[Extent]) -> Vec<f64> {
+        if outputs.is_empty() {
+            return Vec::new();
+        }
+        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
+        let values = self.evaluate(&places);
+        let of_output = |(place, (&output, found)): (usize, (&usize, &Extent))| {
+            let values = &values[output * places.len() + 2 * place..][..2];
+            largest([values[0] - found.range.lower, values[1] - found.range.upper])
+        };
+        outputs.iter().zip(found).enumerate().map(of_output).collect()
     }
 
     fn functions<'f>(
@@ -392,34 +336,6 @@ impl<'r> Row<'r> {
             seeds.extend(self.best_corners());
         }
         seeds
-    }
-
-    /// Ranges of some outputs with some lines shifted, near those that are known of all.
-    fn range_near(
-        &self,
-        range_search: &RangeSearch,
-        (outputs, known): (&[usize], &[Extent]),
-        shift: &[(usize, f64)],
-    ) -> Vec<Extent> {
-        if outputs.is_empty() {
-            return Vec::new();
-        }
-        let shifts = [shift.to_vec()];
-        let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
-            let values = self.evaluate_shifted(points, &shifts);
-            outputs.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
-        };
-        let near = outputs.iter().map(|&output| &known[output]);
-        let Some(search) = range_search.climbs() else {
-            return extremes_near(&near.cloned().collect::<Vec<_>>(), evaluate);
-        };
-        let near: Vec<Extremes> = near.map(|near| Extremes::at(near.range, near.places.clone())).collect();
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-            values.copy_from_slice(&evaluate(points));
-            Ok::<(), Infallible>(())
-        };
-        let Ok(found) = search.extremes(outputs.len(), &near, &[], evaluate);
-        found.into_iter().map(extent).collect()
     }
 
     /// For each output the corners of the box at which it is least and largest.
