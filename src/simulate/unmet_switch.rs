@@ -64,6 +64,7 @@ pub fn unmet_switch(
     domain: &ParameterBox,
     (schedule, tolerance): (&Schedule, Option<Controller>),
     held_out: &[Vec<f64>],
+    interrupted: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<usize>, SimulationError> {
     let k = domain.dimension();
     let (Some(program), Some(&degree)) = (simulator.switches(), k.checked_sub(1).and_then(|place| DEGREES.get(place)))
@@ -73,7 +74,7 @@ pub fn unmet_switch(
     let surrogate = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
     let nodes = surrogate.samples().len();
     let points = [surrogate.samples(), held_out].concat();
-    let observing = Observing { simulator, program, domain, schedule, tolerance };
+    let observing = Observing { simulator, program, domain, schedule, tolerance, interrupted };
     let mut suspects = Vec::new();
     let mut before: Option<Vec<f64>> = None;
     let mut work = SurrogateWork::default();
@@ -139,6 +140,7 @@ struct Observing<'a> {
     domain: &'a ParameterBox,
     schedule: &'a Schedule,
     tolerance: Option<Controller>,
+    interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Observing<'_> {
@@ -177,7 +179,7 @@ impl Observing<'_> {
                 look(row, motions, &before.iter().zip(&after).map(either).collect::<Vec<Signs>>());
                 all.push([before, after]);
             }
-            if reached < rows.end {
+            if reached < rows.end || (self.interrupted)() {
                 break;
             }
         }

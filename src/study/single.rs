@@ -225,7 +225,7 @@ impl<'a> Study<'a> {
             return Ok(None);
         }
         let found = caught("the search for switches", || {
-            unmet_switch(&self.simulator, &self.domain, steps, &validation.points)
+            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
         });
         found.unwrap_or_else(|error| {
             internal.push(error);
