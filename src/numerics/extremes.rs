@@ -5,13 +5,12 @@
 //! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: what they find beyond it makes the lattice
 //! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
 
+use super::extent::{Extent, NEAR};
 use super::lattice::Lattice;
 use super::peak::Peak;
 use super::range::Range;
 use super::samples::spread;
 
-/// First distance of neighbours in the search near a known extreme, at most.
-const NEAR: f64 = 0.1;
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
 /// An end is found when a step changes less than this share of the range's width, or this one of what does not matter.
@@ -35,39 +34,6 @@ const LEAST_CHECKS: usize = 8;
 const CANDIDATES: usize = 6;
 /// Most points of a lattice by the number of parameters.
 const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
-
-/// A function's range.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Extent {
-    /// The least and the largest value found.
-    pub range: Range,
-    /// How far the search may have missed its ends.
-    pub gap: f64,
-    /// ξ of the least and of the largest value.
-    pub places: [Vec<f64>; 2],
-    /// Distances within which nothing else was seen beside them, along each axis.
-    pub spacing: [Vec<f64>; 2],
-}
-
-impl Extent {
-    /// Of what cannot be bounded.
-    pub fn unknown(dimension: usize) -> Self {
-        let zeros = || [vec![0.0; dimension], vec![NEAR; dimension]];
-        let [place, spacing] = zeros();
-        Self {
-            range: Range::UNKNOWN,
-            gap: f64::NAN,
-            places: [place.clone(), place],
-            spacing: [spacing.clone(), spacing],
-        }
-    }
-
-    /// Found at these places.
-    pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
-        let spacing = [vec![NEAR; places[0].len()], vec![NEAR; places[1].len()]];
-        Self { range, gap, places, spacing }
-    }
-}
 
 /// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The first lattice has
 /// `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each function, is not looked for: at least
@@ -218,21 +184,6 @@ impl Search {
             gap: below.max(above),
             places: [least.best_xi.clone(), largest.best_xi.clone()],
             spacing: [least.spacing.clone(), largest.spacing.clone()],
-        }
-    }
-}
-
-impl Extent {
-    /// Takes in values at other points. What lies beyond the range had been missed.
-    pub fn include(&mut self, points: &[Vec<f64>], values: &[f64]) {
-        for (point, &value) in points.iter().zip(values) {
-            let beyond = self.range.distance(value);
-            if beyond > 0.0 {
-                let end = usize::from(value > self.range.upper);
-                self.range = Range { lower: self.range.lower.min(value), upper: self.range.upper.max(value) };
-                self.places[end].clone_from(point);
-                self.gap += beyond;
-            }
         }
     }
 }
