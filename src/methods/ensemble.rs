@@ -107,6 +107,8 @@ pub struct Simulated {
     pub effort: Effort,
     /// The sample with the largest error ratio (sum of its local errors over the tolerance), and that ratio.
     pub worst_ratio: Option<(Sample, f64)>,
+    /// The first row before which such a sum is more than 1.
+    pub beyond_tolerance_from: Option<usize>,
     /// The first sample that stopped, with its parameters.
     pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
@@ -123,6 +125,8 @@ impl Simulated {
         self.stop = self.stop.take().into_iter().chain(stop).min_by_key(|(stop, _)| (stop.row, stop.sample));
         self.stopped.extend(shard.stopped.into_iter().map(|sample| first + sample));
         self.missing = self.missing.max(shard.missing);
+        let beyond = self.beyond_tolerance_from.into_iter().chain(shard.beyond_tolerance_from);
+        self.beyond_tolerance_from = beyond.min();
         let ratios = self.worst_ratio.take().into_iter().chain(shard.worst_ratio);
         self.worst_ratio = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a });
     }

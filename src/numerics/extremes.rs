@@ -5,17 +5,21 @@
 //! a low-discrepancy sequence, which have nothing to do with the lattice, check the result: what they find beyond it makes the lattice
 //! finer, and where that cannot be, it is an error. Nothing depends on the functions' size or sign.
 
+use super::extent::{Extent, NEAR};
 use super::lattice::Lattice;
 use super::peak::Peak;
 use super::range::Range;
 use super::samples::spread;
 
-/// First distance of neighbours in the search near a known extreme, at most.
-const NEAR: f64 = 0.1;
 /// The least and the largest value are sought.
 const SIGNS: [f64; 2] = [-1.0, 1.0];
-/// An end is found when a step changes less than this share of the range's width.
+/// An end is found when a step changes less than this share of the range's width, or this one of what does not matter.
 const SETTLED: f64 = 1e-10;
+const SETTLED_OF_LEAST: f64 = 1.0 / 64.0;
+/// The best place is that of the peak where the quadratic's is no further from it.
+const STAYS: f64 = 1e-9;
+/// Neighbours that are nearer than this tell no peak from the best place.
+const FINEST: f64 = 1e-5;
 /// Most steps of the search for an end.
 const ROUNDS: usize = 16;
 /// A lattice is too coarse along an axis where a value is further than this share of the range from what those beside it tell: fewer
@@ -31,42 +35,10 @@ const CANDIDATES: usize = 6;
 /// Most points of a lattice by the number of parameters.
 const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
-/// A function's range.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Extent {
-    /// The least and the largest value found.
-    pub range: Range,
-    /// How far the search may have missed its ends.
-    pub gap: f64,
-    /// ξ of the least and of the largest value.
-    pub places: [Vec<f64>; 2],
-    /// Distances within which nothing else was seen beside them, along each axis.
-    pub spacing: [Vec<f64>; 2],
-}
-
-impl Extent {
-    /// Of what cannot be bounded.
-    pub fn unknown(dimension: usize) -> Self {
-        let zeros = || [vec![0.0; dimension], vec![NEAR; dimension]];
-        let [place, spacing] = zeros();
-        Self {
-            range: Range::UNKNOWN,
-            gap: f64::NAN,
-            places: [place.clone(), place],
-            spacing: [spacing.clone(), spacing],
-        }
-    }
-
-    /// Found at these places.
-    pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
-        let spacing = [vec![NEAR; places[0].len()], vec![NEAR; places[1].len()]];
-        Self { range, gap, places, spacing }
-    }
-}
-
-/// Extremes of `outputs` functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The first
-/// lattice has `intervals` ≥ 2 along each axis, one for each. Unknown where a value on a lattice is NaN.
-pub fn extremes(outputs: usize, intervals: &[usize], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+/// Extremes of functions over [−1, 1]^k at once: `evaluate` gives their values at some ξ, function by function. The first lattice has
+/// `intervals` ≥ 2 along each axis, one for each. What is not more than `least`, a number for each function, is not looked for: at least
+/// their rounding. Unknown where a value on a lattice is NaN.
+pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let mut lattice = Lattice::new(intervals);
     let mut intervals = intervals.to_vec();
     loop {
@@ -77,22 +49,23 @@ pub fn extremes(outputs: usize, intervals: &[usize], evaluate: impl Fn(&[Vec<f64
         let all = [points, checks.clone()].concat();
         let values = evaluate(&all);
         let lines: Vec<(&[f64], &[f64])> =
-            values.chunks_exact(all.len()).take(outputs).map(|line| line.split_at(count)).collect();
-        let finer = finer(&lattice, &intervals, &lines);
+            values.chunks_exact(all.len()).take(least.len()).map(|line| line.split_at(count)).collect();
+        let finer = finer(&lattice, &intervals, &lines, least);
         if finer != intervals {
             (lattice, intervals) = (Lattice::new(&finer), finer);
             continue;
         }
-        let mut searches: Vec<Search> =
-            lines.iter().enumerate().map(|(output, line)| Search::new(output, &lattice, line.0)).collect();
+        let search =
+            |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
+        let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
         let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
-        let beyond = |(extent, line): (&Extent, &(&[f64], &[f64]))| {
+        let beyond = |((extent, line), &least): ((&Extent, &(&[f64], &[f64])), &f64)| {
             let beyond = line.1.iter().map(|&value| extent.range.distance(value)).fold(0.0, f64::max);
-            beyond > BEYOND * extent.range.width()
+            beyond > least.max(BEYOND * extent.range.width())
         };
         let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
-        if found.iter().zip(&lines).any(beyond) && has_room(&doubled) {
+        if found.iter().zip(&lines).zip(least).any(beyond) && has_room(&doubled) {
             (lattice, intervals) = (Lattice::new(&doubled), doubled);
             continue;
         }
@@ -107,13 +80,14 @@ fn has_room(intervals: &[usize]) -> bool {
 }
 
 /// Intervals of a lattice that is finer along the axes along which some function is not resolved, as far as there is room.
-fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])]) -> Vec<usize> {
+fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], least: &[f64]) -> Vec<usize> {
     let mut worst = vec![0.0_f64; intervals.len()];
-    for (values, _) in lines {
+    for ((values, _), &least) in lines.iter().zip(least) {
         let width = Range::of(values).width();
-        if width > 0.0 {
+        if width > least {
             let residuals = lattice.residuals(values);
-            worst.iter_mut().zip(residuals).for_each(|(worst, residual)| *worst = worst.max(residual / width));
+            let matters = worst.iter_mut().zip(residuals).filter(|(_, residual)| *residual > least);
+            matters.for_each(|(worst, residual)| *worst = worst.max(residual / width));
         }
     }
     let mut finer = intervals.to_vec();
@@ -132,7 +106,8 @@ fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])]) -> 
 pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let near = |(output, extent): (usize, &Extent)| {
         let width = extent.range.width();
-        let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], width);
+        let settled = SETTLED * width;
+        let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
         Search { ends: [0, 1].map(end).into(), omitted: [f64::NEG_INFINITY; 2] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
@@ -167,11 +142,12 @@ fn climb(ends: &mut [&mut End], evaluate: &impl Fn(&[Vec<f64>]) -> Vec<f64>) {
 }
 
 impl Search {
-    /// From the values of function number `output` on a lattice.
-    fn new(output: usize, lattice: &Lattice, values: &[f64]) -> Self {
+    /// From the values of function number `output`, for which differences of `least` do not matter, on a lattice.
+    fn new((output, least): (usize, f64), lattice: &Lattice, values: &[f64]) -> Self {
         let range = Range::of(values);
+        let settled = (SETTLED * range.width()).max(SETTLED_OF_LEAST * least);
         let end = |place: usize, sign: f64| {
-            End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, range.width())
+            End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, settled)
         };
         let mut search = Self { ends: Vec::new(), omitted: [f64::NEG_INFINITY; 2] };
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
@@ -212,27 +188,12 @@ impl Search {
     }
 }
 
-impl Extent {
-    /// Takes in values at other points. What lies beyond the range had been missed.
-    pub fn include(&mut self, points: &[Vec<f64>], values: &[f64]) {
-        for (point, &value) in points.iter().zip(values) {
-            let beyond = self.range.distance(value);
-            if beyond > 0.0 {
-                let end = usize::from(value > self.range.upper);
-                self.range = Range { lower: self.range.lower.min(value), upper: self.range.upper.max(value) };
-                self.places[end].clone_from(point);
-                self.gap += beyond;
-            }
-        }
-    }
-}
-
 /// A place from which one end of a function's range is sought.
 struct End {
     output: usize,
     sign: f64,
-    /// Of the function's range, as far as that is known.
-    width: f64,
+    /// The end is found when a step changes less than this.
+    settled: f64,
     /// Distances of the first neighbours.
     spacing: Vec<f64>,
     /// Where the peak is looked for, and where it is believed to be.
@@ -250,12 +211,12 @@ struct End {
 
 impl End {
     /// Not far from a place, with neighbours at these distances.
-    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, width: f64) -> Self {
+    fn near(output: usize, (xi, spacing): (&[f64], &[f64]), sign: f64, settled: f64) -> Self {
         let spacing: Vec<f64> = spacing.iter().map(|spacing| spacing.min(NEAR)).collect();
         let around = Peak::new(xi.to_vec(), spacing.clone());
         let best = -sign * f64::INFINITY;
         let (xi, best_xi) = (xi.to_vec(), xi.to_vec());
-        Self { output, sign, width, spacing, around, best_xi, xi, best, gap: f64::NAN, is_near: false, found: false }
+        Self { output, sign, settled, spacing, around, best_xi, xi, best, gap: f64::NAN, is_near: false, found: false }
     }
 
     /// Where the function is needed for the next step: around the peak, and on it.
@@ -271,7 +232,7 @@ impl End {
         // NaN beside the lattice's points changes nothing.
         if gain > 0.0 {
             // Once may be by chance. (At first nothing is known, and NaN is not settled.)
-            self.found = gain.max(self.gap) <= SETTLED * self.width && !self.gap.is_nan();
+            self.found = gain.max(self.gap) <= self.settled && !self.gap.is_nan();
             self.gap = gain;
             self.is_near = false;
             self.best = values[best];
@@ -281,10 +242,14 @@ impl End {
         } else {
             // Nothing better around the best, or the quadratic led away from it.
             self.gap = 0.0;
-            self.found = self.is_near && self.xi == self.best_xi;
+            let vertex = self.around.vertex(&values[..values.len() - 1], self.sign);
+            let stays = vertex.iter().zip(&self.best_xi).all(|(vertex, best)| (vertex - best).abs() <= STAYS);
+            // Neighbours so near show nothing more, and those that are not numbers do not either.
+            let is_last = self.around.is_within(FINEST) || values.iter().any(|value| value.is_nan());
+            self.found = stays || (self.is_near && is_last);
             self.is_near = true;
-            self.xi.clone_from(&self.best_xi);
-            self.around = self.around.nearer(&self.xi);
+            self.xi = if is_last { self.best_xi.clone() } else { vertex };
+            self.around = self.around.nearer(&self.best_xi);
         }
     }
 }
@@ -294,7 +259,7 @@ mod tests {
     use super::*;
 
     fn range(k: usize, intervals: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
-        extremes(1, &vec![intervals; k], |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
+        extremes(&vec![intervals; k], &[0.0], |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
     }
 
     #[test]
@@ -323,14 +288,14 @@ mod tests {
         let wave = |shift: f64| {
             move |points: &[Vec<f64>]| points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect()
         };
-        let known: Vec<Extent> = extremes(1, &[24; 2], wave(0.0));
+        let known: Vec<Extent> = extremes(&[24; 2], &[0.0], wave(0.0));
         let shifted = extremes_near(&known, wave(0.4));
         assert!(
             (shifted[0].range.upper - 1.1).abs() < 1e-6 && (shifted[0].range.lower + 1.1).abs() < 1e-6,
             "{shifted:?}"
         );
         let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
-        let shifted = extremes_near(&extremes(1, &[4], slope(0.0)), slope(0.4));
+        let shifted = extremes_near(&extremes(&[4], &[0.0], slope(0.0)), slope(0.4));
         assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
     }
 
@@ -354,6 +319,37 @@ mod tests {
         let dense = (0..=1_000_000).map(|i| f(-1.0 + 2e-3 * f64::from(i % 1001), -1.0 + 2e-3 * f64::from(i / 1001)));
         let truth = dense.fold(f64::NEG_INFINITY, f64::max);
         assert!(found.range.upper >= truth && found.range.upper < truth + 1e-4, "{found:?}, {truth}");
+    }
+
+    /// Of equal crests it does not matter which one is refined.
+    #[test]
+    fn every_crest_is_climbed_to_its_top() {
+        for shift in [0.0, 0.013, 0.1, 0.37, 0.71] {
+            let f =
+                |x: f64, y: f64| (9.0 * x + 0.3 * x * x + shift).sin() * (7.0 * y + 0.5 * x * y + 2.0 * shift).cos();
+            let (found, permuted) = (range(2, 16, |xi| f(xi[0], xi[1])), range(2, 16, |xi| f(xi[1], xi[0])));
+            for found in [found, permuted] {
+                assert!(
+                    (found.range.upper - 1.0).abs() < 1e-10 && (found.range.lower + 1.0).abs() < 1e-10,
+                    "{found:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn rounding_is_not_looked_for() {
+        let seen = std::cell::Cell::new(0);
+        // Noise of some units of rounding; beside it a function that is not known better than to a thousandth of its size.
+        let noise = |xi: f64| (1e7 * xi).sin();
+        let evaluate = |points: &[Vec<f64>]| {
+            seen.set(seen.get() + points.len());
+            let first = points.iter().map(|xi| 3.0 + 2e-15 * noise(xi[0]));
+            first.chain(points.iter().map(|xi| xi[0] + 1e-3 * noise(xi[0]))).collect()
+        };
+        let found = extremes(&[16], &[1e-13, 3e-3], evaluate);
+        assert!(seen.get() < 200, "{} points", seen.get());
+        assert!((found[1].range.upper - 1.0).abs() < 3e-3 && found[0].range.width() < 1e-14, "{found:?}");
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod envelope;
 mod error;
 #[cfg(test)]
 mod evaluation;
+mod extent;
 mod extremes;
 mod lattice;
 mod leja;
@@ -41,7 +42,8 @@ pub use domain::{ParameterBox, Sample};
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
-pub use extremes::{Extent, extremes, extremes_near};
+pub use extent::Extent;
+pub use extremes::{extremes, extremes_near};
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};
@@ -50,7 +52,7 @@ pub use scan::ScanBounds;
 pub use search::{ExtremeSearch, Extremes};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;
-pub use sparse_basis::SparseWork;
+pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::SparseGrid;
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;

@@ -67,6 +67,11 @@ impl Peak {
         Self::new(xi.to_vec(), self.spacing.iter().map(|spacing| NEARER * spacing).collect())
     }
 
+    /// Whether its neighbours are no further than this along every axis.
+    pub fn is_within(&self, distance: f64) -> bool {
+        self.spacing.iter().all(|&spacing| spacing <= distance)
+    }
+
     /// ξ at steps of the spacing.
     fn away(&self, steps: &[f64]) -> Vec<f64> {
         let xi = self.center.iter().zip(&self.spacing).zip(steps);

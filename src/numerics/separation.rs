@@ -8,7 +8,7 @@ use super::samples::spread;
 /// Points that a sum is tried at.
 const TRIED: usize = 4;
 /// A difference below this share of the values' range, and so many units of rounding of the largest of them, is none.
-const SHARE: f64 = 1e-8;
+const SHARE: f64 = 1e-10;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// A function of k parameters as a sum over groups of them.

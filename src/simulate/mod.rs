@@ -8,6 +8,7 @@
 //! - `ensemble`: many samples, or one jet in the parameters, over a schedule;
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
 //! - `closure`: the motion from independent coordinates, without integration;
+//! - `unmet_switch`: contacts and kinks that some parameter values meet and no sample does;
 //! - `modes`: fast modes that the start excites and the steps damp;
 //! - `enclosure`: certified motions over a box of parameters.
 
@@ -22,6 +23,7 @@ mod simulator;
 mod start;
 mod step;
 mod time_functions;
+mod unmet_switch;
 
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
@@ -33,3 +35,4 @@ pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
+pub use unmet_switch::unmet_switch;

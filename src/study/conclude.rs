@@ -106,7 +106,7 @@ fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Ba
         if study.domain.contains(&study.domain.nominal) {
             error.hold_nominal(ranges, &nominal);
         }
-        if let Some(unresolved) = results.unresolved_from.and_then(|row| error.unresolved.get_mut(row..)) {
+        if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
             unresolved.fill(true);
         }
         Band {

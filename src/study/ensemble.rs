@@ -138,6 +138,7 @@ impl<'a> Motions<'a> {
         let stop = stop.map(|stop| Stop { open: run.open_constraint(&stop, self.schedule), ..stop });
         Simulated {
             effort: effort(run.counters()),
+            beyond_tolerance_from: run.beyond_tolerance_from(),
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,

@@ -1,7 +1,7 @@
 //! What a subsystem's methods found, before it becomes bounds.
 
 use super::internal::InternalError;
-use crate::methods::{Method, MethodResult, Stop, Validation};
+use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
 use crate::simulate::{ExcitedMode, Schedule, SingularPass};
@@ -15,7 +15,8 @@ pub(super) struct Outcome {
 /// What one schedule yields.
 pub(super) struct Results {
     pub schedule: Schedule,
-    /// The first row before which a step does not resolve a function of the time.
+    /// The first row before which a step does not resolve a function of the time, or some parameter values meet a contact or a kink that
+    /// no sample meets.
     pub unresolved_from: Option<usize>,
     /// Fast modes that the start excites and the steps damp.
     pub damped: Vec<ExcitedMode>,
@@ -49,12 +50,22 @@ impl Results {
         stops.map(|(stop, _)| stop.row).min().unwrap_or(self.schedule.rows)
     }
 
+    /// What came of the samples of every method, and of the validation samples.
+    fn simulated(&self) -> impl Iterator<Item = &Simulated> {
+        let validation = self.validation.iter().map(|(validation, _)| &validation.simulated);
+        self.outcomes().map(|outcome| &outcome.result.simulated).chain(validation)
+    }
+
     /// The largest error ratio of a sample, where that is more than 1.
     pub fn beyond_tolerance(&self) -> Option<f64> {
-        let validation = self.validation.iter().filter_map(|(validation, _)| validation.simulated.worst_ratio.as_ref());
-        let ratios =
-            self.outcomes().filter_map(|outcome| outcome.result.simulated.worst_ratio.as_ref()).chain(validation);
+        let ratios = self.simulated().filter_map(|simulated| simulated.worst_ratio.as_ref());
         ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
+    }
+
+    /// The first row that cannot be relied on, whatever a method says of it.
+    pub fn unreliable_from(&self) -> Option<usize> {
+        let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
+        self.unresolved_from.into_iter().chain(beyond).min()
     }
 }
 

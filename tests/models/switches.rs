@@ -153,3 +153,63 @@ bounds: { scan: { points: 3 } }
         assert!(off < tolerance * moves, "{tolerance:e}: {:e}", off / moves);
     }
 }
+
+/// A throw past a post of 12 mm, 5 m away at most, and the time at which it passes.
+fn throw(post: [f64; 2], settings: &str) -> String {
+    format!(
+        "
+parameters: {{ v: {{ value: 6, unit: m/s, tolerance: 12% }} }}
+bodies: {{ ground: {{ points: {{ P: [{}, {}] }} }}, ball: {{ mass: 1.5 kg, coordinates: [x, y] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  hit: {{ contact: {{ between: [ground.P, ball], circle: 0.012, impact: {{ stiffness: 2e5, exponent: 1.5 }} }} }}
+initial: {{ ball.x: 0, ball.y: 0, ball.vx: v, ball.vy: 0 }}
+outputs: {{ x: ball.x }}
+{settings}
+",
+        post[0], post[1]
+    )
+}
+
+/// The rows of the first band that are flagged, as a time from which on all are.
+fn flagged_from(bounds: &Bounds) -> Option<f64> {
+    let band = &output(bounds, "x").bands[0];
+    let first = band.error.unresolved.iter().position(|&unresolved| unresolved)?;
+    assert!(band.error.unresolved[first..].iter().all(|&unresolved| unresolved));
+    Some(bounds.times[first])
+}
+
+/// Between two samples lies a post that neither of them meets.
+#[test]
+fn a_post_that_no_sample_meets_flags_what_follows() {
+    let settings = "simulation: { duration: 0.8, step: 2e-4, output_step: 0.02 }\nbounds: { chebyshev: { order: 5 } }";
+    // Met at 6.26 m/s, 0.4 s after the throw, by ± 0.06 m/s of ± 0.72 m/s.
+    let (x, t) = (2.5, 2.5 / 6.26);
+    let post = [x, -0.5 * 9.81 * t * t];
+    let found = flagged_from(&run(&read(&throw(post, settings))));
+    assert!(found.is_some_and(|from| (0.36..0.44).contains(&from)), "{found:?}");
+    // With a scan, and steps from a tolerance.
+    let settings = "simulation: { duration: 0.8, tolerance: 1e-5, output_step: 0.02 }\nbounds: { scan: { points: 6 } }";
+    let found = flagged_from(&run(&read(&throw(post, settings))));
+    assert!(found.is_some_and(|from| (0.36..0.44).contains(&from)), "{found:?}");
+    // Half a metre above all throws.
+    let above = [x, post[1] + 0.5];
+    assert_eq!(flagged_from(&run(&read(&throw(above, settings)))), None);
+}
+
+/// What every sample meets, each at its own time, is no surprise.
+#[test]
+fn a_wall_that_all_samples_meet_flags_nothing() {
+    let text = "
+parameters: { v: { value: 3, unit: m/s, tolerance: 4% }, k: { value: 2000, unit: N/m, tolerance: 3% } }
+bodies: { cart: { mass: 1, coordinates: [x] } }
+effects: { wall: { force: { on: cart, value: [\"-k*max(cart.x - 0.9, 0)\", 0] } } }
+initial: { cart.x: 0, cart.vx: v }
+outputs: { x: cart.x }
+simulation: { duration: 0.6, step: 5e-4, output_step: 0.01 }
+bounds: { chebyshev: { order: 6 }, scan: { points: 9 } }
+";
+    let bounds = run(&read(text));
+    let scan = band(output(&bounds, "x"), Method::Scan);
+    assert_eq!(scan.error.unresolved.iter().position(|&unresolved| unresolved), None);
+}

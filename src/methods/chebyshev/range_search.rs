@@ -35,6 +35,8 @@ pub(super) struct Functions<'f> {
     pub degrees: &'f [u8],
     /// Whether they are polynomials of these degrees; else they are composed of such.
     pub are_polynomials: bool,
+    /// What of each output is too small to be looked for, by number of the output.
+    pub rounding: &'f [f64],
     /// Where some of them are known to be large or small.
     pub places: &'f [Vec<f64>],
     /// Their values.
@@ -105,7 +107,7 @@ impl RangeSearch {
         let evaluate = |points: &[Vec<f64>]| (functions.evaluate)(outputs, points);
         let Some(search) = &self.climbs else {
             let all: Vec<usize> = (0..functions.degrees.len()).collect();
-            return extremes(outputs.len(), &functions.intervals(&all), evaluate);
+            return extremes(&functions.intervals(&all), &functions.rounding(outputs), evaluate);
         };
         previous.resize(previous.len().max(outputs.iter().max().map_or(0, |most| most + 1)), None);
         // Of all, or of none.
@@ -138,7 +140,7 @@ impl RangeSearch {
                 (functions.evaluate)(outputs, &whole)
             };
             let parts = if group.len() <= MOST_PARAMETERS {
-                extremes(outputs.len(), &functions.intervals(group), evaluate)
+                extremes(&functions.intervals(group), &functions.rounding(outputs), evaluate)
             } else {
                 let search = ExtremeSearch::new(group.len());
                 climb(&search, outputs.len(), &[], &[], &evaluate).into_iter().map(extent).collect()
@@ -163,10 +165,14 @@ impl Functions<'_> {
     fn intervals(&self, axes: &[usize]) -> Vec<usize> {
         intervals(self.degrees, axes, self.are_polynomials)
     }
+
+    fn rounding(&self, outputs: &[usize]) -> Vec<f64> {
+        outputs.iter().map(|&output| self.rounding[output]).collect()
+    }
 }
 
 /// Intervals of the first lattice along some axes, for polynomials or what is composed of them.
-pub(super) fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
+fn intervals(degrees: &[u8], axes: &[usize], are_polynomials: bool) -> Vec<usize> {
     let place = axes.len().clamp(1, MOST_PARAMETERS) - 1;
     let each = if are_polynomials { POLYNOMIAL[place] } else { COMPOSED[place] };
     let along = |&axis: &usize| LEAST_INTERVALS[place].max(each * usize::from(degrees[axis])).next_multiple_of(2);

@@ -1,19 +1,39 @@
 //! Which tolerance matters: Sobol indices of every parameter for every output, row by row.
 
+use std::f64::consts::PI;
+
+use symdiff::math;
+
 use super::composition::Row;
-use super::range_search::intervals;
 use crate::methods::result::Sensitivity;
-use crate::numerics::{Extent, ParameterBox, Range, SobolDecomposition, Surrogate, SurrogateWork, extremes};
+use crate::numerics::{
+    Extent, ParameterBox, Range, SobolDecomposition, SparseBasis, SparseWork, Surrogate, SurrogateWork, TensorGrid,
+};
 
 /// Degree of the polynomials whose variance is decomposed, by the number of parameters: those of the outputs, which follow from
 /// the coordinates' at any number of points. For more parameters it is the surrogate's own basis.
-const DEGREES: [usize; 3] = [24, 12, 8];
+const DEGREES: [u8; 3] = [24, 12, 8];
+
+/// Intervals for each degree on which widths without a parameter are found: nothing hangs on these but the order of the parameters.
+const DENSITY: usize = 4;
+
+/// Polynomials of the outputs themselves, of a degree that most of them need not have.
+struct Fine {
+    surrogate: Surrogate,
+    decomposition: SobolDecomposition,
+    /// C_j of every degree j at the nominal value of each parameter.
+    nominal: Vec<Vec<f64>>,
+    /// Of all parameters but one.
+    without: SparseBasis,
+    /// ξ of these on which their polynomials' ranges are found.
+    lattice: Vec<Vec<f64>>,
+}
 
 /// What is the same in all rows.
 pub(super) struct SensitivityAnalysis {
     /// ξ of the nominal parameters.
     nominal: Vec<f64>,
-    fine: Option<(Surrogate, SobolDecomposition)>,
+    fine: Option<Fine>,
     own: SobolDecomposition,
     /// Whether any interval is wider than its rounding: else all that varies is rounding.
     varies: bool,
@@ -23,12 +43,9 @@ impl SensitivityAnalysis {
     /// For outputs that are composed from a surrogate over a box.
     pub fn new(domain: &ParameterBox, surrogate: &Surrogate) -> Self {
         let k = domain.dimension();
-        let fine = k.checked_sub(1).and_then(|place| DEGREES.get(place)).map(|&degree| {
-            let fine = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
-            let decomposition = SobolDecomposition::new(fine.basis());
-            (fine, decomposition)
-        });
-        let nominal = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
+        let nominal: Vec<f64> = domain.xi(&domain.nominal).into_iter().map(|xi| xi.clamp(-1.0, 1.0)).collect();
+        let degree = k.checked_sub(1).and_then(|place| DEGREES.get(place));
+        let fine = degree.map(|&degree| Fine::new(degree, &nominal));
         let varies = (0..k).any(|axis| domain.half_width(axis) > f64::EPSILON * domain.midpoint(axis).abs());
         Self { nominal, fine, own: SobolDecomposition::new(surrogate.basis()), varies }
     }
@@ -36,12 +53,12 @@ impl SensitivityAnalysis {
     /// Sensitivities of every output, whose ranges are known.
     pub fn of_row(&self, row: &Row, found: &[Extent]) -> Vec<Sensitivity> {
         let (surrogate, decomposition) = match &self.fine {
-            Some((fine, decomposition)) => (fine, decomposition),
+            Some(fine) => (&fine.surrogate, &fine.decomposition),
             None => (row.surrogate(), &self.own),
         };
         let coefficients = surrogate.coefficients(&row.evaluate(surrogate.samples()), &mut SurrogateWork::default());
         let k = self.nominal.len();
-        let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, found, axis)).collect();
+        let widths: Vec<Vec<f64>> = (0..k).map(|axis| self.widths_without(row, &coefficients, found, axis)).collect();
         let of_output = |(output, coefficients): (usize, &[f64])| {
             let (main, total) = match decomposition.indices(coefficients).filter(|_| self.varies) {
                 Some(indices) => (indices.main, indices.total),
@@ -53,15 +70,11 @@ impl SensitivityAnalysis {
         coefficients.chunks_exact(surrogate.basis().len()).enumerate().map(of_output).collect()
     }
 
-    /// Every output's width with one parameter at its nominal value. For many parameters, as far as the places of the extremes
-    /// tell, which is all there is to know of an output that rises or falls with each.
-    fn widths_without(&self, row: &Row, found: &[Extent], axis: usize) -> Vec<f64> {
-        if self.fine.is_some() {
-            let insert = |xi: &Vec<f64>| [&xi[..axis], &[self.nominal[axis]], &xi[axis..]].concat();
-            let evaluate = |points: &[Vec<f64>]| row.evaluate(&points.iter().map(insert).collect::<Vec<_>>());
-            let others: Vec<usize> = (0..self.nominal.len()).filter(|&other| other != axis).collect();
-            let ranges = extremes(found.len(), &intervals(row.degrees(), &others, false), evaluate);
-            return ranges.into_iter().map(|found| found.range.width()).collect();
+    /// Every output's width with one parameter at its nominal value, from the outputs' `coefficients`. For many parameters, as far as
+    /// the places of the extremes tell, which is all there is to know of an output that rises or falls with each.
+    fn widths_without(&self, row: &Row, coefficients: &[f64], found: &[Extent], axis: usize) -> Vec<f64> {
+        if let Some(fine) = &self.fine {
+            return fine.widths_without(coefficients, axis);
         }
         let replaced = |place: &Vec<f64>| {
             let mut place = place.clone();
@@ -71,5 +84,51 @@ impl SensitivityAnalysis {
         let points: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().map(replaced)).collect();
         let values = row.evaluate(&points);
         values.chunks_exact(points.len()).map(|line| Range::of(line).width()).collect()
+    }
+}
+
+impl Fine {
+    fn new(degree: u8, nominal: &[f64]) -> Self {
+        let k = nominal.len();
+        let orders = vec![usize::from(degree); k];
+        let nodes: Vec<usize> = orders.iter().map(|order| order + 1).collect();
+        let surrogate = Surrogate::tensor(&orders, &nodes);
+        let decomposition = SobolDecomposition::new(surrogate.basis());
+        let intervals = DENSITY * usize::from(degree);
+        let axis: Vec<f64> = (0..=intervals).map(|l| -math::cos(PI * l as f64 / intervals as f64)).collect();
+        let lattice = TensorGrid::new(vec![axis; k - 1]);
+        let chebyshev = |xi: f64| {
+            let mut last = [1.0, xi];
+            let next = |_| {
+                let [this, following] = last;
+                last = [following, 2.0 * xi * following - this];
+                this
+            };
+            (0..=degree).map(next).collect()
+        };
+        Self {
+            surrogate,
+            decomposition,
+            nominal: nominal.iter().map(|&xi| chebyshev(xi)).collect(),
+            without: SparseBasis::tensor(&vec![degree; k - 1]),
+            lattice: (0..lattice.len()).map(|place| lattice.sample(place)).collect(),
+        }
+    }
+
+    /// Widths of the outputs' polynomials with the parameter of an axis at its nominal value.
+    fn widths_without(&self, coefficients: &[f64], axis: usize) -> Vec<f64> {
+        let values_at = &self.nominal[axis];
+        let stride = values_at.len().pow((self.nominal.len() - 1 - axis) as u32);
+        let terms = coefficients.len() / values_at.len();
+        let mut held = Vec::with_capacity(terms);
+        for block in coefficients.chunks_exact(stride * values_at.len()) {
+            let at = |place: usize| -> f64 {
+                block[place..].iter().step_by(stride).zip(values_at).map(|(c, value)| c * value).sum()
+            };
+            held.extend((0..stride).map(at));
+        }
+        let mut values = vec![0.0; terms / self.without.len() * self.lattice.len()];
+        self.without.values(&self.lattice, &held, &mut values, &mut SparseWork::default());
+        values.chunks_exact(self.lattice.len()).map(|line| Range::of(line).width()).collect()
     }
 }

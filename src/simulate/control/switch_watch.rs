@@ -63,6 +63,18 @@ impl<'s> SwitchWatch<'s> {
         self.after = values;
     }
 
+    /// The least and the largest value that a switch has in the step between [`begin`](Self::begin) and [`end`](Self::end), as far as its
+    /// ends and a change of sign between them show.
+    pub fn extent(&self, switch: usize, lane: usize, h: f64) -> [f64; 2] {
+        let place = switch * self.tile.width() + lane;
+        let (start, end) = (self.before[place], self.after[place]);
+        let [low, high] = [start[0].min(end[0]), start[0].max(end[0])];
+        match crossing(start, end, h) {
+            Some(Crossing { hidden: true, .. }) => [low.min(-high), high.max(-low)],
+            _ => [low, high],
+        }
+    }
+
     /// (value, rate) of each switch, switch by switch, lane by lane; a rate is NaN where it is not known.
     fn evaluate(&mut self, stepper: &Stepper, into: &mut Vec<[f64; 2]>) {
         let layout = &self.program.layout;

@@ -4,6 +4,7 @@ mod jets;
 mod lane_steps;
 mod row_accelerations;
 mod run;
+mod switch_extents;
 
 pub use jets::JetRun;
 pub use run::{EnsembleRun, Observed, Stop};

@@ -5,6 +5,7 @@ use symdiff::WIDTHS;
 
 use super::lane_steps::LaneSteps;
 use super::row_accelerations::RowAccelerations;
+use super::switch_extents::SwitchExtents;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
@@ -42,6 +43,10 @@ struct TileRun<'s> {
     count: usize,
     /// With a tolerance: keeps all lanes within it.
     lanes: Option<LaneSteps<'s>>,
+    /// The first row before which a lane's local errors add up to more than the tolerance.
+    beyond: Option<usize>,
+    /// Where switches are observed.
+    switches: Option<SwitchExtents<'s>>,
     /// Whether the first rows were advanced to.
     begun: bool,
     /// The first of the samples that stopped, and its state at the beginning of the failed step.
@@ -57,6 +62,8 @@ pub enum Observed {
     Outputs,
     /// Positions, then velocities (2n), then the model's outputs.
     Motion,
+    /// Positions, then velocities (2n), then of each switch the least and the largest value since the row before.
+    Switches,
 }
 
 impl Observed {
@@ -65,6 +72,9 @@ impl Observed {
         match self {
             Self::Outputs => simulator.program.outputs.len(),
             Self::Motion => 2 * simulator.program.scale.len() + simulator.program.outputs.len(),
+            Self::Switches => {
+                2 * simulator.program.scale.len() + 2 * simulator.switches().map_or(0, |program| program.switches.len())
+            }
         }
     }
 }
@@ -127,6 +137,8 @@ impl<'s> EnsembleRun<'s> {
                     first,
                     count,
                     lanes: None,
+                    beyond: None,
+                    switches: None,
                     stopped: None,
                     watch: None,
                 })
@@ -208,6 +220,11 @@ impl<'s> EnsembleRun<'s> {
         not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
     }
 
+    /// The first row before which a sample's local errors add up to more than the tolerance.
+    pub fn beyond_tolerance_from(&self) -> Option<usize> {
+        self.tiles.iter().filter_map(|tile| tile.beyond).min()
+    }
+
     /// The sample with the largest sum of local errors over the tolerance, and that sum.
     pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
         let ratios = self.tiles.iter().flat_map(|tile| {
@@ -230,6 +247,12 @@ impl TileRun<'_> {
         if !std::mem::replace(&mut self.begun, true) {
             self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), tolerance.is_some());
             self.lanes = tolerance.map(|controller| LaneSteps::new(self.simulator, controller, &mut self.stepper));
+            let observes_switches = observed == Observed::Switches;
+            self.switches = self
+                .simulator
+                .switches()
+                .filter(|_| observes_switches)
+                .map(|program| SwitchExtents::new(program, &self.stepper));
         }
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
@@ -241,6 +264,9 @@ impl TileRun<'_> {
                 }
                 self.stepper.set_step_size(h);
                 self.stepper.refine(self.observes_accelerations && steps.peek().is_none());
+                if let Some(switches) = &mut self.switches {
+                    switches.begin(&self.stepper);
+                }
                 let failures = match &mut self.lanes {
                     Some(lanes) => lanes.step(&mut self.stepper, h, end),
                     None => self.stepper.step(h, end),
@@ -251,6 +277,9 @@ impl TileRun<'_> {
                 if let Some(watch) = &mut self.watch {
                     watch.look(&self.stepper, end);
                 }
+                if let Some(switches) = &mut self.switches {
+                    switches.end(&self.stepper, h);
+                }
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
                     sample: self.first + lane,
                     row,
@@ -260,6 +289,10 @@ impl TileRun<'_> {
                     singular: false,
                 }));
             }
+            let is_beyond = |lanes: &LaneSteps| lanes.error_ratios()[..self.count].iter().any(|&ratio| ratio > 1.0);
+            if self.beyond.is_none() && self.lanes.as_ref().is_some_and(is_beyond) {
+                self.beyond = Some(row);
+            }
             let values = &mut values[place * outputs * width..][..outputs * width];
             match observed {
                 Observed::Outputs => self.observe(values),
@@ -267,6 +300,13 @@ impl TileRun<'_> {
                     let (motion, outputs) = values.split_at_mut(2 * self.stepper.coordinates() * width);
                     self.stepper.copy_motion(motion);
                     self.observe(outputs);
+                }
+                Observed::Switches => {
+                    let (motion, extents) = values.split_at_mut(2 * self.stepper.coordinates() * width);
+                    self.stepper.copy_motion(motion);
+                    if let Some(switches) = &mut self.switches {
+                        switches.take(extents);
+                    }
                 }
             }
         }

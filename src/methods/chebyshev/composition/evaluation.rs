@@ -51,25 +51,32 @@ impl Row<'_> {
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        self.evaluate_shifted(points, &[])
+        self.evaluate_shifted(points, &[Vec::new()])
     }
 
-    pub(super) fn evaluate_shifted(&self, points: &[Vec<f64>], shift: &[(usize, f64)]) -> Vec<f64> {
-        let mut motion = vec![0.0; self.extent.len() * points.len()];
+    /// Every output with some lines shifted, output by output, shift by shift, point by point.
+    pub(super) fn evaluate_shifted(&self, points: &[Vec<f64>], shifts: &[Vec<(usize, f64)>]) -> Vec<f64> {
         let lines = if self.closure.needs_velocities() { self.extent.len() } else { self.extent.len() / 2 };
-        self.expand(points, &mut motion[..lines * points.len()]);
-        for &(line, shift) in shift {
-            motion[line * points.len()..][..points.len()].iter_mut().for_each(|value| *value += shift);
+        let mut expanded = vec![0.0; lines * points.len()];
+        self.expand(points, &mut expanded);
+        let count = shifts.len() * points.len();
+        let mut motion = vec![0.0; self.extent.len() * count];
+        for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
+            for (place, shift) in shifts.iter().enumerate() {
+                let by: f64 = shift.iter().filter(|shift| shift.0 == line).map(|shift| shift.1).sum();
+                let into = &mut motion[line * count + place * points.len()..][..points.len()];
+                into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
+            }
         }
         // Dependent coordinates are only a guess, and are kept within what the samples have.
         let n = self.extent.len() / 2;
-        for (line, (values, &(low, high))) in motion.chunks_exact_mut(points.len().max(1)).zip(&self.extent).enumerate()
-        {
+        for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(&self.extent).enumerate() {
             if !self.closure.independent().contains(&(line % n)) && low <= high {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
-        self.close(points, motion)
+        let all: Vec<Vec<f64>> = shifts.iter().flat_map(|_| points.iter().cloned()).collect();
+        self.close(&all, motion)
     }
 
     /// The polynomials' values: 2n lines of points.

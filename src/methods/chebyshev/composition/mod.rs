@@ -5,34 +5,26 @@
 //! place: its range costs no closure. Where it is NaN, or not what the samples' simulations say, so does that polynomial, as
 //! with `expand: output`.
 
+mod errors;
 mod evaluation;
-
-use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use super::range_search::{Evaluate, Functions, Previous, RangeSearch, extent};
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
-use crate::methods::validation::ValidationTable;
-use crate::numerics::{
-    Extent, Extremes, ParameterBox, Range, Surrogate, SurrogateWork, corners, extremes_near, largest, step_error,
-    surrogate_error, truncation,
-};
+use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error};
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
 const MOST_COORDINATES: usize = 300;
 
 /// An output is the polynomial through its samples where both differ by less than this share of its range, and so many units of
 /// rounding of its values.
-const ALIKE: f64 = 1e-7;
+const ALIKE: f64 = 1e-10;
 const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// An output does not follow from the coordinates where it differs from its simulated samples by this share of their range and this
 /// one of their values. (Accelerations and reactions of the samples have errors of the scheme that those which follow do not have.)
 const DISAGREES: (f64, f64) = (0.25, 1e-3);
-
-/// So many independent coordinates are moved one by one.
-const MOST_MOVED: usize = 4;
 
 /// Samples at which outputs are held against the simulation, at most.
 const COMPARED: usize = 24;
@@ -142,6 +134,19 @@ pub(super) struct Found {
     pub expanded: Vec<bool>,
 }
 
+/// Outputs by how their ranges are found.
+#[derive(Default)]
+struct Sorted {
+    /// They are the polynomials through their own samples,
+    alike: Vec<usize>,
+    /// they follow from the coordinates,
+    composed: Vec<usize>,
+    /// or are not what follows from them.
+    lost: Vec<usize>,
+    /// How far each is from its own polynomial.
+    defects: Vec<f64>,
+}
+
 impl<'r> Row<'r> {
     fn new(
         ensemble: &'r dyn Ensemble,
@@ -167,85 +172,6 @@ impl<'r> Row<'r> {
         self.surrogate
     }
 
-    /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
-    /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
-    pub fn errors(
-        &self,
-        range_search: &RangeSearch,
-        (points, direct): (&[Vec<f64>], &ValidationTable),
-        row: usize,
-        Found { extents, expanded }: &Found,
-    ) -> Vec<f64> {
-        if row >= direct.rows() {
-            return vec![f64::NAN; extents.len()];
-        }
-        let moved = self.moved(range_search, extents, &self.coordinate_errors(points, direct.motion(row)));
-        let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
-            let simulated = direct.at(row, output);
-            if expanded[output] {
-                let own = self.own_polynomials(&[output], points);
-                let tail = truncation(self.surrogate.basis(), self.own_coefficients(output));
-                return found.gap + largest([surrogate_error(&own, &simulated), tail]);
-            }
-            let outside = simulated.into_iter().map(|value| found.range.distance(value));
-            found.gap + largest(outside.chain([moved]))
-        };
-        extents.iter().zip(moved).enumerate().map(error).collect()
-    }
-
-    /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
-    /// and with halved ones, move the ends.
-    pub fn step_errors(
-        &self,
-        range_search: &RangeSearch,
-        (direct, halved): (&ValidationTable, &ValidationTable),
-        row: usize,
-        Found { extents, expanded }: &Found,
-    ) -> Vec<f64> {
-        if row >= direct.rows() || row >= halved.rows() {
-            return vec![f64::NAN; extents.len()];
-        }
-        let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        let moved = self.moved(range_search, extents, &errors);
-        // Of what does not follow from coordinates, their errors say nothing.
-        moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
-    }
-
-    /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
-    ///
-    /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
-    /// moved together: all one way, or every other one against the rest.
-    fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
-        let coordinates = errors.len() / 2;
-        let one_by_one = coordinates <= MOST_MOVED;
-        let rounds = if one_by_one { coordinates } else { 2 };
-        let mut moved = vec![0.0; found.len()];
-        for round in 0..rounds {
-            let weight = |coordinate: usize| match (one_by_one, coordinate == round) {
-                (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-                (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
-                (false, _) => 1.0,
-            };
-            let mut own = vec![0.0; found.len()];
-            for sign in [1.0, -1.0] {
-                let shift = |(place, &(line, error)): (usize, &(usize, f64))| match weight(place / 2) {
-                    0.0 => None,
-                    weight => Some((line, sign * weight * error)),
-                };
-                let shift: Vec<(usize, f64)> = errors.iter().enumerate().filter_map(shift).collect();
-                let shifted = self.range_near(range_search, found, &shift);
-                for ((own, found), shifted) in own.iter_mut().zip(found).zip(&shifted) {
-                    let ends = [found.range.lower - shifted.range.lower, found.range.upper - shifted.range.upper];
-                    *own = largest(ends.into_iter().chain([*own]));
-                }
-            }
-            for (moved, own) in moved.iter_mut().zip(own) {
-                *moved = if one_by_one { *moved + own } else { largest([*moved, own]) };
-            }
-        }
-        moved
-    }
-
     /// Every output's range over the box.
     pub fn range(&self, range_search: &RangeSearch, previous: &mut Previous) -> Found {
         let outputs = self.ensemble.outputs();
@@ -255,23 +181,13 @@ impl<'r> Row<'r> {
         let all: Vec<Vec<f64>> = points.iter().cloned().chain(nodes).collect();
         let values = self.evaluate(&all);
         let every: Vec<usize> = (0..outputs).collect();
+        let rounding: Vec<f64> = every.iter().map(|&output| self.rounding(output)).collect();
         let own = self.own_polynomials(&every, points);
-        let (mut polynomials, mut composed) = (Vec::new(), Vec::new());
-        let (mut defects, mut expanded) = (vec![0.0; outputs], vec![false; outputs]);
-        for output in 0..outputs {
+        let at = |output: usize| {
             let (here, at_nodes) = values[output * all.len()..][..all.len()].split_at(points.len());
-            let own = &own[output * points.len()..][..points.len()];
-            expanded[output] = self.disagrees(output, &compared, at_nodes);
-            let defect = surrogate_error(own, here);
-            if expanded[output] {
-                polynomials.push(output);
-            } else if defect <= self.rounding(output) {
-                defects[output] = defect;
-                polynomials.push(output);
-            } else {
-                composed.push(output);
-            }
-        }
+            (here, at_nodes, &own[output * points.len()..][..points.len()])
+        };
+        let Sorted { alike, mut composed, mut lost, defects } = self.sorted(&compared, &rounding, at);
         let of = |outputs: &[usize], values: &[f64], stride: usize| -> Vec<Vec<f64>> {
             outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
         };
@@ -281,48 +197,97 @@ impl<'r> Row<'r> {
             let values = self.evaluate(points);
             wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
         };
+        let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
+        let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
+            let functions = self.functions(outputs.to_vec(), true, (&rounding, &places), &by_coefficients);
+            range_search.range(&functions, &of(outputs, &own, points.len()), previous)
+        };
+        let found = of_polynomials(&alike, previous);
+        for ((&output, mut extent), apart) in alike.iter().zip(found.clone()).zip(self.apart_at_ends(&alike, &found)) {
+            // A kink beside all samples shows where the range ends. Written so that NaN does too.
+            if apart <= self.alike(output, &rounding) + extent.gap {
+                extent.gap += largest([defects[output], apart]);
+                extents[output] = extent;
+            } else {
+                composed.push(output);
+            }
+        }
+        composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
-        let functions = self.functions(composed, false, &places, &by_closure);
+        let functions = self.functions(composed, false, (&rounding, &places), &by_closure);
         for (&output, extent) in
             functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
         {
             if extent.range.width().is_finite() {
                 extents[output] = extent;
             } else {
-                expanded[output] = true;
-                polynomials.push(output);
+                lost.push(output);
             }
         }
-        let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
-        let own_values = of(&polynomials, &own, points.len());
-        let functions = self.functions(polynomials, true, &places, &by_coefficients);
-        for (&output, mut extent) in functions.outputs.iter().zip(range_search.range(&functions, &own_values, previous))
-        {
-            extent.gap += defects[output];
-            extents[output] = extent;
+        let mut expanded = vec![false; outputs];
+        for (&output, extent) in lost.iter().zip(of_polynomials(&lost, previous)) {
+            (extents[output], expanded[output]) = (extent, true);
         }
         Found { extents, expanded }
+    }
+
+    /// What becomes of each output, given its values at some points and at the compared samples, and its own polynomial's at the points.
+    fn sorted<'v>(
+        &self,
+        compared: &[usize],
+        rounding: &[f64],
+        at: impl Fn(usize) -> (&'v [f64], &'v [f64], &'v [f64]),
+    ) -> Sorted {
+        let mut sorted = Sorted::default();
+        for output in 0..self.ensemble.outputs() {
+            let (here, at_nodes, own) = at(output);
+            let defect = surrogate_error(own, here);
+            sorted.defects.push(defect);
+            if self.disagrees(output, compared, at_nodes) {
+                sorted.lost.push(output);
+            } else if defect <= self.alike(output, rounding) {
+                sorted.alike.push(output);
+            } else {
+                sorted.composed.push(output);
+            }
+        }
+        sorted
+    }
+
+    /// By how much an output and its own polynomial may differ and still be the same.
+    fn alike(&self, output: usize, rounding: &[f64]) -> f64 {
+        ALIKE * Range::of(self.own_samples(output)).width() + rounding[output]
+    }
+
+    /// How far outputs, as they follow from the coordinates, are from the ends of these ranges where those are attained.
+    fn apart_at_ends(&self, outputs: &[usize], found: &[Extent]) -> Vec<f64> {
+        if outputs.is_empty() {
+            return Vec::new();
+        }
+        let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
+        let values = self.evaluate(&places);
+        let of_output = |(place, (&output, found)): (usize, (&usize, &Extent))| {
+            let values = &values[output * places.len() + 2 * place..][..2];
+            largest([values[0] - found.range.lower, values[1] - found.range.upper])
+        };
+        outputs.iter().zip(found).enumerate().map(of_output).collect()
     }
 
     fn functions<'f>(
         &'f self,
         outputs: Vec<usize>,
         are_polynomials: bool,
-        places: &'f [Vec<f64>],
+        (rounding, places): (&'f [f64], &'f [Vec<f64>]),
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
-        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, places, evaluate }
+        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, rounding, places, evaluate }
     }
 
-    /// Highest degree along each axis.
-    pub fn degrees(&self) -> &[u8] {
-        self.surrogate.basis().orders()
-    }
-
-    /// What is too small a difference of an output to be one.
+    /// What of an output is too small a difference to be one.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
-        ALIKE * range.width() + ROUNDING * range.lower.abs().max(range.upper.abs())
+        // Of what is not a number nothing is known.
+        ROUNDING * range.lower.abs().max(range.upper.abs()).max(0.0)
     }
 
     /// Samples at which outputs are held against the simulation, spread over all.
@@ -371,19 +336,6 @@ impl<'r> Row<'r> {
             seeds.extend(self.best_corners());
         }
         seeds
-    }
-
-    /// Ranges with some lines shifted, near those that are known.
-    fn range_near(&self, range_search: &RangeSearch, near: &[Extent], shift: &[(usize, f64)]) -> Vec<Extent> {
-        let evaluate = |points: &[Vec<f64>]| self.evaluate_shifted(points, shift);
-        let Some(search) = range_search.climbs() else { return extremes_near(near, evaluate) };
-        let near: Vec<Extremes> = near.iter().map(|near| Extremes::at(near.range, near.places.clone())).collect();
-        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
-            values.copy_from_slice(&evaluate(points));
-            Ok::<(), Infallible>(())
-        };
-        let Ok(found) = search.extremes(self.ensemble.outputs(), &near, &[], evaluate);
-        found.into_iter().map(extent).collect()
     }
 
     /// For each output the corners of the box at which it is least and largest.

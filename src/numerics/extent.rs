@@ -1,0 +1,52 @@
+//! What a search says of a function's range: its ends, where they are, and how far they may be missed.
+
+use super::range::Range;
+
+/// First distance of neighbours in the search near a known extreme, at most.
+pub(super) const NEAR: f64 = 0.1;
+
+/// A function's range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extent {
+    /// The least and the largest value found.
+    pub range: Range,
+    /// How far the search may have missed its ends.
+    pub gap: f64,
+    /// ξ of the least and of the largest value.
+    pub places: [Vec<f64>; 2],
+    /// Distances within which nothing else was seen beside them, along each axis.
+    pub spacing: [Vec<f64>; 2],
+}
+
+impl Extent {
+    /// Of what cannot be bounded.
+    pub fn unknown(dimension: usize) -> Self {
+        let zeros = || [vec![0.0; dimension], vec![NEAR; dimension]];
+        let [place, spacing] = zeros();
+        Self {
+            range: Range::UNKNOWN,
+            gap: f64::NAN,
+            places: [place.clone(), place],
+            spacing: [spacing.clone(), spacing],
+        }
+    }
+
+    /// Found at these places.
+    pub fn at(range: Range, gap: f64, places: [Vec<f64>; 2]) -> Self {
+        let spacing = [vec![NEAR; places[0].len()], vec![NEAR; places[1].len()]];
+        Self { range, gap, places, spacing }
+    }
+
+    /// Takes in values at other points. What lies beyond the range had been missed.
+    pub fn include(&mut self, points: &[Vec<f64>], values: &[f64]) {
+        for (point, &value) in points.iter().zip(values) {
+            let beyond = self.range.distance(value);
+            if beyond > 0.0 {
+                let end = usize::from(value > self.range.upper);
+                self.range = Range { lower: self.range.lower.min(value), upper: self.range.upper.max(value) };
+                self.places[end].clone_from(point);
+                self.gap += beyond;
+            }
+        }
+    }
+}

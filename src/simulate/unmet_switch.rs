@@ -1,0 +1,328 @@
+//! Switches that some parameter values meet and no sample does: a post that only some throws hit, a stop that only the
+//! fastest reach.
+//!
+//! The motions of samples at Chebyshev nodes are polynomials in the parameters, row by row, and cubics in time between rows. Over both
+//! the values of the switches are ranged: where one can change its sign and no sample's does, that place is simulated itself. If it
+//! does switch, what the samples say holds no more from there on.
+
+use symdiff::Tile;
+
+use super::control::{Controller, Schedule};
+use super::ensemble::{EnsembleRun, Observed};
+use super::error::SimulationError;
+use super::simulator::Simulator;
+use crate::compile::SwitchProgram;
+use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes};
+
+/// Degree of the motions' polynomials by the number of parameters; more than these are not looked at.
+const DEGREES: [usize; 3] = [12, 6, 4];
+
+/// Intervals of the first look over the box, by the number of parameters, and over the time between two rows.
+const INTERVALS: [usize; 3] = [32, 10, 6];
+const INTERVALS_OF_TIME: usize = 4;
+
+/// A switch is looked at more closely where its least distance from zero is less than this share of its range.
+const NEAR: f64 = 0.25;
+
+/// What of a switch is zero, as a share of its largest value.
+const ZERO: f64 = 1e-9;
+
+/// The same sign at another sample no further away than so many rows, or this share of all, is the same event.
+const ROWS: usize = 2;
+const SHARE_OF_ROWS: usize = 20;
+
+/// Most places that are simulated, for each sign of each switch: the first ones, and those that go furthest.
+const MOST_FIRST: usize = 6;
+const MOST_FURTHEST: usize = 6;
+
+/// Points evaluated at once.
+const WIDTH: usize = 32;
+/// Rows simulated at once.
+const BLOCK: usize = 64;
+
+/// The signs that a switch had since the row before: below zero, above.
+type Signs = [bool; 2];
+
+/// A place where a switch may have a sign that no sample's has.
+#[derive(Clone, Debug)]
+struct Suspect {
+    row: usize,
+    switch: usize,
+    side: usize,
+    /// How far beyond zero, as a share of the switch's size.
+    beyond: f64,
+    xi: Vec<f64>,
+}
+
+/// The first row before which a switch changes its sign for some parameter values of the box and for none of the samples, of which
+/// `held_out` are some. `None` where there is none, no switch, or too many parameters.
+///
+/// # Errors
+/// Where a sample cannot be assembled.
+pub fn unmet_switch(
+    simulator: &Simulator,
+    domain: &ParameterBox,
+    (schedule, tolerance): (&Schedule, Option<Controller>),
+    held_out: &[Vec<f64>],
+    interrupted: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<usize>, SimulationError> {
+    let k = domain.dimension();
+    let (Some(program), Some(&degree)) = (simulator.switches(), k.checked_sub(1).and_then(|place| DEGREES.get(place)))
+    else {
+        return Ok(None);
+    };
+    let surrogate = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
+    let nodes = surrogate.samples().len();
+    let points = [surrogate.samples(), held_out].concat();
+    let observing = Observing { simulator, program, domain, schedule, tolerance, interrupted };
+    let mut suspects = Vec::new();
+    let mut before: Option<Vec<f64>> = None;
+    let mut work = SurrogateWork::default();
+    let between = Between::new(simulator, program, domain, &surrogate);
+    let signs = observing.run(&points, nodes, |row, motions, met| {
+        let of_nodes: Vec<f64> = motions.chunks_exact(points.len()).flat_map(|line| line[..nodes].to_vec()).collect();
+        let coefficients = surrogate.coefficients(&of_nodes, &mut work);
+        if let Some(before) = before.replace(coefficients.clone()) {
+            let times = [schedule.time(row - 1), schedule.time(row)];
+            suspects.extend(between.suspects(row, times, [&before, &coefficients], &one_sided(program, met)));
+        }
+    })?;
+    let reach = ROWS.max(signs.len() / SHARE_OF_ROWS);
+    let is_met = |row: usize, switch: usize, side: usize| {
+        let rows = row.saturating_sub(reach)..(row + reach + 1).min(signs.len());
+        signs[rows].iter().any(|[_, held_out]| held_out[switch][side])
+    };
+    let first_unmet = |of_samples: &[[Vec<Signs>; 2]]| {
+        let unmet = |row: usize, signs: &[Signs]| {
+            (0..signs.len()).any(|switch| (0..2).any(|side| signs[switch][side] && !is_met(row, switch, side)))
+        };
+        of_samples.iter().take(signs.len()).enumerate().position(|(row, [of_samples, _])| unmet(row, of_samples))
+    };
+    let by_nodes = first_unmet(&signs);
+    suspects.retain(|suspect| !is_met(suspect.row, suspect.switch, suspect.side));
+    let chosen = chosen(suspects, program.switches.len());
+    let by_suspects =
+        if chosen.is_empty() { None } else { first_unmet(&observing.run(&chosen, chosen.len(), |_, _, _| ())?) };
+    Ok(by_nodes.into_iter().chain(by_suspects).min())
+}
+
+/// Switches whose rates are known and that had one sign only, with the other one: 0 below zero, 1 above.
+fn one_sided(program: &SwitchProgram, met: &[Signs]) -> Vec<(usize, usize)> {
+    let other = |(switch, met): (usize, &Signs)| {
+        let side = usize::from(met[0]);
+        (program.switches[switch].1.is_some() && met[0] != met[1]).then_some((switch, side))
+    };
+    met.iter().enumerate().filter_map(other).collect()
+}
+
+/// ξ of the places that are worth a simulation.
+fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    for (switch, side) in (0..switches).flat_map(|switch| [(switch, 0), (switch, 1)]) {
+        let mut own: Vec<&Suspect> =
+            suspects.iter().filter(|suspect| (suspect.switch, suspect.side) == (switch, side)).collect();
+        let mut places: Vec<&Vec<f64>> = own.iter().take(MOST_FIRST).map(|suspect| &suspect.xi).collect();
+        own.sort_by(|a, b| b.beyond.total_cmp(&a.beyond).then(a.row.cmp(&b.row)));
+        places.extend(own.iter().take(MOST_FURTHEST).map(|suspect| &suspect.xi));
+        places.into_iter().for_each(|xi| {
+            if !chosen.contains(xi) {
+                chosen.push(xi.clone());
+            }
+        });
+    }
+    chosen
+}
+
+/// How samples are simulated.
+struct Observing<'a> {
+    simulator: &'a Simulator,
+    program: &'a SwitchProgram,
+    domain: &'a ParameterBox,
+    schedule: &'a Schedule,
+    tolerance: Option<Controller>,
+    interrupted: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Observing<'_> {
+    /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and the signs that switches
+    /// had since the row before. Returns those of all rows, of the first `split` samples and of the others.
+    fn run(
+        &self,
+        xi: &[Vec<f64>],
+        split: usize,
+        mut look: impl FnMut(usize, &[f64], &[Signs]),
+    ) -> Result<Vec<[Vec<Signs>; 2]>, SimulationError> {
+        let samples = self.domain.samples(xi);
+        let mut run = EnsembleRun::start(self.simulator, &samples, self.schedule.first_step())?;
+        let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
+        let stride = (lines + 2 * switches) * samples.len();
+        let mut sizes = vec![0.0_f64; switches];
+        let (mut all, mut values): (Vec<[Vec<Signs>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
+        for first in (0..self.schedule.rows).step_by(BLOCK) {
+            let rows = first..(first + BLOCK).min(self.schedule.rows);
+            let stops = run.advance(self.schedule, rows.clone(), self.tolerance, Observed::Switches, &mut values);
+            let reached = stops.iter().map(|stop| stop.row).min().unwrap_or(rows.end);
+            for (row, values) in (rows.start..reached).zip(values.chunks_exact(stride)) {
+                let (motions, extents) = values.split_at(lines * samples.len());
+                let switches = extents.chunks_exact(2 * samples.len());
+                let finite = |value: &&f64| value.is_finite();
+                for (size, extents) in sizes.iter_mut().zip(switches.clone()) {
+                    *size = extents.iter().filter(finite).fold(*size, |size, value| size.max(value.abs()));
+                }
+                let [mut before, mut after] = [Vec::new(), Vec::new()];
+                for (size, extents) in sizes.iter().zip(switches) {
+                    let (low, high) = extents.split_at(samples.len());
+                    before.push(signs(&low[..split], &high[..split], ZERO * size));
+                    after.push(signs(&low[split..], &high[split..], ZERO * size));
+                }
+                let either = |(a, b): (&Signs, &Signs)| [a[0] || b[0], a[1] || b[1]];
+                look(row, motions, &before.iter().zip(&after).map(either).collect::<Vec<Signs>>());
+                all.push([before, after]);
+            }
+            if reached < rows.end || (self.interrupted)() {
+                break;
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// The signs of least and largest values, of which less than `zero` is none. (Nothing has been seen before the first step.)
+fn signs(low: &[f64], high: &[f64], zero: f64) -> Signs {
+    [low.iter().any(|&low| low < -zero), high.iter().any(|&high| high > zero && high.is_finite())]
+}
+
+/// The values of switches between two rows, over the box.
+struct Between<'a> {
+    simulator: &'a Simulator,
+    program: &'a SwitchProgram,
+    domain: &'a ParameterBox,
+    surrogate: &'a Surrogate,
+}
+
+impl<'a> Between<'a> {
+    fn new(
+        simulator: &'a Simulator,
+        program: &'a SwitchProgram,
+        domain: &'a ParameterBox,
+        surrogate: &'a Surrogate,
+    ) -> Self {
+        Self { simulator, program, domain, surrogate }
+    }
+
+    /// Places where switches, each with a side of zero, may lie on that side between the row before and this one, given the motions'
+    /// coefficients in both.
+    fn suspects(
+        &self,
+        row: usize,
+        times: [f64; 2],
+        motions: [&[f64]; 2],
+        one_sided: &[(usize, usize)],
+    ) -> Vec<Suspect> {
+        let k = self.domain.dimension();
+        let switches: Vec<usize> = one_sided.iter().map(|&(switch, _)| switch).collect();
+        let mut intervals = vec![INTERVALS[k.min(INTERVALS.len()) - 1]; k];
+        intervals.push(INTERVALS_OF_TIME);
+        if switches.is_empty() {
+            return Vec::new();
+        }
+        let lattice = lattice(&intervals);
+        let values = self.values(&lattice, times, motions, &switches);
+        let near = |(place, line): (usize, &[f64])| {
+            let (low, high) = line.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+            let (distance, size) = if one_sided[place].1 == 0 { (low, high) } else { (-high, -low) };
+            (distance <= NEAR * (high - low) && size > 0.0).then_some((place, size))
+        };
+        let near: Vec<(usize, f64)> = values.chunks_exact(lattice.len()).enumerate().filter_map(near).collect();
+        if near.is_empty() {
+            return Vec::new();
+        }
+        let closer: Vec<usize> = near.iter().map(|&(place, _)| switches[place]).collect();
+        let least: Vec<f64> = near.iter().map(|(_, size)| ZERO * size).collect();
+        let found = extremes(&intervals, &least, |points| self.values(points, times, motions, &closer));
+        let suspect = |(&(place, size), found): (&(usize, f64), &Extent)| {
+            let (switch, side) = one_sided[place];
+            let beyond = if side == 0 { -found.range.lower } else { found.range.upper } / size;
+            (beyond > ZERO).then(|| Suspect { row, switch, side, beyond, xi: found.places[side][..k].to_vec() })
+        };
+        near.iter().zip(&found).filter_map(suspect).collect()
+    }
+
+    /// Values of switches, one after the other, at (ξ, time between the rows in −1 … 1).
+    fn values(&self, points: &[Vec<f64>], times: [f64; 2], motions: [&[f64]; 2], switches: &[usize]) -> Vec<f64> {
+        let (n, k) = (self.simulator.program.scale.len(), self.domain.dimension());
+        let mut at_rows = [vec![0.0; 2 * n * points.len()], vec![0.0; 2 * n * points.len()]];
+        let xi: Vec<&[f64]> = points.iter().map(|point| &point[..k]).collect();
+        for (at_row, motion) in at_rows.iter_mut().zip(motions) {
+            self.surrogate.basis().values(&xi, motion, at_row, &mut SparseWork::default());
+        }
+        let layout = &self.program.layout;
+        let mut tile = Tile::new(WIDTH, self.program.registers(), self.program.constants());
+        let h = times[1] - times[0];
+        let mut values = vec![0.0; switches.len() * points.len()];
+        for first in (0..points.len()).step_by(WIDTH) {
+            let count = WIDTH.min(points.len() - first);
+            for lane in 0..WIDTH {
+                let point = first + lane.min(count - 1);
+                let s = 0.5 * (1.0 + points[point][k]);
+                for parameter in 0..k {
+                    tile.lane_mut(layout.parameters.start + parameter)[lane] =
+                        self.domain.value(parameter, points[point][parameter]);
+                }
+                for line in 0..n {
+                    let of = |row: usize, line: usize| at_rows[row][line * points.len() + point];
+                    let cubic = hermite([of(0, line), of(1, line)], [of(0, n + line), of(1, n + line)], h, s);
+                    tile.lane_mut(layout.q.start + line)[lane] = cubic[0];
+                    tile.lane_mut(layout.v.start + line)[lane] = cubic[1];
+                }
+                tile.lane_mut(layout.time)[lane] = times[0] + s * h;
+            }
+            tile.run(self.program.sample());
+            tile.run(self.program.evaluate());
+            for (place, &switch) in switches.iter().enumerate() {
+                let (register, _) = self.program.switches[switch];
+                let into = &mut values[place * points.len() + first..][..count];
+                into.copy_from_slice(&tile.lane(register)[..count]);
+            }
+        }
+        values
+    }
+}
+
+/// Value and slope at the share s of a step of length h, of the cubic through values and slopes at its ends.
+fn hermite([a, b]: [f64; 2], [slope_a, slope_b]: [f64; 2], h: f64, s: f64) -> [f64; 2] {
+    let r = 1.0 - s;
+    let value = r * r * ((1.0 + 2.0 * s) * a + s * h * slope_a) + s * s * ((3.0 - 2.0 * s) * b - r * h * slope_b);
+    let slope = 6.0 * r * s * (b - a) / h + r * (1.0 - 3.0 * s) * slope_a + s * (3.0 * s - 2.0) * slope_b;
+    [value, slope]
+}
+
+/// Equidistant points, both ends included.
+fn lattice(intervals: &[usize]) -> Vec<Vec<f64>> {
+    intervals.iter().fold(vec![Vec::new()], |points, &count| {
+        let along = |point: Vec<f64>| {
+            let coordinates = (0..=count).map(move |place| 2.0 * place as f64 / count as f64 - 1.0);
+            coordinates.map(move |xi| [point.as_slice(), &[xi]].concat()).collect::<Vec<_>>()
+        };
+        points.into_iter().flat_map(along).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubics_are_met_between_rows() {
+        let f = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 3.0 * t.powi(3);
+        let slope = |t: f64| -2.0 + t - 9.0 * t * t;
+        let [value, rate] = hermite([f(0.2), f(0.6)], [slope(0.2), slope(0.6)], 0.4, 0.3);
+        assert!((value - f(0.32)).abs() < 1e-14 && (rate - slope(0.32)).abs() < 1e-13);
+    }
+
+    #[test]
+    fn lattices_hold_the_ends() {
+        let points = lattice(&[2, 4]);
+        assert_eq!((points.len(), &points[0], &points[14]), (15, &vec![-1.0, -1.0], &vec![1.0, 1.0]));
+    }
+}
