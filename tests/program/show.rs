@@ -22,12 +22,11 @@ joints:
   pin: { revolute: [wheel.B, link.B] }
   wrist: { revolute: [link.C, block] }
   guide: { prismatic: { between: [ground, block], axis: x } }
-  drive: { motor: { on: pivot, speed: 1 } }
+  drive: { motor: { on: pivot, speed: 1, from: 90 deg } }
 effects:
   spring: { spring_damper: { between: [ground, block], stiffness: 10 } }
   weight: { gravity: { acceleration: [0, -9.81] } }
-initial: { wheel.angle: 90 deg }
-guess: { block.x: 0.4 }
+guess: { wheel.angle: 90 deg, block.x: 0.4 }
 outputs: { x: block.x }
 simulation: { duration: 0.1, step: 1e-3, output_step: 0.1 }
 ";

@@ -129,6 +129,34 @@ impl Fine {
         }
         let mut values = vec![0.0; terms / self.without.len() * self.lattice.len()];
         self.without.values(&self.lattice, &held, &mut values, &mut SparseWork::default());
-        values.chunks_exact(self.lattice.len()).map(|line| Range::of(line).width()).collect()
+        values.chunks_exact(self.lattice.len()).map(|line| self.width(line)).collect()
+    }
+
+    /// The width of a function's range from its values on the lattice.
+    fn width(&self, line: &[f64]) -> f64 {
+        let [least, largest] = [-1.0, 1.0].map(|sign| {
+            let place = (0..line.len()).max_by(|&a, &b| f64::total_cmp(&(sign * line[a]), &(sign * line[b])));
+            place.map_or(f64::NAN, |place| self.peak(line, place, sign))
+        });
+        largest - least
+    }
+
+    /// The extreme beside the lattice's: along each axis a parabola through its neighbours, in the angle whose cosine ξ is, in which they
+    /// are equally far. At the ends of an axis the function is even in it.
+    fn peak(&self, line: &[f64], place: usize, sign: f64) -> f64 {
+        let points = DENSITY * (self.nominal[0].len() - 1) + 1;
+        let mut peak = line[place];
+        let mut stride = 1;
+        while stride < line.len() {
+            if (1..points - 1).contains(&(place / stride % points)) {
+                let (before, after) = (line[place - stride], line[place + stride]);
+                let bend = 2.0 * line[place] - before - after;
+                if sign * bend > 0.0 {
+                    peak += (after - before) * (after - before) / (8.0 * bend);
+                }
+            }
+            stride *= points;
+        }
+        peak
     }
 }

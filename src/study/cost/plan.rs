@@ -29,6 +29,9 @@ const SCAN_TRIAL: [usize; 3] = [64, 8, 4];
 /// The coarsest reference may take this share; with more, nothing would be left to compare with it.
 const MOST: f64 = 0.7;
 
+/// What orders add is only measured where a short run takes less than this share.
+const TRIAL: f64 = 0.05;
+
 /// Shares of the budget that the reference's surrogate and its scan may take.
 const SHARE: f64 = 0.35;
 const SCAN_SHARE: f64 = 0.25;
@@ -85,8 +88,19 @@ impl Plan {
         let rate = ((fine.seconds - coarse.seconds) / (fine.work - coarse.work)).max(0.0);
         let rate = if rate.is_finite() { rate } else { 0.0 };
         let constant = (fine.seconds - rate * fine.work).max(0.0);
+        // What a range takes to be found grows with the samples of its polynomial, whatever the steps.
+        let growth = if fine.seconds > TRIAL * options.budget || highest < 4 {
+            0.0
+        } else {
+            let middle = setting(highest / 2, 0.5);
+            let of_middle = spent(model, &middle, options)?;
+            let more = of_middle.seconds - rate * of_middle.work - constant;
+            (more / (middle.simulations(k) - trials[0].simulations(k)).max(1.0)).max(0.0)
+        };
+        let constant = |order| constant + growth * (simulations(order) - simulations(2)).max(0.0);
         let of_method = (fine.work - fine.beside) / trials[1].work(k);
-        let run = |order, parts| constant + rate * (parts * fine.beside + of_method * setting(order, parts).work(k));
+        let run =
+            |order, parts| constant(order) + rate * (parts * fine.beside + of_method * setting(order, parts).work(k));
         let seconds = |order, parts: f64| {
             let lower = if order > LEAST_ORDER { order - 2 } else { 1 };
             [parts, parts / 2.0, parts / 4.0].map(|parts| run(order, parts)).iter().sum::<f64>()
