@@ -60,12 +60,13 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
         climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
         let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
-        let beyond = |((extent, line), &least): ((&Extent, &(&[f64], &[f64])), &f64)| {
-            let beyond = line.1.iter().map(|&value| extent.range.distance(value)).fold(0.0, f64::max);
-            beyond > least.max(BEYOND * extent.range.width())
+        let beyond = |place: usize| {
+            let range = &found[place].range;
+            let beyond = lines[place].1.iter().map(|&value| range.distance(value)).fold(0.0, f64::max);
+            beyond > least[place].max(BEYOND * range.width())
         };
         let doubled: Vec<usize> = intervals.iter().map(|count| 2 * count).collect();
-        if found.iter().zip(&lines).zip(least).any(beyond) && has_room(&doubled) {
+        if (0..found.len()).any(beyond) && has_room(&doubled) {
             (lattice, intervals) = (Lattice::new(&doubled), doubled);
             continue;
         }

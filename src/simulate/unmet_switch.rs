@@ -265,9 +265,8 @@ impl<'a> Between<'a> {
             for lane in 0..WIDTH {
                 let point = first + lane.min(count - 1);
                 let s = 0.5 * (1.0 + points[point][k]);
-                for parameter in 0..k {
-                    tile.lane_mut(layout.parameters.start + parameter)[lane] =
-                        self.domain.value(parameter, points[point][parameter]);
+                for (parameter, &xi) in points[point][..k].iter().enumerate() {
+                    tile.lane_mut(layout.parameters.start + parameter)[lane] = self.domain.value(parameter, xi);
                 }
                 for line in 0..n {
                     let of = |row: usize, line: usize| at_rows[row][line * points.len() + point];
