@@ -24,7 +24,7 @@ pub enum SimulationError {
         /// The sample.
         parameters: NamedValues,
         /// Which constraints are too many, where some are.
-        cause: Option<String>,
+        cause: Option<Box<str>>,
     },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
@@ -193,7 +193,7 @@ impl SimulationError {
     /// With the reason why constraints of an assembly cannot hold, if it is known.
     pub(super) fn because(mut self, why: Option<String>) -> Self {
         if let Self::Assembly { cause, of_velocities: false, .. } = &mut self {
-            *cause = why;
+            *cause = why.map(String::into_boxed_str);
         }
         self
     }

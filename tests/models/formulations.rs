@@ -223,6 +223,27 @@ fn absolute_coordinates_cost_in_proportion_to_the_links_and_short_chains_take_jo
     assert!(joint);
 }
 
+#[test]
+fn an_open_start_of_a_long_chain_takes_instructions_in_proportion_to_its_links() {
+    // The first angle is given, and the others are nearest to zero: the distances couple each link with the next.
+    let corrections = [60, 120].map(|links| {
+        let mut bodies = String::new();
+        let mut joints = String::new();
+        for i in 0..links {
+            bodies += &format!("  b{i}: {{ mass: 1, inertia: 0.008, points: {{ a: [-0.15, 0], e: [0.15, 0] }} }}\n");
+            let before = if i == 0 { "ground".to_owned() } else { format!("b{}.e", i - 1) };
+            joints += &format!("  j{i}: {{ revolute: [{before}, b{i}.a] }}\n");
+        }
+        let simulator = study::prepare(&read(&format!(
+            "bodies:\n{bodies}joints:\n{joints}initial: {{ b0.angle: 0.1 }}\noutputs: {{ y: b1.y }}
+simulation: {{ duration: 0.01, step: 1e-3, output_step: 1e-3, formulation: absolute }}\n"
+        )));
+        simulator.unwrap().start.position().len()
+    });
+    println!("{corrections:?}");
+    assert!(corrections[1] < 23 * corrections[0] / 10, "{corrections:?}");
+}
+
 /// What takes too long is given up; what does not is compiled as ever.
 #[test]
 fn a_program_is_given_up_beyond_its_limit_and_not_before() {

@@ -222,3 +222,24 @@ fn over_constrained_mechanisms_are_told_with_the_joints() {
     assert!(message.contains("9 coordinates, 10 constraints: over-constrained by one"), "{message}");
     assert!(message.contains("`slide` fixes `pin.y` already"), "{message}");
 }
+
+#[test]
+fn a_spring_without_a_direction_is_told_by_its_name() {
+    let spring = |free_length: &str| {
+        format!(
+            "
+bodies: {{ ball: {{ mass: 1, coordinates: [x, y] }} }}
+effects: {{ rope: {{ spring_damper: {{ between: [ground, ball], stiffness: 100, free_length: {free_length} }} }} }}
+initial: {{ ball.x: 0, ball.y: 0 }}
+outputs: {{ x: ball.x }}
+simulation: {{ duration: 0.1, step: 1e-3 }}
+"
+        )
+    };
+    let message = study::run(&read(&spring("0.5")), Options::default()).expect_err("it has no direction").to_string();
+    println!("{message}");
+    assert!(message.contains("the direction of `rope`, whose points coincide"), "{message}");
+    // Without a free length it is an ordinary spring, and the ball stays where it is.
+    let bounds = nominal(&read(&spring("0")));
+    assert!(curve(&bounds, "x").iter().all(|x| x.abs() < 1e-15));
+}
