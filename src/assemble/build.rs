@@ -11,6 +11,8 @@ use super::constraints::Constraints;
 use super::mechanism::Mechanism;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, System};
+use super::tree::Tree;
+use crate::grammar::Sensor;
 use crate::model::{Description, Formulation};
 use crate::multibody::BuildError;
 
@@ -54,11 +56,16 @@ pub fn in_joint_coordinates(
     let builder = Builder::new();
     let mechanism = Mechanism::new(&builder, description, true)?;
     let too_involved = deepest.and_then(|deepest| mechanism.tree.too_involved(description, deepest));
-    if let Some(why) = too_involved.or_else(|| mechanism.obstacle(description)) {
+    if let Some(why) = too_involved.or_else(|| mechanism.obstacle(description, deepest.is_some())) {
         return Ok(Err(why));
     }
     let system = equations(mechanism, description)?;
     Ok(Ok(system(builder.finish())))
+}
+
+/// Least number of multiplications that an elimination takes in joint coordinates, before anything is written down.
+pub fn joint_elimination(description: &Description) -> usize {
+    Tree::spanning(description, |_| true).elimination()
 }
 
 /// M w = Q − Φ_qᵀ λ and Φ = 0 of a mechanism, once its graph is finished.
@@ -144,7 +151,9 @@ fn apply_effects<'g>(
         let (name, kind) = (effect.name.clone(), effect.kind.keyword());
         let graph = g.graph();
         let enclosed = graph.exprs_after(nodes).all(|expr| encloses(graph.node(expr)));
-        effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed });
+        let measured = applied.measured().iter().find(|(measure, _)| *measure == Sensor::LENGTH);
+        let length = measured.map(|&(_, length)| length.expr());
+        effects.push(EffectInfo { name, kind, forces, expressions: graph.len() - nodes, enclosed, length });
     }
     Ok((applied, effects))
 }

@@ -6,7 +6,7 @@ use symdiff::{Formula, Scalar};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Placement, Separation};
-use crate::grammar::{JointCoordinate, Reference, Symbol, TimeOrder};
+use crate::grammar::{JointCoordinate, ReactionComponent, Reference, Symbol, TimeOrder};
 use crate::model::{Description, StartValue};
 use crate::multibody::{BuildError, Context};
 
@@ -48,6 +48,7 @@ fn length_at_start(value: &StartValue) -> Option<&Formula> {
         StartValue::Joint { coordinate: JointCoordinate::Displacement, order: TimeOrder::Position, value, .. } => {
             Some(value)
         }
+        StartValue::Point { order: TimeOrder::Position, value, .. } => Some(value),
         _ => None,
     }
 }
@@ -83,8 +84,14 @@ fn add_names<'f>(
     formulas: impl IntoIterator<Item = &'f Formula>,
 ) {
     for (name, _) in formulas.into_iter().flat_map(Formula::names) {
-        if let Some(Symbol::Point { body, point, .. }) = description.symbol(name) {
-            used.insert((body, point));
+        match description.symbol(name) {
+            Some(Symbol::Point { body, point, .. }) => {
+                used.insert((body, point));
+            }
+            Some(Symbol::Reaction { component: ReactionComponent::TorqueAt(place, _), .. }) => {
+                used.extend(place.point.map(|point| (place.body, point)));
+            }
+            _ => {}
         }
     }
 }

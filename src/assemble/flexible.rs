@@ -24,7 +24,7 @@ use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
-use super::system::{ConstraintInfo, ResidualUnit, StartCondition};
+use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
 use crate::model::{Coordinate, Description, LineMass, StartValue, TimeOrder};
 use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Vector};
 
@@ -145,7 +145,9 @@ impl<'g> Mechanism<'g, '_> {
             let node = &description.bodies[second].name;
             conditions.extend(rows.map(|(name, unit, value)| StartCondition {
                 info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone(), unit },
+                of: ConditionOf::Beam,
                 value: value.expr(),
+                rate: None,
                 position,
                 velocity,
             }));

@@ -9,14 +9,16 @@ use crate::multibody::Context;
 
 impl Mechanism<'_, '_> {
     /// What prevents joint coordinates; `None` where nothing does.
-    pub fn obstacle(&self, description: &Description) -> Option<String> {
+    ///
+    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks for absolute ones.
+    pub fn obstacle(&self, description: &Description, is_chosen: bool) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can give a body its position".to_owned());
         }
         if let Some(beam) = self.flexible() {
             return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
         }
-        let start = self.lost_start(description);
+        let start = self.lost_start(description, is_chosen);
         start.or_else(|| self.loaded_friction(description)).or_else(|| self.lost_reaction(description))
     }
 
@@ -33,16 +35,17 @@ impl Mechanism<'_, '_> {
         ))
     }
 
-    /// A value at the start of a coordinate that there is not.
-    fn lost_start(&self, d: &Description) -> Option<String> {
-        d.initial.iter().chain(&d.guess).find_map(|value| {
+    /// A guess of a coordinate that there is not; with `is_chosen`, a value at the start of one.
+    fn lost_start(&self, d: &Description, is_chosen: bool) -> Option<String> {
+        let initial = if is_chosen { d.initial.as_slice() } else { &[] };
+        initial.iter().chain(&d.guess).find_map(|value| {
             let body = match value {
                 StartValue::Coordinate { body, coordinate, order, .. } => {
                     let known = self.angle_of_inboard_joint(d, *body, *coordinate, *order).is_some();
                     Some(body).filter(|_| !known)
                 }
                 StartValue::Orientation { body, .. } | StartValue::AngularVelocity { body, .. } => Some(body),
-                StartValue::Joint { .. } => None,
+                StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => None,
             };
             let body = body.filter(|body| self.tree.inboard[**body].is_some())?;
             let name = &d.bodies[*body].name;

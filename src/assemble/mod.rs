@@ -33,6 +33,7 @@ mod pose;
 mod reaction;
 mod recursion;
 mod start;
+mod start_conditions;
 mod symbols;
 mod system;
 #[cfg(test)]
@@ -40,5 +41,5 @@ pub(crate) mod tests;
 mod tree;
 
 pub use crate::multibody::BuildError;
-pub use build::{build, in_absolute_coordinates, in_joint_coordinates};
-pub use system::{ConstraintInfo, Distance, FormulationInfo, ResidualUnit, StartCondition, System};
+pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
+pub use system::{ConditionOf, ConstraintInfo, Distance, FormulationInfo, ResidualUnit, StartCondition, System};

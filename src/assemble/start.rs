@@ -32,7 +32,8 @@ impl<'g> Mechanism<'g, '_> {
         let placed = self.placed(&known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
         let guess = guess.map(Scalar::expr).collect();
-        let conditions = self.start_of_beams(description)?;
+        let mut conditions = self.start_of_beams(description)?;
+        conditions.extend(self.start_conditions(description)?);
         let exprs = |values: Vec<Option<Scalar>>| values.into_iter().map(|value| value.map(Scalar::expr)).collect();
         Ok(Start { position: exprs(position), velocity: exprs(velocity), guess, conditions, nearest: None })
     }

@@ -4,7 +4,7 @@ use symdiff::{Formula, Scalar};
 
 use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
-use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, ReactionComponent, Sensor, Symbol, TimeOrder};
+use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
 use crate::model::{Description, Output, Rotation};
 use crate::multibody::{BuildError, Context, Quaternion, Vector, rotation};
 
@@ -111,7 +111,26 @@ impl<'g> Mechanism<'g, '_> {
                 (reaction.force - reaction.force.dot(axis) * axis).norm()
             }
             ReactionComponent::AxialTorque => reaction.torque.dot(self.axis_of(joint)),
+            ReactionComponent::ForceInBody(axis) => self.in_second_frame(joint, reaction.force)[axis],
+            ReactionComponent::TorqueInBody(axis) => self.in_second_frame(joint, reaction.torque)[axis],
+            ReactionComponent::TorqueAt(place, axis) => {
+                let about = self.point(place).position;
+                let arm = self.second_point(joint).map_or(about, |point| self.point(point).position) - about;
+                (reaction.torque + arm.cross(reaction.force))[axis]
+            }
         }
+    }
+
+    /// The point at which a joint's reaction acts on its second body.
+    fn second_point(&self, joint: usize) -> Option<PointRef> {
+        self.joints[joint].kind.between().map(|[_, second]| second)
+    }
+
+    /// A vector of the ground's axes in those of the frame at a joint's second point.
+    fn in_second_frame(&self, joint: usize, vector: Vector<'g>) -> Vector<'g> {
+        let Some(second) = self.second_point(joint) else { return vector };
+        let in_body = self.bodies[second.body].matrix().transposed() * vector;
+        self.local_frame(second).matrix().transposed() * in_body
     }
 
     /// The unit vector of a joint's own axis in the ground's axes, of a coupling that of what it drives; zero where it has none.

@@ -87,6 +87,8 @@ pub struct EffectInfo {
     pub expressions: usize,
     /// Whether all of them have an enclosure over a box of parameters.
     pub enclosed: bool,
+    /// The distance of two points along which it acts, where it does.
+    pub length: Option<Expr>,
 }
 
 /// Something that the model says and no equation holds.
@@ -203,14 +205,27 @@ pub struct Distance {
 /// Ψ(q, t), which is zero at the start, or has the rate zero there, and is free afterwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartCondition {
-    /// What it is called, and the beam that it is of.
+    /// What it is called, and what it is of.
     pub info: ConstraintInfo,
+    /// Who asks for it.
+    pub of: ConditionOf,
     /// Ψ
     pub value: Expr,
+    /// Ψ̇(q, v, t), where it is not the derivative of Ψ.
+    pub rate: Option<Expr>,
     /// Whether Ψ = 0.
     pub position: bool,
     /// Whether Ψ̇ = 0.
     pub velocity: bool,
+}
+
+/// Who asks for a condition of the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConditionOf {
+    /// A beam, which starts straight.
+    Beam,
+    /// `initial`, by a name that is no coordinate of the equations.
+    Initial,
 }
 
 impl System {
@@ -220,6 +235,9 @@ impl System {
         roots.extend(self.inertia.iter().chain(&self.force).chain(&self.constraint).chain(&self.start.guess));
         roots.extend(self.outputs.iter().map(|output| output.expr));
         roots.extend(self.start.position.iter().chain(&self.start.velocity).flatten());
+        roots.extend(
+            self.start.conditions.iter().flat_map(|condition| [Some(condition.value), condition.rate]).flatten(),
+        );
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()

@@ -132,14 +132,28 @@ impl Tree {
         if joints.any(|(joint, inboard)| !inboard && joint.kind.between().is_some()) {
             return Some("joints close loops (`formulation: joint` is there to be tried)".to_owned());
         }
+        let depths = self.depths();
+        let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());
+        (depth > deepest)
+            .then(|| format!("its bodies are {depth} joints from their roots, and each would depend on all before it"))
+    }
+
+    /// Joints on the way from each body to its root.
+    fn depths(&self) -> Vec<usize> {
         let mut depths = vec![0; self.inboard.len()];
         for &body in &self.order {
             depths[body] =
                 self.inboard[body].map_or(0, |inboard| depths[inboard.parent.body] + usize::from(!self.merged[body]));
         }
-        let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());
-        (depth > deepest)
-            .then(|| format!("its bodies are {depth} joints from their roots, and each would depend on all before it"))
+        depths
+    }
+
+    /// Least number of multiplications that an elimination of M takes in joint coordinates: a coordinate's row has an entry for
+    /// each joint on its way to the root, and changes as many rows (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 6.5).
+    pub fn elimination(&self) -> usize {
+        let of_joints = self.order.iter().filter(|&&body| !self.merged[body]);
+        let depths = self.depths();
+        of_joints.map(|&body| depths[body] * (depths[body] + 1) / 2).fold(0, usize::saturating_add)
     }
 
     /// Whether a joint is an inboard joint.
@@ -154,7 +168,7 @@ fn named_at_start(description: &Description) -> Vec<usize> {
         StartValue::Coordinate { body, .. }
         | StartValue::Orientation { body, .. }
         | StartValue::AngularVelocity { body, .. } => Some(*body),
-        StartValue::Joint { .. } => None,
+        StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => None,
     };
     description.initial.iter().chain(&description.guess).filter_map(body).collect()
 }

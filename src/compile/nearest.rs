@@ -36,12 +36,18 @@ impl OpenStart {
 pub struct LeastSquares {
     pub metric: Vec<(usize, usize, Expr)>,
     pub gradient: Vec<Expr>,
+    /// Whether the metric couples coordinates of different bodies.
+    pub is_coupled: bool,
 }
 
 impl LeastSquares {
     /// The smallest change: D.
     pub fn smallest_change(system: &System, graph: &mut Graph) -> Self {
-        Self { metric: diagonal(system, graph, 1.0), gradient: vec![graph.constant(0.0); system.q.len()] }
+        Self {
+            metric: diagonal(system, graph, 1.0),
+            gradient: vec![graph.constant(0.0); system.q.len()],
+            is_coupled: false,
+        }
     }
 
     /// Positions nearest to rest.
@@ -74,7 +80,7 @@ impl LeastSquares {
                 metric.extend(slopes.iter().map(|&(column, other)| (row, column, graph.mul(weighted, other))));
             }
         }
-        Self { metric, gradient }
+        Self { metric, gradient, is_coupled: true }
     }
 }
 

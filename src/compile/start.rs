@@ -41,6 +41,9 @@ const REGULARISATION: f64 = 1e-12;
 /// The same for constraints known to be redundant: the others imply them, and their multipliers stay near zero.
 const RELAXATION: f64 = 1e6;
 
+/// Coordinates beyond which fill decides how long a start takes to compile.
+const MANY: usize = 100;
+
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
 
@@ -126,6 +129,17 @@ fn given_values(system: &System, layout: &Layout) -> Vec<Target> {
     given
 }
 
+/// What is known of a correction's matrix.
+#[derive(Clone, Copy)]
+struct Known<'m> {
+    /// Coordinates that do not change.
+    given: &'m [bool],
+    /// Coordinates and the constraints that define them.
+    pairs: &'m [(usize, usize)],
+    /// Whether the metric couples coordinates of different bodies.
+    is_coupled: bool,
+}
+
 struct Builder<'s> {
     system: &'s System,
     graph: Graph,
@@ -151,7 +165,7 @@ impl Builder<'_> {
                 &positions.metric,
                 &none,
                 closure_jacobian,
-                (&given(&system.start.position), &[]),
+                Known { given: &given(&system.start.position), pairs: &[], is_coupled: positions.is_coupled },
                 &positions.gradient,
                 closure,
             )
@@ -161,7 +175,7 @@ impl Builder<'_> {
                 &velocities.metric,
                 &none,
                 closure_rate_jacobian,
-                (&given(&system.start.velocity), &[]),
+                Known { given: &given(&system.start.velocity), pairs: &[], is_coupled: velocities.is_coupled },
                 &velocities.gradient,
                 closure_rate,
             )
@@ -171,25 +185,25 @@ impl Builder<'_> {
         let pairs = self.pairs(jacobian);
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
+        let of_masses = Known { given: &free, pairs: &pairs, is_coupled: false };
         let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
-        let acceleration = self
-            .correction(&mass, &by_multiplier, jacobian, (&free, &pairs), &motion, rate_of_rate)
-            .map_err(of_motion)?;
+        let acceleration =
+            self.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)?;
         let rate = &closure_rate[..system.lambda.len()];
         let zero = vec![self.graph.constant(0.0); n];
         let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
-        let projection = self.correction(&mass, &none, jacobian, (&free, &pairs), &motion, rate).map_err(of_motion)?;
+        let projection = self.correction(&mass, &none, jacobian, of_masses, &motion, rate).map_err(of_motion)?;
         Ok([position, velocity, acceleration, projection])
     }
 
     /// Solution of [metric Φ_qᵀ − `by_multiplier`; Φ_q −ε] (δ, μ) = −(first, second), n + rows of Φ; given coordinates have
-    /// δ = 0. `pairs` are coordinates and the constraints that define them.
+    /// δ = 0.
     fn correction(
         &mut self,
         metric: &[(usize, usize, Expr)],
         by_multiplier: &SparseMatrix,
         jacobian: &SparseMatrix,
-        (given, pairs): (&[bool], &[(usize, usize)]),
+        Known { given, pairs, is_coupled }: Known,
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, NoFactors> {
@@ -228,7 +242,10 @@ impl Builder<'_> {
         }
         let stages = Stages::new(self.inputs);
         let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
-        let pivoting = Pivoting::Diagonal { constraints: n, pairs: &pairs };
+        // Where the metric couples coordinates along a chain, all of them before the first constraint would couple every pair of
+        // constraints. Few may be.
+        let late = if is_coupled && n > MANY { n + m } else { n };
+        let pivoting = Pivoting::Diagonal { constraints: late, pairs: &pairs };
         let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, pivoting)?;
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);

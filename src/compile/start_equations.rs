@@ -46,8 +46,8 @@ impl Equations {
         let rate_of_rate = time_derivative(system, graph, &rate);
         let (further, closure_jacobian) = with_conditions(system, graph, &jacobian, OF_POSITION);
         let closure = [&system.constraint[..], &further].concat();
-        let (further, closure_rate_jacobian) = with_conditions(system, graph, &jacobian, OF_VELOCITY);
-        let closure_rate = [rate, time_derivative(system, graph, &further)].concat();
+        let (further, closure_rate_jacobian) = with_rates(system, graph, &jacobian);
+        let closure_rate = [rate, further].concat();
         Self { motion, jacobian, closure, closure_jacobian, closure_rate, closure_rate_jacobian, rate_of_rate }
     }
 }
@@ -72,6 +72,21 @@ pub(super) fn named(system: &System, none: NoFactors, kind: Kind) -> NoFactors<E
     let closure = closure_rows(system, kind).map(Equation::Closure);
     let equations: Vec<Equation> = (0..system.q.len()).map(Equation::Motion).chain(closure).collect();
     none.named(|row| equations[row])
+}
+
+/// The rates of the conditions on velocities, and Φ_q with their derivatives by v below it.
+fn with_rates(system: &System, graph: &mut Graph, jacobian: &SparseMatrix) -> (Vec<Expr>, SparseMatrix) {
+    let (values, mut all) = with_conditions(system, graph, jacobian, OF_VELOCITY);
+    let mut rates = time_derivative(system, graph, &values);
+    let conditions = system.start.conditions.iter().filter(|condition| OF_VELOCITY(condition));
+    for (place, condition) in conditions.enumerate() {
+        if let Some(rate) = condition.rate {
+            rates[place] = rate;
+            let derivatives = graph.jacobian(&[rate], &system.v);
+            all.rows.splice(jacobian.rows.len() + place..=jacobian.rows.len() + place, derivatives.rows);
+        }
+    }
+    (rates, all)
 }
 
 /// The conditions of a kind, and Φ_q with their derivatives below it.

@@ -7,7 +7,7 @@ use super::motions::{
     ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
-use super::symbols::{Coordinate, EnergyKind, ReactionComponent, Symbol, SymbolTable, TimeOrder};
+use super::symbols::{Coordinate, EnergyKind, PointRef, ReactionComponent, Symbol, SymbolTable, TimeOrder};
 
 /// The ground's name.
 pub const GROUND: &str = "ground";
@@ -18,6 +18,9 @@ pub(crate) const ENERGIES: [(&str, EnergyKind); 3] = [
     ("kinetic_energy", EnergyKind::Kinetic),
     ("potential_energy", EnergyKind::Potential),
 ];
+
+/// What stands between a joint and the point about which its reaction's torque is asked for.
+const TORQUE_AT: &str = ".torque_at.";
 
 /// Where a formula stands, and so what it may be made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,6 +60,9 @@ pub fn is_reserved(name: &str) -> bool {
 pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     if let Some(found) = of_robot(table, name) {
         return Some(found);
+    }
+    if let Some((joint, about)) = name.split_once(TORQUE_AT) {
+        return torque_at(table, joint, about);
     }
     let mut parts = name.split('.');
     match (parts.next()?, parts.next(), parts.next(), parts.next()) {
@@ -179,9 +185,34 @@ fn reaction(table: &impl SymbolTable, joint: &str, member: &str, part: Option<&s
         ("force", Some(axis)) if axis < 2 || table.is_spatial() => ReactionComponent::ForceAlong(axis),
         ("torque", None) => ReactionComponent::Torque,
         ("torque", Some(axis)) if table.is_spatial() => ReactionComponent::TorqueAbout(axis),
+        ("force_body", Some(axis)) if (axis < 2 || table.is_spatial()) && table.has_place(joint) => {
+            ReactionComponent::ForceInBody(axis)
+        }
+        ("torque_body", Some(axis)) if table.is_spatial() && table.has_place(joint) => {
+            ReactionComponent::TorqueInBody(axis)
+        }
         _ => return None,
     };
     Some(Symbol::Reaction { joint, component })
+}
+
+/// `joint.torque_at.body.point.x`: about any point of a body or the ground.
+fn torque_at(table: &impl SymbolTable, joint: &str, about: &str) -> Option<Symbol> {
+    let joint = table.joint(joint).filter(|&joint| table.has_place(joint))?;
+    let (place, axis) = if table.is_spatial() {
+        let (place, axis) = about.rsplit_once('.')?;
+        (place, AXES.iter().position(|known| *known == axis)?)
+    } else {
+        (about, 2)
+    };
+    let (body, point) = match place.split_once('.') {
+        None => (table.body(place)?, None),
+        Some((body, point)) => {
+            let body = table.body(body)?;
+            (body, Some(table.points(body).position(|known| known == point)?))
+        }
+    };
+    Some(Symbol::Reaction { joint, component: ReactionComponent::TorqueAt(PointRef { body, point }, axis) })
 }
 
 fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Symbol> {
@@ -244,11 +275,8 @@ pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
         Symbol::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
         Symbol::RollPitchYaw { .. } => Dimension::ANGLE,
         Symbol::JointCoordinate { coordinate, order, .. } => joint_dimension(coordinate, order),
-        Symbol::Reaction {
-            component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_) | ReactionComponent::AxialTorque,
-            ..
-        }
-        | Symbol::Energy(_) => Dimension::TORQUE,
+        Symbol::Reaction { component, .. } if component.is_torque() => Dimension::TORQUE,
+        Symbol::Energy(_) => Dimension::TORQUE,
         Symbol::Reaction { .. } => Dimension::FORCE,
         Symbol::Sensor { .. } => return Kind::Any,
     })

@@ -4,7 +4,9 @@
 use serde::Serialize;
 use symdiff::formula::FUNCTIONS;
 
-use super::motions::{ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, joint_dimension, motion_dimension};
+use super::motions::{
+    ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, ORIENTATION, joint_dimension, motion_dimension,
+};
 use super::names::ENERGIES;
 use super::quantity::Dimension;
 use super::symbols::{Coordinate, EnergyKind, JointCoordinate, TimeOrder};
@@ -131,10 +133,18 @@ fn body_outputs() -> Vec<OutputDocs> {
             output("body", format!("BODY.{name}.{axis}"), unit, format!("{what} along {frame} {axis}"))
         }));
     }
+    outputs.extend(ANGULAR_MOTIONS.iter().map(|&(name, _, order)| {
+        let unit = motion_dimension(Coordinate::Angle, order).unit();
+        let meaning = "the three of them, as outputs NAME_x, NAME_y and NAME_z; alone, not in a formula".to_owned();
+        output("body", format!("BODY.{name}"), unit, meaning)
+    }));
     outputs.extend(ATTITUDE.iter().zip(AXES).map(|(name, axis)| {
         let meaning = format!("rotation about the ground's {axis}, in the order x, y, z; from −π to π");
         output("body", format!("BODY.{name}"), Dimension::ANGLE.unit(), meaning)
     }));
+    let meaning =
+        "the three of them, as outputs NAME_roll, NAME_pitch and NAME_yaw; alone, not in a formula".to_owned();
+    outputs.push(output("body", format!("BODY.{ORIENTATION}"), Dimension::ANGLE.unit(), meaning));
     outputs
 }
 
@@ -193,5 +203,18 @@ fn joint_outputs() -> Vec<OutputDocs> {
     outputs.push(reaction("axial", &force, axial));
     outputs.push(reaction("radial", &force, radial));
     outputs.push(reaction("torque.axial", &torque, "reaction torque on the second body about that axis"));
+    outputs.extend(AXES.map(|axis| {
+        let meaning = format!("reaction force on the second body along {axis} of its own frame at its point");
+        reaction(&format!("force_body.{axis}"), &force, &meaning)
+    }));
+    outputs.extend(AXES.map(|axis| {
+        let meaning = format!(
+            "reaction torque on the second body about its point, along {axis} of its own frame there; in space"
+        );
+        reaction(&format!("torque_body.{axis}"), &torque, &meaning)
+    }));
+    let meaning = "reaction torque on the second body about a point of any body, along the ground's z; in space with an \
+                   axis, `JOINT.torque_at.BODY.POINT.x`";
+    outputs.push(reaction("torque_at.BODY.POINT", &torque, meaning));
     outputs
 }

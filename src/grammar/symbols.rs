@@ -35,6 +35,8 @@ pub trait SymbolTable {
     fn has_coordinate(&self, joint: usize, coordinate: JointCoordinate) -> bool;
     /// Which of a joint's motions friction resists; nothing where friction does not act in it.
     fn friction_mode(&self, joint: usize) -> Option<FrictionMode>;
+    /// Whether a joint joins two points, so that its reaction has a place.
+    fn has_place(&self, joint: usize) -> bool;
     /// Whether a joint has an axis of its own, or drives a joint that has one.
     fn has_axis(&self, joint: usize) -> bool;
     /// What a joint that is an equation sets equal to something else.
@@ -212,6 +214,24 @@ pub enum ReactionComponent {
     Radial,
     /// Torque about the joint's own axis, N m.
     AxialTorque,
+    /// Force along an axis (0 to 2: x, y, z) of the second point's frame, N.
+    ForceInBody(usize),
+    /// Torque about an axis through the second point along one (0 to 2: x, y, z) of its frame, N m.
+    TorqueInBody(usize),
+    /// Torque about an axis (0 to 2: x, y, z, the ground's) through any point, N m.
+    TorqueAt(PointRef, usize),
+}
+
+impl ReactionComponent {
+    /// Whether it is a torque rather than a force.
+    pub fn is_torque(self) -> bool {
+        match self {
+            Self::Torque | Self::TorqueAbout(_) | Self::AxialTorque | Self::TorqueInBody(_) | Self::TorqueAt(..) => {
+                true
+            }
+            Self::Force | Self::ForceAlong(_) | Self::Axial | Self::Radial | Self::ForceInBody(_) => false,
+        }
+    }
 }
 
 /// Which energy.

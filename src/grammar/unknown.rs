@@ -136,7 +136,7 @@ fn unknown_in_body(table: &impl SymbolTable, name: &str, owner: &str, body: usiz
     }
     if let Some((vector, ..)) = ANGULAR_MOTIONS.iter().find(|(vector, ..)| *vector == member) {
         let message = format!("`{vector}` is a vector: it has the parts x, y and z");
-        let help = Some(format!("e.g. `{owner}.{vector}.z`"));
+        let help = Some(format!("e.g. `{owner}.{vector}.z`; an output can be the vector itself, by its name alone"));
         return NameError { message, part: 0..name.len(), help };
     }
     if member == "angle" || member.starts_with("angular_") {
@@ -167,6 +167,12 @@ fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
         vec!["force", "force.x", "force.y", "torque"]
     };
     if let Some(joint) = table.joint(name) {
+        if table.has_axis(joint) {
+            parts.extend(["axial", "radial", "torque.axial"]);
+        }
+        if table.has_place(joint) {
+            parts.extend(["force_body.x", "force_body.y", "torque_at.BODY.POINT"]);
+        }
         let coordinates = JOINT_MOTIONS.iter().filter(|(_, coordinate, _)| table.has_coordinate(joint, *coordinate));
         parts.extend(coordinates.map(|(motion, ..)| *motion));
     }

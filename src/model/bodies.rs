@@ -117,6 +117,9 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     let center =
         fields.get("center_of_mass").and_then(|node| reader.components(node, Context::Constant, Dimension::LENGTH));
     let (prescribed, prescribed_orientation) = prescribed(reader, &fields, &coordinates);
+    if let Some(node) = fields.get("coordinates").filter(|_| coordinates.is_empty()) {
+        needs_motion(reader, node, &prescribed);
+    }
     points(reader, &fields, index);
 
     let body = &mut reader.model.bodies[index];
@@ -126,6 +129,17 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     body.coordinates = coordinates;
     body.prescribed = prescribed;
     body.prescribed_orientation = prescribed_orientation;
+}
+
+/// A body without coordinates moves as `held` says, or not at all.
+fn needs_motion(reader: &mut Reader, node: &Node, prescribed: &[(Coordinate, Formula)]) {
+    let moves = prescribed.iter().any(|(_, value)| value.names().any(|(name, _)| name == "t"));
+    if !moves && matches!(&node.value, Value::Sequence(items) if items.is_empty()) {
+        let help = format!(
+            "what does not move is part of the ground: give `{GROUND}` the points; what is driven has a formula of t in `held`"
+        );
+        reader.error(node.span.clone(), "a body has at least one coordinate", help);
+    }
 }
 
 /// The coordinates of a body that says nothing of them.
@@ -182,10 +196,6 @@ fn coordinates(reader: &mut Reader, node: &Node) -> Vec<Coordinate> {
         reader.error(node.span.clone(), message, format!("write `{all}`, or fewer of them"));
         return usual(reader);
     };
-    if items.is_empty() {
-        let help = format!("what does not move is part of the ground: give `{GROUND}` the points");
-        reader.error(node.span.clone(), "a body has at least one coordinate", help);
-    }
     let mut found: Vec<(&[Coordinate], &Node)> = Vec::new();
     for item in items {
         let Some(named) = reader.choice(item, choices) else { continue };
@@ -233,7 +243,7 @@ fn prescribed(
             reader.leaves_the_plane(node);
         }
         let dimension = if coordinate == Coordinate::Angle { Dimension::ANGLE } else { Dimension::LENGTH };
-        if let Some(value) = reader.formula(node, Context::Constant, dimension) {
+        if let Some(value) = reader.formula(node, Context::Time, dimension) {
             values.push((coordinate, value));
         }
     }

@@ -85,6 +85,10 @@ impl SymbolTable for Description {
         self.joints[joint].kind.axis_of(coordinate).is_some()
     }
 
+    fn has_place(&self, joint: usize) -> bool {
+        self.joints[joint].kind.between().is_some()
+    }
+
     fn has_axis(&self, joint: usize) -> bool {
         let kind = &self.joints[joint].kind;
         let own = [JointCoordinate::Angle, JointCoordinate::Displacement];

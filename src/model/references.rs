@@ -9,9 +9,11 @@ impl StartValue {
     /// The one index in it.
     pub fn reference(&mut self) -> Reference<'_> {
         match self {
-            Self::Coordinate { body, .. } | Self::Orientation { body, .. } | Self::AngularVelocity { body, .. } => {
-                Reference::Body(body)
-            }
+            Self::Coordinate { body, .. }
+            | Self::Orientation { body, .. }
+            | Self::AngularVelocity { body, .. }
+            | Self::AngularRate { body, .. } => Reference::Body(body),
+            Self::Point { place, .. } => Reference::Point(place),
             Self::Joint { joint, .. } => Reference::Joint(joint),
         }
     }
@@ -19,7 +21,10 @@ impl StartValue {
     /// Every formula in it.
     pub fn formulas(&self) -> Vec<&Formula> {
         match self {
-            Self::Coordinate { value, .. } | Self::Joint { value, .. } => vec![value],
+            Self::Coordinate { value, .. }
+            | Self::Joint { value, .. }
+            | Self::AngularRate { value, .. }
+            | Self::Point { value, .. } => vec![value],
             Self::AngularVelocity { value, .. } => value.iter().collect(),
             Self::Orientation { rotation, .. } => rotation.formulas(),
         }

@@ -4,12 +4,14 @@ use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
 use super::file;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
-use crate::grammar::motions::{ANGULAR_MOTIONS, ORIENTATION, joint_dimension, motion_dimension, motion_name};
+use crate::grammar::motions::{
+    ANGULAR_MOTIONS, ATTITUDE, AXES, ORIENTATION, joint_dimension, motion_dimension, motion_name,
+};
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
 use crate::grammar::unknown;
-use crate::grammar::{Coordinate, ReactionComponent, Symbol, TimeOrder};
+use crate::grammar::{Coordinate, PointRef, Symbol, TimeOrder};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
@@ -44,6 +46,10 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             (order, motion_dimension(coordinate, order))
         }
         Symbol::JointCoordinate { coordinate, order, .. } => (order, joint_dimension(coordinate, order)),
+        Symbol::Point { body, coordinate, order, .. } if velocities && body != 0 => {
+            (order, motion_dimension(coordinate, order))
+        }
+        Symbol::AngularMotion { order, .. } if velocities => (order, motion_dimension(Coordinate::Angle, order)),
         _ => {
             let message = format!("`{}` is not a coordinate of a body", clip(name));
             let help = if reader.model.space.spatial {
@@ -71,6 +77,13 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
         Symbol::Coordinate { body, coordinate, .. } => Some(StartValue::Coordinate { body, coordinate, order, value }),
         Symbol::JointCoordinate { joint, coordinate, .. } => {
             Some(StartValue::Joint { joint, coordinate, order, value })
+        }
+        Symbol::Point { body, point, coordinate, .. } => {
+            let place = PointRef { body, point: Some(point) };
+            Some(StartValue::Point { place, coordinate, order, value })
+        }
+        Symbol::AngularMotion { body, axis, in_body, .. } => {
+            Some(StartValue::AngularRate { body, axis, in_body, value })
         }
         _ => None,
     }
@@ -121,9 +134,52 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name_of_output(entry);
-        if let Some(output) = output(reader, entry) {
-            reader.model.outputs.push(output);
+        match parts(reader, entry) {
+            Some(parts) => {
+                for output in parts {
+                    add(reader, entry, output);
+                }
+            }
+            None => {
+                if let Some(output) = output(reader, entry) {
+                    add(reader, entry, output);
+                }
+            }
         }
+    }
+}
+
+/// The outputs that stand for `body.omega` (`NAME_x`, `NAME_y`, `NAME_z`), `body.alpha` and `body.orientation` (`NAME_roll`, …);
+/// nothing where the value is another.
+fn parts(reader: &Reader, entry: &Entry) -> Option<Vec<Output>> {
+    let text = entry.value.scalar()?.text.trim();
+    let (owner, vector) = text.rsplit_once('.')?;
+    let parts = if vector == ORIENTATION {
+        ATTITUDE.map(|angle| (angle, format!("{owner}.{angle}")))
+    } else {
+        ANGULAR_MOTIONS.iter().find(|(name, ..)| *name == vector)?;
+        AXES.map(|axis| (axis, format!("{text}.{axis}")))
+    };
+    let output = |(part, name): (&str, String)| {
+        let dimension = match reader.model.symbol(&name)? {
+            Symbol::AngularMotion { order, .. } => motion_dimension(Coordinate::Angle, order),
+            Symbol::RollPitchYaw { .. } => Dimension::ANGLE,
+            _ => return None,
+        };
+        let formula = symdiff::Formula::parse(&name).ok()?;
+        let name = format!("{}_{part}", entry.key);
+        Some(Output { name, formula, unit: dimension.unit(), dimension: Some(dimension) })
+    };
+    parts.into_iter().map(output).collect()
+}
+
+/// Adds an output, unless its name is taken: by a part of a vector.
+fn add(reader: &mut Reader, entry: &Entry, output: Output) {
+    if reader.model.outputs.iter().any(|known| known.name == output.name) {
+        let message = format!("two outputs are called `{}`: one is a part of a vector", output.name);
+        reader.error(entry.key_span.clone(), message, "give one of them another name".to_owned());
+    } else {
+        reader.model.outputs.push(output);
     }
 }
 
@@ -155,10 +211,7 @@ fn natural_unit(reader: &Reader, formula: &symdiff::Formula) -> Option<String> {
     let [(symdiff::formula::Term::Name(name), _)] = formula.terms() else { return None };
     match reader.model.symbol(name)? {
         Symbol::Energy(_) => Some("J".to_owned()),
-        Symbol::Reaction {
-            component: ReactionComponent::Torque | ReactionComponent::TorqueAbout(_) | ReactionComponent::AxialTorque,
-            ..
-        } => Some("N*m".to_owned()),
+        Symbol::Reaction { component, .. } if component.is_torque() => Some("N*m".to_owned()),
         Symbol::Parameter(index) => Some(reader.model.parameters[index].unit.clone()),
         _ => None,
     }

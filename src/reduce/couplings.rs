@@ -7,6 +7,7 @@
 use symdiff::Formula;
 
 use super::sets::Sets;
+use crate::grammar::ReactionComponent;
 use crate::model::{Description, Effect, Joint, Reference, Scope, Symbol};
 
 /// A part of a mechanism, by its index in the description.
@@ -37,7 +38,8 @@ impl Dependencies {
     /// Adds those of a formula.
     pub fn add(&mut self, description: &Description, formula: &Formula) {
         for (name, _) in formula.names() {
-            match description.symbol(name) {
+            let symbol = description.symbol(name);
+            match symbol {
                 Some(Symbol::Parameter(index)) => self.parameters.push(index),
                 Some(
                     Symbol::Coordinate { body, .. }
@@ -50,6 +52,10 @@ impl Dependencies {
                 }
                 Some(Symbol::JointCoordinate { joint, .. } | Symbol::Reaction { joint, .. }) => {
                     self.parts.push(Part::Joint(joint));
+                    if let Some(Symbol::Reaction { component: ReactionComponent::TorqueAt(place, _), .. }) = symbol {
+                        self.parts.push(Part::Body(place.body));
+                        self.points.extend(place.point.map(|point| (place.body, point)));
+                    }
                 }
                 Some(Symbol::Sensor { effect, .. }) => self.parts.push(Part::Effect(effect)),
                 Some(Symbol::Energy(_)) => self.everything = true,

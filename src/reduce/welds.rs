@@ -104,7 +104,8 @@ fn named(description: &Description, values: &[StartValue]) -> Vec<bool> {
             StartValue::Coordinate { body, .. }
             | StartValue::Orientation { body, .. }
             | StartValue::AngularVelocity { body, .. } => named[*body] = true,
-            StartValue::Joint { .. } => {}
+            // Conditions that hold for the pose of whatever body is followed.
+            StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => {}
         }
     }
     named

@@ -1,7 +1,7 @@
 //! Reasons why a mechanism cannot be simulated, in words for the user.
 
 use super::start::ConstraintResidual;
-use crate::assemble::{ConstraintInfo, ResidualUnit, System};
+use crate::assemble::{ConditionOf, ConstraintInfo, ResidualUnit, System};
 use crate::compile::{ClosureRow, Equation, NoFactors};
 
 /// Parameters of a sample: name and value in SI units.
@@ -11,7 +11,7 @@ pub type NamedValues = Vec<(String, f64)>;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// No consistent start exists.
-    #[error("{}", assembly_message(owner, constraint, residual, *of_velocities, parameters))]
+    #[error("{}", assembly_message(owner, constraint, residual, *of_velocities, parameters, cause.as_deref()))]
     Assembly {
         /// The joint or the beam that cannot be closed, with its kind.
         owner: String,
@@ -23,6 +23,8 @@ pub enum SimulationError {
         of_velocities: bool,
         /// The sample.
         parameters: NamedValues,
+        /// Which constraints are too many, where some are.
+        cause: Option<Box<str>>,
     },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
@@ -121,15 +123,14 @@ fn assembly_message(
     residual: &str,
     of_velocities: bool,
     parameters: &[(String, f64)],
+    cause: Option<&str>,
 ) -> String {
     let with = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
     if of_velocities {
         format!("the initial velocities are inconsistent with {owner}{with}: {residual} remain in `{constraint}`")
     } else {
-        format!(
-            "{owner} cannot be closed{with}: {residual} remain in `{constraint}`; \
-             check lengths, initial positions and joint kinds"
-        )
+        let advice = cause.unwrap_or("check lengths, initial positions and joint kinds");
+        format!("{owner} cannot be closed{with}: {residual} remain in `{constraint}`; {advice}")
     }
 }
 
@@ -168,8 +169,14 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
                 false => ("straight", "x, y and angle"),
                 true => ("as a rigid body", "vx, vy and angular_velocity"),
             };
-            let beam = &info.joint;
-            (format!("beam `{beam}` (it starts {how} unless `initial` gives {names} of all its nodes)"), info)
+            let of = &info.joint;
+            let owner = match system.start.conditions[condition].of {
+                ConditionOf::Beam => {
+                    format!("beam `{of}` (it starts {how} unless `initial` gives {names} of all its nodes)")
+                }
+                ConditionOf::Initial => format!("`{of}` of `initial`"),
+            };
+            (owner, info)
         }
     };
     SimulationError::Assembly {
@@ -178,6 +185,17 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
         residual: residual_text(worst.residual, info, worst.of_velocities),
         of_velocities: worst.of_velocities,
         parameters: names.zip(parameters.iter().copied()).collect(),
+        cause: None,
+    }
+}
+
+impl SimulationError {
+    /// With the reason why constraints of an assembly cannot hold, if it is known.
+    pub(super) fn because(mut self, why: Option<String>) -> Self {
+        if let Self::Assembly { cause, of_velocities: false, .. } = &mut self {
+            *cause = why.map(String::into_boxed_str);
+        }
+        self
     }
 }
 

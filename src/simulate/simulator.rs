@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, WIDTHS};
 
-use super::diagnostics::{not_finite, undetermined_outputs};
+use super::diagnostics::{not_finite, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_factors};
 use super::start::{
     Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
@@ -65,7 +65,9 @@ impl Assembled {
         let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
-            assembly.assemble_nominal().map_err(|worst| assembly_error(&system, &worst, &parameters))?;
+            assembly.assemble_nominal().map_err(|worst| {
+                assembly_error(&system, &worst, &parameters).because(over_constrained(&system, start, &guess))
+            })?;
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
             Ok(assembly.tile().values()[..layout.registers()].to_vec())
         };

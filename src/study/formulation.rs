@@ -29,6 +29,9 @@ const MOST: usize = 8_000_000;
 /// The same in joint coordinates where only the start is wanted: in a second or two.
 const MOST_TO_CHECK: usize = 1_000_000;
 
+/// Eliminations of the start.
+const ELIMINATIONS: usize = 3;
+
 /// Most bodies for which a whole model is compiled to be checked; what is larger is only assembled.
 const FEW_BODIES: usize = 50;
 
@@ -43,7 +46,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     };
     let compile = |system: System| within(system, MOST);
     if description.simulation.formulation != Formulation::Auto {
-        return within_budget(description, &|system| Ok(compile(system)?));
+        return within_budget(description, MOST, &|system| Ok(compile(system)?));
     }
     let absolute = assemble::in_absolute_coordinates(description)?;
     let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
@@ -88,7 +91,7 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         within(system, operations)
     };
     if description.simulation.formulation != Formulation::Auto {
-        return within_budget(description, &of_system);
+        return within_budget(description, MOST_TO_CHECK, &of_system);
     }
     if description.bodies.len() <= FEW_BODIES {
         let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = compiled(description)?;
@@ -106,12 +109,17 @@ pub(super) fn is_open(description: &Description) -> bool {
     description.simulation.formulation == Formulation::Auto && description.bodies.len() > FEW_BODIES
 }
 
-/// What a model asks for; where that takes too many operations, the other formulation.
+/// What a model asks for; where that takes too many operations, the other formulation. Where joint coordinates take more than
+/// `most`, they are not tried.
 fn within_budget<T>(
     description: &Description,
+    most: usize,
     of_system: &dyn Fn(System) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
     let asked = description.simulation.formulation;
+    if asked == Formulation::Joint && assemble::joint_elimination(description) > most / ELIMINATIONS {
+        return other_way(description, Formulation::Absolute, of_system);
+    }
     match of_system(assemble::build(description)?) {
         Err(RunError::Simulation(SimulationError::TooLong)) => {
             let other = if asked == Formulation::Joint { Formulation::Absolute } else { Formulation::Joint };

@@ -37,6 +37,7 @@ mod singular;
 mod slider_crank;
 mod snapshots;
 mod spatial_linkages;
+mod starts;
 mod step_control;
 mod switches;
 mod tables;

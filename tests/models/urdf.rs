@@ -252,6 +252,21 @@ fn a_planar_joint_slides_down_its_plane() {
 }
 
 #[test]
+fn an_arm_lies_on_its_limit() {
+    // It has come to rest on the stop, which carries the weight's torque.
+    let limit = "<axis xyz='0 -1 0'/><limit lower='-0.2' upper='1' effort='1' velocity='1'/><dynamics damping='20'/>";
+    let files = robot(&[joint("hinge", "revolute", "base", "arm", limit), link("arm", 2.0, "0.5 0 0", [0.05; 3])]);
+    let text = "limits: { impact: { stiffness: 1e5, exponent: 1 } }
+effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }
+initial: { hinge.angle: -0.2 }
+outputs: { angle: hinge.angle, stop: hinge.limit.torque }";
+    let bounds = nominal(&files.model(text).duration(2.0));
+    let [angle, torque] = ["angle", "stop"].map(|name| *curve(&bounds, name).last().unwrap());
+    let expected = 2.0 * 9.81 * 0.5 * angle.cos();
+    assert!((torque - expected).abs() < 1e-6 * expected, "{torque} instead of {expected} N m");
+}
+
+#[test]
 fn a_mimic_follows() {
     let files = robot(&[
         joint("lead", "revolute", "base", "a", "<axis xyz='0 1 0'/>"),

@@ -30,8 +30,8 @@ use super::{Joint, JointElement, Kinematics, Orientation, Placement, Row, RowDoc
 pub struct Distance {
     /// Two points, each `body.point` or `body`.
     pub between: [PointRef; 2],
-    /// d
-    #[quantity(unit = "m", positive, constant)]
+    /// d; may depend on t.
+    #[quantity(unit = "m", positive, time)]
     pub length: Formula,
 }
 

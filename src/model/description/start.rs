@@ -2,7 +2,7 @@
 
 use symdiff::Formula;
 
-use crate::grammar::{Coordinate, JointCoordinate, Rotation, TimeOrder};
+use crate::grammar::{Coordinate, JointCoordinate, PointRef, Rotation, TimeOrder};
 
 /// A value at the start; formulas are of parameters.
 #[derive(Clone, Debug)]
@@ -33,6 +33,28 @@ pub enum StartValue {
         value: [Formula; 3],
         /// Components in the body's frame instead of the ground's.
         in_body: bool,
+    },
+    /// A part of a body's angular velocity.
+    AngularRate {
+        /// Body index.
+        body: usize,
+        /// Which part: 0 to 2 for x, y, z.
+        axis: usize,
+        /// Along an axis of the body's frame instead of the ground's.
+        in_body: bool,
+        /// rad/s
+        value: Formula,
+    },
+    /// Of a point's position or velocity, along an axis of the ground.
+    Point {
+        /// The point, of a body that is not the ground.
+        place: PointRef,
+        /// x, y or z.
+        coordinate: Coordinate,
+        /// Position or velocity.
+        order: TimeOrder,
+        /// SI.
+        value: Formula,
     },
     /// Of a joint's coordinate.
     Joint {

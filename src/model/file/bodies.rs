@@ -16,7 +16,7 @@ grammar! {
         center_of_mass: Option<Components>,
         /// What can change; by default x, y and angle, in space x, y, z and orientation.
         coordinates: Option<Vec<CoordinateName>>,
-        /// Values of the coordinates that cannot change; by default 0.
+        /// Values of the coordinates that cannot change, or formulas of t; by default 0.
         held: Option<Held>,
         /// Named points in the body's frame, m.
         points: Option<IndexMap<String, PointFile>>,

@@ -62,7 +62,8 @@ pub fn shared_coordinates(system: &System, start: &StartProgram, nominal: &[f64]
 /// Whether a velocity is given that may not be zero, or a constraint depends on t: else all velocities are zero.
 fn is_driven(system: &System) -> bool {
     let given = system.start.velocity.iter().flatten().any(|&value| !system.graph.is_zero(value));
-    given || system.graph.symbols_of(&system.constraint).binary_search(&system.time).is_ok()
+    let conditioned = system.start.conditions.iter().any(|condition| condition.rate.is_some());
+    given || conditioned || system.graph.symbols_of(&system.constraint).binary_search(&system.time).is_ok()
 }
 
 /// Distances, or their rates.

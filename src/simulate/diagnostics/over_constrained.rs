@@ -1,0 +1,103 @@
+//! Why a mechanism cannot be assembled, where it has more constraints than coordinates can fulfil.
+//!
+//! The rank of Φ_q is taken off the constraints, at a state in no particular position: there rows depend on others only where the
+//! joints' kinds make them, and not since lengths or a symmetry do.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::assemble::{ResidualUnit, System};
+use crate::compile::StartProgram;
+use crate::simulate::start::{DEPENDENT, dependent_rows, jacobian_rows};
+
+/// Share of a row below which another has no part in it.
+const PART: f64 = 1e-6;
+
+/// Share of the coordinates' scales by which the state is moved off a position of its own.
+const APART: f64 = 0.37;
+
+/// Most constraints of which the joints that fix one another are looked for: the search takes their number to the third power.
+const MOST: usize = 400;
+
+/// Coordinates, constraints, and which of these the others imply, near a state (the layout's registers); `None` where all can hold.
+pub fn over_constrained(system: &System, start: &StartProgram, near: &[f64]) -> Option<String> {
+    let mut state = near.to_vec();
+    for (place, register) in start.layout.q.clone().enumerate() {
+        // Additive recurrence: evenly spread, the same on every machine.
+        let direction = 2.0 * ((place + 1) as f64 * 0.618_033_988_749_895).fract() - 1.0;
+        state[register] += APART * system.coordinates[place].scale * direction;
+    }
+    let is_given = |place: usize| system.start.position[place].is_some();
+    let rows: Vec<Vec<(usize, f64)>> = jacobian_rows(system, start, &state)
+        .into_iter()
+        .map(|row| row.into_iter().filter(|(place, _)| !is_given(*place)).collect())
+        .collect();
+    let dependent = dependent_rows(&rows, DEPENDENT);
+    let &first = dependent.first()?;
+    let (coordinates, constraints) = (system.q.len(), system.lambda.len());
+    let given = match (0..coordinates).filter(|&place| is_given(place)).count() {
+        0 => String::new(),
+        given => format!(" ({given} given by `initial`)"),
+    };
+    let mut text = format!(
+        "{coordinates} coordinates{given}, {constraints} constraints: over-constrained by {}",
+        in_words(dependent.len())
+    );
+    if constraints <= MOST {
+        text += &format!("; {}", who_fixes(system, &rows, first));
+    }
+    Some(text)
+}
+
+/// Which joints fix together what a constraint fixes once more.
+fn who_fixes(system: &System, rows: &[Vec<(usize, f64)>], constraint: usize) -> String {
+    let dense = |row: &[(usize, f64)]| {
+        let mut vector = DVector::zeros(system.q.len());
+        row.iter().for_each(|&(place, value)| vector[place] += value);
+        vector
+    };
+    let others: Vec<usize> = (0..constraint).collect();
+    let columns: Vec<DVector<f64>> = others.iter().map(|&row| dense(&rows[row])).collect();
+    let own = dense(&rows[constraint]);
+    let shares = match columns.as_slice() {
+        [] => DVector::zeros(0),
+        columns => {
+            let solution = DMatrix::from_columns(columns).svd(true, true).solve(&own, PART);
+            solution.unwrap_or_else(|_| DVector::zeros(columns.len()))
+        }
+    };
+    let has_part = |&row: &usize| (shares[row] * columns[row].norm()).abs() > PART * own.norm();
+    let parts: Vec<usize> = others.into_iter().filter(has_part).collect();
+    let info = &system.constraints[constraint];
+    // A rotation that two joints fix is what engineers call by its name.
+    let rotation = |row: &usize| {
+        let other = &system.constraints[*row];
+        other.unit == ResidualUnit::Angle && other.joint != info.joint
+    };
+    if let (ResidualUnit::Angle, Some(&other)) = (info.unit, parts.iter().rev().find(|row| rotation(row))) {
+        return format!("`{}` fixes the rotation that `{}` needs", info.joint, system.constraints[other].joint);
+    }
+    let mut joints: Vec<&str> = Vec::new();
+    for &row in &parts {
+        let joint = system.constraints[row].joint.as_str();
+        if joint != info.joint && !joints.contains(&joint) {
+            joints.push(joint);
+        }
+    }
+    match joints.split_last() {
+        None => format!("nothing is left that `{}` could move", info.name),
+        Some((last, [])) => format!("`{last}` fixes `{}` already", info.name),
+        Some((last, rest)) => {
+            let rest: Vec<String> = rest.iter().map(|joint| format!("`{joint}`")).collect();
+            format!("{} and `{last}` fix `{}` already", rest.join(", "), info.name)
+        }
+    }
+}
+
+fn in_words(count: usize) -> String {
+    match count {
+        1 => "one".to_owned(),
+        2 => "two".to_owned(),
+        3 => "three".to_owned(),
+        _ => count.to_string(),
+    }
+}

@@ -1,0 +1,245 @@
+//! Starts that name what is no coordinate of the equations: points, bodies in joint coordinates, parts of angular velocities;
+//! and values that depend on t where they are prescribed. All against trigonometry or another method.
+
+use mbint::inner::study::{self, Options};
+
+use crate::common::dormand_prince::dormand_prince;
+use crate::common::{Vary, curve, distance, distance_from, nominal, order, read};
+
+/// Two bars that hang from the ground, 0.7 m and 0.5 m long, described by `formulation`, with this start.
+fn two_bars(formulation: &str, initial: &str) -> String {
+    format!(
+        "
+bodies:
+  upper: {{ mass: 1, inertia: 0.05, points: {{ a: [-0.35, 0], b: [0.35, 0] }} }}
+  lower: {{ mass: 2, inertia: 0.04, points: {{ a: [-0.25, 0], tip: [0.25, 0] }} }}
+joints:
+  shoulder: {{ revolute: [ground, upper.a] }}
+  elbow: {{ revolute: [upper.b, lower.a] }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+guess: {{ shoulder.angle: -1.5, elbow.angle: 0.8 }}
+initial: {initial}
+outputs: {{ upper: upper.angle, lower: lower.angle, x: lower.tip.x, y: lower.tip.y, vx: lower.tip.vx, vy: lower.tip.vy, turn: lower.angular_velocity }}
+simulation: {{ duration: 0.2, step: 1e-3, output_step: 0.1, formulation: {formulation} }}
+"
+    )
+}
+
+/// Angles of both bars against the ground where the tip is at (x, y), the elbow being on the left of the way to the tip.
+fn bars_to(x: f64, y: f64) -> [f64; 2] {
+    let (a, b) = (0.7, 0.5);
+    let square = x * x + y * y;
+    let bend = ((square - a * a - b * b) / (2.0 * a * b)).acos();
+    let upper = y.atan2(x) - (b * bend.sin()).atan2(a + b * bend.cos());
+    [upper, upper + bend]
+}
+
+#[test]
+fn a_start_names_a_point_in_every_formulation() {
+    let initial = "{ lower.tip.x: 0.3, lower.tip.y: -0.9, lower.tip.vx: 0.4, lower.tip.vy: -0.2 }";
+    let [upper, lower] = bars_to(0.3, -0.9);
+    for formulation in ["absolute", "joint", "auto"] {
+        let bounds = nominal(&read(&two_bars(formulation, initial)));
+        for (name, expected) in [("upper", upper), ("lower", lower), ("x", 0.3), ("y", -0.9), ("vx", 0.4), ("vy", -0.2)]
+        {
+            let found = curve(&bounds, name)[0];
+            assert!((found - expected).abs() < 1e-9, "{formulation}: {name} is {found} instead of {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_start_names_a_body_in_joint_coordinates() {
+    let [upper, lower] = bars_to(0.3, -0.9);
+    let (x, y) = (0.3 - 0.25 * lower.cos(), -0.9 - 0.25 * lower.sin());
+    let initial = format!("{{ lower.x: {x}, lower.y: {y}, upper.angular_velocity: 0, lower.angular_velocity: 0.5 }}");
+    let runs = ["absolute", "joint"].map(|formulation| nominal(&read(&two_bars(formulation, &initial))));
+    for run in &runs {
+        for (name, expected) in [("upper", upper), ("lower", lower), ("turn", 0.5)] {
+            let found = curve(run, name)[0];
+            assert!((found - expected).abs() < 1e-9, "{name} is {found} instead of {expected}");
+        }
+    }
+    // The same motion follows.
+    assert!(distance(curve(&runs[0], "x"), curve(&runs[1], "x")) < 1e-6);
+}
+
+#[test]
+fn a_start_out_of_reach_names_its_entry() {
+    for formulation in ["absolute", "joint"] {
+        let model = read(&two_bars(formulation, "{ lower.tip.x: 1.25, lower.tip.y: 0 }"));
+        let message = study::run(&model, Options::default()).expect_err("it is out of reach").to_string();
+        println!("{message}");
+        assert!(message.contains("cannot be closed"), "{message}");
+    }
+}
+
+/// A wheel on an arm that turns about x, then about the wheel's own y.
+fn gimbal(formulation: &str, initial: &str) -> String {
+    format!(
+        "
+bodies:
+  arm: {{ mass: 1, inertia: [0.1, 0.2, 0.3] }}
+  wheel: {{ mass: 1, inertia: [0.1, 0.2, 0.1] }}
+joints:
+  outer: {{ revolute: {{ between: [ground, arm], axis: x }} }}
+  inner: {{ revolute: {{ between: [arm, wheel], axis: y }} }}
+initial: {initial}
+outputs:
+  outer: outer.angle
+  inner: inner.angle
+  outer_rate: outer.angular_velocity
+  inner_rate: inner.angular_velocity
+  w: wheel.omega
+  attitude: wheel.orientation
+simulation: {{ duration: 0.1, step: 1e-3, output_step: 0.1, formulation: {formulation} }}
+"
+    )
+}
+
+#[test]
+fn a_start_names_rotations_in_every_formulation() {
+    // Roll about the ground's x is the outer angle where pitch, about the turned y, is the inner one.
+    let initial = "{ wheel.orientation: { axis: x, angle: 0.4 }, wheel.omega.x: 0.3, wheel.omega_body.y: -0.7 }";
+    for formulation in ["absolute", "joint"] {
+        let bounds = nominal(&read(&gimbal(formulation, initial)));
+        for (name, expected) in [
+            ("outer", 0.4),
+            ("inner", 0.0),
+            ("outer_rate", 0.3),
+            ("inner_rate", -0.7),
+            ("w_x", 0.3),
+            ("w_y", -0.7 * 0.4_f64.cos()),
+            ("w_z", -0.7 * 0.4_f64.sin()),
+            ("attitude_roll", 0.4),
+            ("attitude_pitch", 0.0),
+            ("attitude_yaw", 0.0),
+        ] {
+            let found = curve(&bounds, name)[0];
+            assert!((found - expected).abs() < 1e-9, "{formulation}: {name} is {found} instead of {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_whole_angular_velocity_is_given_in_joint_coordinates() {
+    let initial = "{ outer.angle: 0.4, inner.angle: 0, wheel.omega_body: [0.3, -0.7, 0] }";
+    let bounds = nominal(&read(&gimbal("joint", initial)));
+    for (name, expected) in [("outer_rate", 0.3), ("inner_rate", -0.7)] {
+        let found = curve(&bounds, name)[0];
+        assert!((found - expected).abs() < 1e-9, "{name} is {found} instead of {expected}");
+    }
+}
+
+#[test]
+fn a_string_gets_shorter_as_it_swings() {
+    // l θ'' + 2 l' θ' + g sin θ = 0
+    let length = |t: f64| 1.0 - 0.2 * t;
+    let swing = |t: f64, [angle, rate]: [f64; 2]| [rate, -(2.0 * -0.2 * rate + 9.81 * angle.sin()) / length(t)];
+    let expected = dormand_prince(swing, [0.5, 0.0], 0.05, 41, 1e-10);
+    let x: Vec<f64> = expected.iter().enumerate().map(|(row, y)| length(row as f64 * 0.05) * y[0].sin()).collect();
+    let text = format!(
+        "
+parameters: {{ length: {{ value: 1, unit: m }}, pull: {{ value: 0.2, unit: m/s }} }}
+bodies: {{ bob: {{ mass: 2, coordinates: [x, y] }} }}
+joints: {{ string: {{ distance: {{ between: [ground, bob], length: length - pull*t }} }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+initial: {{ bob.x: {}, bob.vx: {} }}
+guess: {{ bob.y: -1 }}
+outputs: {{ x: bob.x }}
+simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
+",
+        0.5_f64.sin(),
+        -0.2 * 0.5_f64.sin(),
+    );
+    let errors = [2e-3, 1e-3].map(|h| distance(curve(&nominal(&read(&text).step(h)), "x"), &x));
+    println!("{errors:?}");
+    assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1 && errors[1] < 1e-5, "{errors:?}");
+}
+
+#[test]
+fn a_held_coordinate_follows_the_time() {
+    // A mass on a spring on a table that shakes: y'' = (k/m) (table − y) for heights from where the mass is at rest.
+    let (natural, driven) = (10.0_f64, 7.0_f64);
+    let amplitude = 0.01 * natural * natural / (natural * natural - driven * driven);
+    let exact = |t: f64| amplitude * ((driven * t).sin() - driven / natural * (natural * t).sin());
+    let text = "
+bodies:
+  table: { coordinates: [], held: { y: 0.01*sin(7*t) }, points: { top: [0, 0.2] } }
+  mass: { mass: 2, coordinates: [y] }
+effects: { spring: { spring_damper: { between: [table.top, mass], along: y, stiffness: 200 } } }
+initial: { mass.y: 0.2, mass.vy: 0 }
+outputs: { height: mass.y - 0.2, speed: table.vy }
+simulation: { duration: 2, step: 1e-3, output_step: 0.05 }
+";
+    let errors = [1e-3, 5e-4].map(|h| {
+        let bounds = nominal(&read(text).step(h));
+        let speed = distance_from(&bounds.times, curve(&bounds, "speed"), |t| 0.07 * (7.0 * t).cos());
+        assert!(speed < 1e-14, "{speed:e}");
+        distance_from(&bounds.times, curve(&bounds, "height"), exact)
+    });
+    println!("{errors:?}");
+    assert!((order(errors[0], errors[1]) - 2.0).abs() < 0.1 && errors[1] < 1e-5, "{errors:?}");
+}
+
+/// What cannot be assembled since joints fix too much.
+fn refusal(joints: &str) -> String {
+    let text = format!(
+        "
+bodies:
+  ground: {{ points: {{ end: [0.5, 0.1] }} }}
+  crank: {{ mass: 1, inertia: 0.1, points: {{ a: [0, 0], b: [0.2, 0] }} }}
+  rod: {{ mass: 1, inertia: 0.1, points: {{ b: [0, 0], c: [0.5, 0] }} }}
+  slider: {{ mass: 1, inertia: 0.1 }}
+joints:
+  A: {{ revolute: [ground, crank.a] }}
+  B: {{ revolute: [crank.b, rod.b] }}
+{joints}
+outputs: {{ x: slider.x, push: C.force.x }}
+simulation: {{ duration: 0.1, step: 1e-3 }}
+"
+    );
+    let message = study::run(&read(&text), Options::default()).expect_err("too much is fixed").to_string();
+    println!("{message}");
+    message
+}
+
+#[test]
+fn over_constrained_mechanisms_are_told_with_the_joints() {
+    let message = refusal(
+        "  drive: { motor: { on: A, from: 1, speed: 1 } }
+  C: { fixed: [rod.c, slider] }
+  slide: { prismatic: { between: [ground, slider], axis: x } }",
+    );
+    assert!(message.contains("9 coordinates, 10 constraints: over-constrained by one"), "{message}");
+    assert!(message.contains("`slide` fixes the rotation that `C` needs"), "{message}");
+
+    let message = refusal(
+        "  C: { revolute: [rod.c, slider] }
+  slide: { prismatic: { between: [ground, slider], axis: x } }
+  pin: { revolute: [ground.end, slider] }",
+    );
+    assert!(message.contains("9 coordinates, 10 constraints: over-constrained by one"), "{message}");
+    assert!(message.contains("`slide` fixes `pin.y` already"), "{message}");
+}
+
+#[test]
+fn a_spring_without_a_direction_is_told_by_its_name() {
+    let spring = |free_length: &str| {
+        format!(
+            "
+bodies: {{ ball: {{ mass: 1, coordinates: [x, y] }} }}
+effects: {{ rope: {{ spring_damper: {{ between: [ground, ball], stiffness: 100, free_length: {free_length} }} }} }}
+initial: {{ ball.x: 0, ball.y: 0 }}
+outputs: {{ x: ball.x }}
+simulation: {{ duration: 0.1, step: 1e-3 }}
+"
+        )
+    };
+    let message = study::run(&read(&spring("0.5")), Options::default()).expect_err("it has no direction").to_string();
+    println!("{message}");
+    assert!(message.contains("the direction of `rope`, whose points coincide"), "{message}");
+    // Without a free length it is an ordinary spring, and the ball stays where it is.
+    let bounds = nominal(&read(&spring("0")));
+    assert!(curve(&bounds, "x").iter().all(|x| x.abs() < 1e-15));
+}
