@@ -19,6 +19,7 @@ mod closed_forms;
 mod composition;
 mod convergence;
 mod far;
+mod formulas;
 mod formulations;
 mod hard_cases;
 mod honesty;
