@@ -46,7 +46,7 @@ fn of_model(root: &mut Map<String, Value>) {
     root.insert("examples".to_owned(), json!([example()]));
     let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) else { return };
     insert(&mut properties["base"], "default", json!("fixed"));
-    insert(&mut properties["model"], "pattern", json!(r"^[\p{L}\p{N}_-]+$"));
+    insert(&mut properties["model"], "pattern", json!(r"^[^\s./\\]+$"));
     insert(&mut properties["model"], "maxLength", json!(100));
     insert(&mut properties["model"], "examples", json!(["slider_crank"]));
     insert(
