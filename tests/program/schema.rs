@@ -176,7 +176,7 @@ bounds: { scan: { points: 3 }, chebyshev: { order: 4 } }
         ("outputs: { a: bar.angle }", "outputs: {}"),
         ("outputs: { a: bar.angle }", ""),
         ("bodies: {", "bodies: { ground: { mass: 1 },"),
-        ("bounds: {", "base: fixed\nbounds: {"),
+        ("bounds: {", "limits: { impact: { stiffness: 1e6 } }\nbounds: {"),
         ("bodies: {", "model: a/b\nbodies: {"),
     ] {
         let text = bar.replacen(good, bad, 1);

@@ -239,7 +239,8 @@ impl Switch {
         // Where a whole number is passed is rounded.
         let slack = 1e-9 * (last - first);
         let (low, high) = ((low - slack).max(first), (high + slack).min(last));
-        match (self.over(&during(first, low), work), self.over(&during(high, last), work)) {
+        let mut side = |a: f64, b: f64| if b - a <= slack { Switches::Never } else { self.over(&during(a, b), work) };
+        match (side(first, low), side(high, last)) {
             (Switches::Never, state) | (state, Switches::Never) => state,
             _ => Switches::Unknown,
         }
