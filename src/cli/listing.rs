@@ -96,8 +96,9 @@ fn number(value: f64) -> String {
 
 impl Row<4> for UnitDocs {
     const TITLE: &'static str = "Units";
-    const INTRODUCTION: &'static str = "Units are combined by `*`, `/` and `^`: `N*s/m`, `kg*m^2`, `1/s`. A percentage is \
-        only a tolerance: `2%`. `mbint explain --units` prints this list.";
+    const INTRODUCTION: &'static str = "Units are combined by `*`, `/` and `^`: `N*s/m`, `kg*m^2`, `1/s`. In a formula, a unit ends \
+        where a name of the model follows an operator between spaces: `250 kg/m * L`. A percentage is only a tolerance: `2%`. \
+        `mbint explain --units` prints this list.";
     const HEADINGS: [(&'static str, Align); 4] =
         [("unit", Align::Left), ("in SI units", Align::Right), ("SI unit", Align::Left), ("quantity", Align::Left)];
 
@@ -108,7 +109,8 @@ impl Row<4> for UnitDocs {
 
 impl Row<3> for FunctionDocs {
     const TITLE: &'static str = "Functions of formulas";
-    const INTRODUCTION: &'static str = "Formulas have `+`, `-`, `*`, `/`, `^`, parentheses, the number `pi`, and these \
+    const INTRODUCTION: &'static str = "Formulas have `+`, `-`, `*`, `/`, `^`, parentheses, numbers with units (`10 deg`), the \
+        number `pi`, comparisons (`<`, `<=`, `>`, `>=`, `==`, `!=`: 1 where they hold, else 0), `and`, `or`, `not`, and these \
         functions. Tables of the model are functions of one argument. `mbint explain --functions` prints this list.";
     const HEADINGS: [(&'static str, Align); 3] =
         [("function", Align::Left), ("domain", Align::Left), ("value", Align::Left)];

@@ -1,5 +1,9 @@
-//! Where the equations switch: arguments of `abs`, `sign`, `min`, `max` and of conditions, with their rates, as one tape.
+//! Where the equations switch: arguments of `abs`, `sign`, `min`, `max` and of conditions, with their rates, as one tape. Where
+//! `floor` jumps, the sine of π times its argument changes its sign.
 
+use std::f64::consts::PI;
+
+use rustc_hash::FxHashMap;
 use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Unary, lower};
 
 use super::equations::time_derivative;
@@ -11,9 +15,20 @@ use crate::assemble::System;
 pub struct SwitchProgram {
     /// Shared with the step's program.
     pub layout: Layout,
-    /// Registers of each switch's value, and of its rate where that does not depend on rates of accelerations or reactions.
-    pub switches: Vec<(usize, Option<usize>)>,
+    /// All of them.
+    pub switches: Vec<Switch>,
     lowered: Lowered,
+}
+
+/// A switch.
+#[derive(Clone, Debug)]
+pub struct Switch {
+    /// Register of its value.
+    pub value: usize,
+    /// Register of its rate, where that does not depend on rates of accelerations or reactions.
+    pub rate: Option<usize>,
+    /// Places of switches of whole numbers at which the value jumps itself.
+    pub jumps_with: Vec<usize>,
 }
 
 impl SwitchProgram {
@@ -43,7 +58,7 @@ pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let inputs = layout.inputs(system);
     let mut graph = system.graph.clone();
-    let values = arguments(system, &mut graph);
+    let (values, jumps_with) = arguments(system, &mut graph);
     if values.is_empty() {
         return None;
     }
@@ -55,21 +70,31 @@ pub fn compile_switches(system: &System) -> Option<SwitchProgram> {
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &[kernel]);
     let mut registers = lowered.outputs[0].iter().map(|&register| register as usize);
     let of_values: Vec<usize> = registers.by_ref().take(values.len()).collect();
-    let switches =
-        of_values.into_iter().zip(has_rate).map(|(value, known)| (value, if known { registers.next() } else { None }));
+    let switches = of_values.into_iter().zip(has_rate).zip(jumps_with).map(|((value, known), jumps_with)| Switch {
+        value,
+        rate: if known { registers.next() } else { None },
+        jumps_with,
+    });
     let switches = switches.collect();
     Some(SwitchProgram { layout, switches, lowered })
 }
 
-/// The arguments that change during a motion, each once.
-fn arguments(system: &System, graph: &mut Graph) -> Vec<Expr> {
+/// The arguments that change during a motion, each once, and of each the places of those at which it jumps.
+fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>) {
     let roots: Vec<Expr> = system.force.iter().chain(&system.inertia).chain(&system.constraint).copied().collect();
     let mut found = Vec::new();
+    let mut of_floor: FxHashMap<Expr, Expr> = FxHashMap::default();
     for expr in graph.reachable(&roots) {
         found.push(match graph.node(expr) {
             Node::Unary(Unary::Abs | Unary::Sign, a) => a,
             Node::Binary(Binary::Select | Binary::SelectElse, condition, _) => condition,
             Node::Binary(Binary::Min | Binary::Max, a, b) => graph.sub(a, b),
+            Node::Unary(Unary::Floor, a) => {
+                let turns = graph.scale(PI, a);
+                let sine = graph.sin(turns);
+                of_floor.insert(expr, sine);
+                sine
+            }
             _ => continue,
         });
     }
@@ -83,8 +108,11 @@ fn arguments(system: &System, graph: &mut Graph) -> Vec<Expr> {
         .collect();
     found.sort_unstable();
     found.dedup();
-    found.retain(|&argument| depends(graph, argument, &moving));
-    found
+    // What only jumps does so where something else switches.
+    found.retain(|&argument| graph.changes_steadily(argument, &moving));
+    let place = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
+    let jumps_with = found.iter().map(|&of| graph.reachable(&[of]).into_iter().filter_map(place).collect()).collect();
+    (found, jumps_with)
 }
 
 fn depends(graph: &Graph, expr: Expr, on: &[Expr]) -> bool {

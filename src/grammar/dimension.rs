@@ -64,9 +64,27 @@ pub fn analyse(
     mismatches: &mut Vec<Mismatch>,
 ) -> Kind {
     let mut kinds: Vec<Kind> = Vec::with_capacity(formula.terms().len());
+    let is_half =
+        |term: usize| matches!(formula.terms()[term].0, Term::Binary(Binary::Select | Binary::SelectElse, ..));
     for (term, span) in formula.terms() {
         let kind = match term {
             Term::Number(value) => Ok(Kind::Number(Some(*value))),
+            Term::Quantity(_, mark) => Ok(Kind::parameter(Dimension::of_mark(*mark))),
+            Term::Compared(a, b) => {
+                // In the order in which they stand there.
+                let [first, second] =
+                    if formula.terms()[*a].1.start < formula.terms()[*b].1.start { [a, b] } else { [b, a] };
+                sum(kinds[*first], kinds[*second], "compared")
+            }
+            Term::Degrees(a) => unary(Unary::Cos, kinds[*a]),
+            Term::Unary(Unary::Sin | Unary::Cos | Unary::Tan, a)
+                if matches!(formula.terms()[*a].0, Term::Degrees(_)) =>
+            {
+                Err("degrees stand where an angle (rad) belongs".to_owned())
+            }
+            Term::Binary(Binary::Add, a, b) if is_half(*a) && is_half(*b) => {
+                sum(kinds[*a], kinds[*b], "the two values of `if`")
+            }
             Term::Name(text) => Ok(name(text)),
             Term::Unary(Unary::Spline(spline, _), a) => looked_up(table(*spline), kinds[*a]),
             Term::Unary(function, a) => unary(*function, kinds[*a]),
@@ -119,7 +137,10 @@ fn binary(function: Binary, a: Kind, b: Kind) -> Result<Kind, String> {
     match function {
         Binary::Add | Binary::Sub => sum(a, b, if function == Binary::Add { "added" } else { "subtracted" }),
         Binary::Min | Binary::Max => sum(a, b, "compared"),
-        Binary::Select | Binary::SelectElse => Ok(b),
+        Binary::Select | Binary::SelectElse => Ok(match b {
+            Kind::Number(_) => Kind::Number(None),
+            other => other,
+        }),
         Binary::Atan2 => sum(a, b, "compared").map(|_| Kind::Number(None)),
         Binary::Mul => Ok(product(a, b, Dimension::times, |x, y| x * y)),
         Binary::Div => Ok(product(a, b, Dimension::per, |x, y| x / y)),
@@ -188,7 +209,10 @@ fn power(base: Kind, exponent: Option<f64>) -> Result<Kind, String> {
 
 #[cfg(test)]
 mod tests {
+    use symdiff::formula::Vocabulary;
+
     use super::*;
+    use crate::grammar::unit::Unit;
 
     fn name(name: &str) -> Kind {
         match name {
@@ -205,7 +229,10 @@ mod tests {
 
     fn unit(text: &str) -> Result<String, String> {
         let mut mismatches = Vec::new();
-        let kind = analyse(&Formula::parse(text).unwrap(), name, |_| [None; 2], &mut mismatches);
+        let read_unit = |value: f64, text: &str| Ok(Unit::behind(value, text, |word| word == "l").unwrap());
+        let vocabulary = Vocabulary { unit: Some(&read_unit), ..Vocabulary::default() };
+        let formula = Formula::parse_with(text, &vocabulary).unwrap();
+        let kind = analyse(&formula, name, |_| [None; 2], &mut mismatches);
         match mismatches.into_iter().next() {
             Some(mismatch) => Err(format!("{:?} {}", mismatch.span, mismatch.message)),
             None => Ok(match kind {
@@ -236,6 +263,19 @@ mod tests {
             ("angle - angle", "rad"),
             ("max(l, 0)", "m"),
             ("F*(l/l)^2.5", "N"),
+            ("250 kg/m * l", "kg"),
+            ("l + 3 mm", "m"),
+            ("cos(10 deg)", "number"),
+            ("F*sin(2 rad/s*t)", "N"),
+            ("mod(t, 0.5)", "s"),
+            ("mod(t, 500 ms)", "s"),
+            ("floor(t/1 s)", "number"),
+            ("if(t > 1 s, F, 0)", "N"),
+            ("if(l < 3, 2, 4)", "number"),
+            ("clamp(l, 1 mm, 2 m)", "m"),
+            ("smoothstep(1, 2 s, t)*F", "N"),
+            ("(t < 1 and v > 2 m/s)*F", "N"),
+            ("deg(angle)", "number"),
         ] {
             assert_eq!(unit(text).as_deref(), Ok(wanted), "{text}");
         }
@@ -250,6 +290,13 @@ mod tests {
             ("2^l", "0..3 a length (m) cannot be an exponent"),
             ("l^k", "0..3 a length (m) needs a number as its exponent"),
             ("max(l, m)", "0..9 a length (m) and a mass (kg) cannot be compared"),
+            ("1 + (l < m)", "5..10 a length (m) and a mass (kg) cannot be compared"),
+            ("l + 3 kg", "0..8 a length (m) and a mass (kg) cannot be added"),
+            ("if(t > 1, l, m)", "0..15 a length (m) and a mass (kg) cannot be the two values of `if`"),
+            ("floor(l)", "0..8 a length (m) stands where a pure number belongs"),
+            ("deg(l)", "0..6 a length (m) stands where an angle (rad) belongs"),
+            ("sin(deg(angle))", "0..15 degrees stand where an angle (rad) belongs"),
+            ("mod(l, m)", "0..9 a quantity in m/kg stands where a pure number belongs"),
         ] {
             assert_eq!(unit(text).unwrap_err(), wanted, "{text}");
         }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use symdiff::Formula;
 
 use super::reader::{Fields, Reader};
-use super::requirement::Quantity;
+use super::requirement::{Quantity, Requirement};
 use super::symbols::{Reference, SymbolTable};
 use crate::syntax::diagnostic::Diagnostics;
 use crate::syntax::source::Span;
@@ -66,11 +66,15 @@ pub trait Element: Group {
         Self::read(reader, &fields, 0)
     }
 
+    /// Says in the schema which keys do not go together.
+    fn constrain(_schema: &mut Schema) {}
+
     /// The schema of its mapping, with its example.
     fn object(generator: &mut SchemaGenerator) -> Schema {
         let keys = Self::keys(generator);
         let mut schema = object_schema(Self::DESCRIPTION, keys);
         schema.insert("examples".to_owned(), serde_json::Value::Array(vec![json_of(Self::EXAMPLE)]));
+        Self::constrain(&mut schema);
         schema
     }
 }
@@ -79,6 +83,9 @@ pub trait Element: Group {
 pub trait Checked: Sized {
     /// Reports keys that do not go together, and missing ones of which another would do.
     fn check_keys<S: SymbolTable>(_reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
+
+    /// Says in the schema what can be said there of the keys that do not go together.
+    fn constrain(_schema: &mut Schema) {}
 
     /// Reports values that do not go together.
     fn check<S: SymbolTable>(&self, _reader: &mut Reader<'_, S>, _fields: &Fields<'_>) {}
@@ -156,6 +163,8 @@ pub struct Key {
     pub default_in_words: Option<&'static str>,
     /// What may stand behind it.
     pub schema: Schema,
+    /// What must hold of its number.
+    pub requirement: Option<Requirement>,
     /// Keys within it.
     pub keys: Vec<Key>,
 }
@@ -186,6 +195,10 @@ pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
         if let Some(default) = &key.default {
             property.insert("default".to_owned(), default.clone());
         }
+        let is_number = property.get("$ref").and_then(serde_json::Value::as_str) == Some("#/$defs/Number");
+        if let Some(limit) = key.requirement.and_then(|requirement| requirement.limit()).filter(|_| is_number) {
+            not_negative(&mut property, limit);
+        }
         properties.insert(key.name.to_owned(), property.to_value());
     }
     schema.insert("properties".to_owned(), properties.into());
@@ -194,6 +207,19 @@ pub fn object_schema(description: &str, keys: Vec<Key>) -> Schema {
         schema.insert("required".to_owned(), required.into());
     }
     schema
+}
+
+/// Refuses numbers below the limit 0, and quantities with a minus. Formulas are for the reader.
+pub fn not_negative(property: &mut Schema, limit: &str) {
+    property.insert(limit.to_owned(), 0.into());
+    property
+        .insert("pattern".to_owned(), r"^(?!\s*-\s*[0-9.]+([eE][+-]?[0-9]+)?\s*([A-Za-zµ°%][^\s+(-]*)?\s*$)".into());
+}
+
+/// Exactly one of these keys is there.
+pub fn one_of(schema: &mut Schema, keys: &[&str]) {
+    let required: Vec<serde_json::Value> = keys.iter().map(|key| serde_json::json!({ "required": [key] })).collect();
+    schema.insert("oneOf".to_owned(), required.into());
 }
 
 /// One of several kinds, each by its word, its description and its schema.

@@ -1,5 +1,6 @@
 //! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
 
+use symdiff::formula::Vocabulary;
 use symdiff::{Builder, Formula, Spline};
 
 use super::dimension::{self, Kind};
@@ -8,6 +9,7 @@ use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{ReactionComponent, Symbol, SymbolTable};
+use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
@@ -28,20 +30,27 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// What stands in a field, its names not yet looked at.
     pub fn written(&mut self, node: &Node) -> Option<Written> {
         let scalar = self.scalar(node, "a number or a formula")?;
+        if is_toleranced(&scalar.text) {
+            let help = "name it under `parameters`, and write its name here".to_owned();
+            self.error(node.span.clone(), "only a parameter can have a tolerance", help);
+            return None;
+        }
         if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
-            if unit == "%" {
+            if unit.starts_with('%') {
                 let help = "write the number itself: 1% is 0.01".to_owned();
                 self.error(node.span.clone(), "`%` can stand only in a tolerance", help);
                 return None;
             }
-            return match Unit::parse(unit) {
-                Ok(unit) => Some(Written::Quantity { value, unit }),
+            // What goes on behind the unit makes a formula of it.
+            match Unit::leading(unit, |name| self.is_name(name)) {
+                Ok((found, length)) if length == unit.len() => return Some(Written::Quantity { value, unit: found }),
+                Ok(_) => {}
                 Err(error) => {
                     let part = start + error.span.start..start + error.span.end;
                     self.error(scalar.place(&node.span, part), error.message, error.help);
-                    None
+                    return None;
                 }
-            };
+            }
         }
         self.parse(node, scalar, 0..scalar.text.len()).map(Written::Formula)
     }
@@ -55,7 +64,9 @@ impl<S: SymbolTable> Reader<'_, S> {
             return None;
         }
         let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
-        match Formula::parse_with(text, &tables) {
+        let unit = |value: f64, text: &str| Unit::behind(value, text, |name| self.is_name(name));
+        let parsed = Formula::parse_with(text, &Vocabulary { tables: &tables, unit: Some(&unit) });
+        match parsed {
             Ok(formula) if formula.terms().len() > MAX_TERMS => {
                 let message = format!("the formula has more than {MAX_TERMS} operations");
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
@@ -68,6 +79,14 @@ impl<S: SymbolTable> Reader<'_, S> {
                 None
             }
         }
+    }
+
+    /// Whether a word is a name that formulas may use, and so no unit where both may stand.
+    fn is_name(&self, word: &str) -> bool {
+        names::is_reserved(word)
+            || self.variable.is_some_and(|(own, _)| own == word)
+            || self.tables.iter().any(|table| table.name == word)
+            || self.symbol(word).is_some()
     }
 
     /// Whether every name of the formula may stand in the context; `offset` is where the formula begins in the scalar.
@@ -179,7 +198,9 @@ impl<S: SymbolTable> Reader<'_, S> {
     pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
         let formula = match self.written(node)? {
             Written::Quantity { value, unit } => {
-                self.check_fits(&node.span, unit.dimension, wanted).then(|| Formula::number(unit.to_si(value)))?
+                self.check_fits(&node.span, unit.dimension, wanted).then_some(())?;
+                self.suspect_quantity(unit.to_si(value), wanted);
+                Formula::number(unit.to_si(value))
             }
             Written::Formula(formula) => {
                 if !self.check_names(node, &formula, 0, context) {
@@ -188,6 +209,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 if let Some(found) = self.kind(node, &formula, 0).dimension() {
                     self.check_fits(&node.span, found, wanted);
                 }
+                self.suspect_formula(node, &formula, wanted);
                 formula
             }
         };

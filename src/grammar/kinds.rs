@@ -298,6 +298,7 @@ impl Group for OnJoint {
             default: None,
             default_in_words: words,
             schema,
+            requirement: None,
             keys: Vec::new(),
         };
         let words = json_schema!({

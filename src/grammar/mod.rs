@@ -15,7 +15,9 @@ pub(crate) mod quantity;
 pub(crate) mod reader;
 pub mod reference;
 mod requirement;
+mod suspicious;
 mod symbols;
+pub(crate) mod tolerance;
 pub(crate) mod unit;
 pub(crate) mod unknown;
 pub(crate) mod values;
@@ -24,11 +26,11 @@ mod vectors;
 pub(crate) use crate::syntax::source::Span;
 pub(crate) use crate::syntax::yaml::Node;
 pub use element::{
-    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, object_schema, ordered,
-    short_or_full,
+    Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, not_negative, object_schema,
+    one_of, ordered, short_or_full,
 };
 pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
-pub use reader::{Fields, Reader};
+pub use reader::{Fields, Lengths, Reader};
 pub use requirement::{Quantity, Requirement};
 pub use symbols::*;

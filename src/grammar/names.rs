@@ -51,9 +51,9 @@ pub struct NameError {
 
 /// Whether the word means something by itself in every formula, so that nothing else may be called so.
 pub fn is_reserved(name: &str) -> bool {
-    matches!(name, "t" | "pi")
+    matches!(name, "t" | "pi" | "and" | "or" | "not")
         || ENERGIES.iter().any(|(energy, _)| *energy == name)
-        || symdiff::formula::FUNCTIONS.iter().any(|function| function.name == name)
+        || symdiff::formula::FUNCTIONS.iter().any(|function| function.name == name && function.is_reserved())
 }
 
 /// What a name in a formula stands for; `None` where it stands for nothing.

@@ -88,6 +88,20 @@ const NAMED: [(Dimension, &str, &str); 20] = [
 ];
 
 impl Dimension {
+    /// As a number of its own, for terms of formulas: whole powers of m, kg, s and rad, 16 bits each.
+    pub fn mark(self) -> u64 {
+        let powers = [self.length, self.mass, self.time, self.angle];
+        // Units have whole powers; what is beyond 16 bits is beyond all that anything fits.
+        let bits = |power: i32| u64::from((power / ONE).clamp(-0x7fff, 0x7fff) as i16 as u16);
+        powers.into_iter().fold(0, |mark, power| mark << 16 | bits(power))
+    }
+
+    /// Of a mark.
+    pub fn of_mark(mark: u64) -> Self {
+        let power = |place: u32| i32::from((mark >> (16 * place)) as u16 as i16);
+        Self::of(power(3), power(2), power(1), power(0))
+    }
+
     /// Whether quantities of the two may be added or stand for one another.
     pub fn fits(self, other: Self) -> bool {
         Self { angle: 0, ..self } == Self { angle: 0, ..other }

@@ -43,10 +43,23 @@ pub struct Reader<'d, S> {
     pub used_by_parameters: Vec<bool>,
     /// Parameters that vary, but in what is left out only.
     pub idle: HashSet<String>,
+    /// Parameters whose interval has no width.
+    pub certain: HashSet<String>,
+    /// Lengths of which some may be in another unit.
+    pub lengths: Lengths,
     /// Functions that the file gives by their values.
     pub tables: Vec<Table>,
     /// Where files are that the model names.
     pub folder: PathBuf,
+}
+
+/// What has been seen of a model's lengths.
+#[derive(Clone, Debug, Default)]
+pub struct Lengths {
+    /// Bare numbers that are large, with their texts.
+    pub(super) large: Vec<(Span, String)>,
+    /// Whether there is a small one.
+    pub(super) small: bool,
 }
 
 /// A function that is given by its values.

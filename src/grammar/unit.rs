@@ -2,6 +2,9 @@
 
 use std::f64::consts::PI;
 
+use symdiff::SyntaxError;
+use symdiff::formula::Quantity;
+
 use super::quantity::Dimension;
 use crate::syntax::source::Span;
 use crate::syntax::suggest;
@@ -33,18 +36,38 @@ impl Unit {
     /// # Errors
     /// What is wrong, and where in the text.
     pub fn parse(text: &str) -> Result<Self, UnitError> {
-        let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false };
+        let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false, is_name: None };
         let unit = parser.product()?;
         match parser.peek() {
-            // A frequency: of what, is not said.
-            None if unit.dimension == Dimension::NUMBER.per(Dimension::TIME) && parser.minutes => Err(UnitError {
-                message: format!("`{}` may be revolutions or radians", suggest::clip(text.trim())),
-                span: 0..text.len(),
-                help: Some("write `rpm` for revolutions, `rad/min` for radians a minute".to_owned()),
-            }),
-            None => Ok(unit),
+            None => parser.checked(unit),
             Some(_) => Err(parser.unexpected()),
         }
+    }
+
+    /// The unit with which a text begins, in a formula, and its length. Behind an operator that stands between spaces, what is a
+    /// name of the model is not part of the unit (`250 kg/m * L`), nor are, behind any operator, functions and words of formulas.
+    ///
+    /// # Errors
+    /// What is wrong, and where in the text.
+    pub fn leading(text: &str, is_name: impl Fn(&str) -> bool) -> Result<(Self, usize), UnitError> {
+        let mut parser = UnitParser { text, position: 0, depth: 0, minutes: false, is_name: Some(&is_name) };
+        let unit = parser.product()?;
+        let length = text[..parser.position].trim_end().len();
+        Ok((parser.checked(unit)?, length))
+    }
+
+    /// A number with the unit behind it, in a formula.
+    ///
+    /// # Errors
+    /// As of [`Self::leading`].
+    pub fn behind(value: f64, text: &str, is_name: impl Fn(&str) -> bool) -> Result<Quantity, SyntaxError> {
+        let UnitError { message, span, help } = match Self::leading(text, is_name) {
+            Ok((unit, length)) => {
+                return Ok(Quantity { value: unit.to_si(value), mark: unit.dimension.mark(), length });
+            }
+            Err(error) => error,
+        };
+        Err(SyntaxError { message, span, help })
     }
 
     fn combine(self, other: Self, divide: bool) -> Self {
@@ -150,9 +173,50 @@ struct UnitParser<'t> {
     depth: usize,
     /// Whether minutes or hours are part of the unit.
     minutes: bool,
+    /// Names of a formula, in which the unit ends where the formula goes on.
+    is_name: Option<&'t dyn Fn(&str) -> bool>,
 }
 
 impl UnitParser<'_> {
+    /// Refuses a frequency that does not say of what.
+    fn checked(&self, unit: Unit) -> Result<Unit, UnitError> {
+        if !(unit.dimension == Dimension::NUMBER.per(Dimension::TIME) && self.minutes) {
+            return Ok(unit);
+        }
+        let text = self.text[..self.position].trim();
+        Err(UnitError {
+            message: format!("`{}` may be revolutions or radians", suggest::clip(text)),
+            span: 0..self.position,
+            help: Some("write `rpm` for revolutions, `rad/min` for radians a minute".to_owned()),
+        })
+    }
+
+    /// Whether a formula goes on at this place of the text, before an operator or a word.
+    fn ends_before(&self, place: usize) -> bool {
+        let Some(is_name) = self.is_name else { return false };
+        let rest = &self.text[place..];
+        let Some(first) = rest.chars().next() else { return true };
+        let operator = matches!(first, '*' | '·' | '⋅' | '/');
+        if !(operator || first.is_alphabetic() || first == '°' || first == '(') {
+            return true;
+        }
+        let behind = if operator { rest[first.len_utf8()..].trim_start() } else { rest };
+        let word = behind.split(|c: char| !is_part_of_name(c)).next().unwrap_or("");
+        let after = behind[word.len()..].trim_start();
+        if word.is_empty() {
+            // A group of units, or a formula in parentheses; only behind an operator is either in its place.
+            let group =
+                UnitParser { text: behind, position: 0, depth: self.depth, minutes: false, is_name: None }.power();
+            return !(operator && behind.starts_with('(') && group.is_ok());
+        }
+        let spaced = operator && self.text[..place].ends_with(' ');
+        let is_unit = UNITS.iter().any(|(known, ..)| *known == word);
+        let is_word = matches!(word, "and" | "or" | "not") || operator && word == "t";
+        is_word
+            || operator && (after.starts_with('(') || after.starts_with('.') || is_name(word) && (spaced || !is_unit))
+            || word.starts_with(|c: char| c.is_ascii_digit()) && word != "1"
+    }
+
     fn peek(&mut self) -> Option<char> {
         self.position = self.text.len() - self.text[self.position..].trim_start().len();
         self.text[self.position..].chars().next()
@@ -173,6 +237,9 @@ impl UnitParser<'_> {
     fn product(&mut self) -> Result<Unit, UnitError> {
         let mut unit = self.power()?;
         while let Some(next) = self.peek() {
+            if self.depth == 0 && self.ends_before(self.position) {
+                break;
+            }
             let divide = next == '/';
             match next {
                 '*' | '·' | '⋅' | '/' => self.position += next.len_utf8(),
@@ -233,8 +300,7 @@ impl UnitParser<'_> {
 
     fn name(&mut self) -> Result<Unit, UnitError> {
         let rest = &self.text[self.position..];
-        let part_of_name = |c: char| c.is_alphanumeric() && c != '²' && c != '³' || c == '_' || c == '°';
-        let length = rest.find(|c: char| !part_of_name(c)).unwrap_or(rest.len());
+        let length = rest.find(|c: char| !is_part_of_name(c)).unwrap_or(rest.len());
         if length == 0 {
             return Err(self.unexpected());
         }
@@ -256,6 +322,10 @@ impl UnitParser<'_> {
         };
         Err(UnitError { message: format!("unknown unit `{}`", suggest::clip(name)), span, help })
     }
+}
+
+fn is_part_of_name(c: char) -> bool {
+    c.is_alphanumeric() && c != '²' && c != '³' || c == '_' || c == '°'
 }
 
 /// Splits `120 mm` into the number and the unit's text with its place; `None` where the text is not of that form
@@ -284,85 +354,4 @@ pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn si(value: f64, unit: &str) -> (f64, String) {
-        let unit = Unit::parse(unit).unwrap();
-        (unit.to_si(value), unit.dimension.unit())
-    }
-
-    #[test]
-    fn units_become_si() {
-        assert_eq!(si(150.0, "mm"), (0.15, "m".into()));
-        assert_eq!(si(180.0, "deg"), (PI, "rad".into()));
-        assert!((si(30.0, "rpm").0 - PI).abs() < 1e-15);
-        assert_eq!(si(1.0, "rpm").1, "rad/s");
-        assert_eq!(si(2.0, "kN"), (2000.0, "N".into()));
-        assert_eq!(si(1.0, "N*s/m"), (1.0, "N*s/m".into()));
-        assert_eq!(si(5.0, "N/mm"), (5000.0, "N/m".into()));
-        for inertia in ["kg*m^2", "kg m^2", "kg·m²", "kg * m * m", "kg/m^-2"] {
-            assert_eq!(si(1.0, inertia), (1.0, "kg*m^2".into()), "{inertia}");
-        }
-        assert_eq!(si(1.0, "N/(m/s)").1, "N*s/m");
-        assert_eq!(si(3.0, "1/s"), (3.0, "1/s".into()));
-        assert_eq!(si(1.0, "N*m/rad").1, "N*m/rad");
-        assert_eq!(si(1.0, "m^3/s").1, "m^3/s");
-    }
-
-    /// By their definitions: NIST SP 811, appendix B.
-    #[test]
-    fn units_of_the_trade_are_exact() {
-        let close = |unit: &str, value: f64| {
-            let found = si(1.0, unit).0;
-            assert!((found - value).abs() <= 4.0 * f64::EPSILON * value, "{unit}: {found:e}, not {value:e}");
-        };
-        close("psi", 6_894.757_293_168_361);
-        close("hp", 745.699_871_582_270_2);
-        close("kgf", 9.806_65);
-        close("lbf", 4.448_221_615_260_5);
-        close("ft*lbf", 1.355_817_948_331_400_4);
-        close("ft·lbf", 1.355_817_948_331_400_4);
-        close("arcmin", PI / 180.0 / 60.0);
-        close("arcsec", PI / 180.0 / 3600.0);
-        close("l/min", 1e-3 / 60.0);
-        close("ppm", 1e-6);
-        close("mil", 25.4e-6);
-        close("thou", 25.4e-6);
-        assert_eq!(si(1.0, "l/min").1, "m^3/s");
-        assert_eq!(si(1.0, "ft*lbf").1, "N*m");
-    }
-
-    #[test]
-    fn a_number_a_minute_is_refused() {
-        for unit in ["1/min", "min^-1", "1 / min", "1/h"] {
-            let error = Unit::parse(unit).unwrap_err();
-            assert!(error.help.unwrap().contains("`rpm`"), "{unit}");
-        }
-        for unit in ["rev/min", "rad/min", "1/s", "l/min", "m/min", "deg/min"] {
-            assert!(Unit::parse(unit).is_ok(), "{unit}");
-        }
-    }
-
-    #[test]
-    fn unknown_units_are_placed_and_suggested() {
-        let error = Unit::parse("N*sec/m").unwrap_err();
-        assert_eq!((error.message.as_str(), error.span), ("unknown unit `sec`", 2..5));
-        assert_eq!(Unit::parse("Mm").unwrap_err().help.unwrap(), "did you mean `mm`?");
-        assert!(Unit::parse("Hz").unwrap_err().help.unwrap().contains("rev/s"));
-        assert_eq!(Unit::parse("N*").unwrap_err().span, 2..2);
-        assert!(Unit::parse(&"(".repeat(1000)).is_err());
-        assert!(Unit::parse("m^99").is_err());
-    }
-
-    #[test]
-    fn quantities_are_told_from_formulas() {
-        assert_eq!(number_and_unit("120 mm"), Some((120.0, "mm", 4)));
-        assert_eq!(number_and_unit("-9.81m/s^2"), Some((-9.81, "m/s^2", 5)));
-        assert_eq!(number_and_unit("1e-3 kg"), Some((1e-3, "kg", 5)));
-        assert_eq!(number_and_unit("1%"), Some((1.0, "%", 1)));
-        for formula in ["120", "2*l1", "l1/2", "1 + t", "-l1", "1e3", "", "2 (3)"] {
-            assert_eq!(number_and_unit(formula), None, "{formula}");
-        }
-    }
-}
+mod tests;

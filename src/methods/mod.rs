@@ -27,6 +27,15 @@ pub use scan::Scan;
 pub use taylor::Taylor;
 pub use validation::{Ensembles, Validation};
 
+/// Least and largest counts that can be asked for, by the keys of the file: definition in the schema, key, least, largest.
+pub const COUNTS: [(&str, &str, usize, usize); 5] = [
+    ("Chebyshev", "order", 1, chebyshev::MOST_ORDER),
+    ("Chebyshev", "nodes", 2, chebyshev::MOST_NODES),
+    ("Taylor", "order", 1, taylor::MOST_ORDER),
+    ("Scan", "points", 2, scan::MOST_POINTS),
+    ("Budget", "solves", 1, MOST_SIMULATIONS as usize),
+];
+
 registry::methods! {
     /// A Chebyshev polynomial in the parameters.
     chebyshev: Chebyshev, keys chebyshev::keys::Chebyshev;

@@ -8,7 +8,7 @@ use crate::grammar::quantity::Dimension;
 use crate::grammar::{Fields, Reader, SymbolTable};
 use crate::numerics::RangeKind;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::yaml::Value;
+use crate::syntax::yaml::{Entry, Value};
 
 /// Errors below this share of an output's range drown in rounding.
 const LEAST_TOLERANCE: f64 = 1e-8;
@@ -141,7 +141,8 @@ pub(super) fn per_parameter<S: SymbolTable>(
     };
     let mut counts: HashMap<&str, usize> = HashMap::new();
     let mut complete = true;
-    for entry in entries.iter().filter(|entry| !reader.idle.contains(&entry.key)).collect::<Vec<_>>() {
+    let varies = |entry: &&Entry| !reader.idle.contains(&entry.key) && !reader.certain.contains(&entry.key);
+    for entry in entries.iter().filter(varies).collect::<Vec<_>>() {
         let count = reader.count(&entry.value, least, most);
         if uncertain.contains(&entry.key) {
             complete &= count.is_some();

@@ -15,7 +15,7 @@ const SHARD: usize = 2048;
 const LARGEST_SHARD: usize = 16384;
 
 /// Most points along an axis.
-const MOST_POINTS: usize = 1_000_000;
+pub(super) const MOST_POINTS: usize = 1_000_000;
 
 /// Keys of the file.
 pub(crate) mod keys {

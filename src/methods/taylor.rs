@@ -16,7 +16,7 @@ use crate::numerics::{RangeKind, TaylorRange};
 const MOST_COEFFICIENTS: f64 = 1e5;
 
 /// Highest order.
-const MOST_ORDER: usize = 50;
+pub(super) const MOST_ORDER: usize = 50;
 
 /// Keys of the file.
 pub(crate) mod keys {

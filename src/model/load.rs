@@ -10,6 +10,7 @@ use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
+use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
@@ -184,6 +185,8 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         used: Vec::new(),
         used_by_parameters: Vec::new(),
         idle: HashSet::new(),
+        certain: HashSet::new(),
+        lengths: Lengths::default(),
         tables: Vec::new(),
         folder: Path::new(name).parent().unwrap_or(Path::new("")).to_owned(),
     }
@@ -257,6 +260,7 @@ fn describe(
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }
+    reader.warn_of_lengths();
     let unused = parameters::unused(&reader, parameter_entries);
     let Reader { mut model, idle, .. } = reader;
     model.parameters.retain(|parameter| !idle.contains(&parameter.name));
@@ -307,6 +311,11 @@ fn no_limits(reader: &mut Reader, limits: Option<(&Node, Span)>) {
 impl Reader<'_> {
     /// Whether a text can be the name of something that has a folder of results; says so where it cannot.
     pub(super) fn folder_name(&mut self, name: &str, span: Span, what: &str) -> bool {
+        if name.is_empty() {
+            let help = "write one, or leave the key out: a model is called like its file".to_owned();
+            self.error(span, format!("the name of {what} is empty"), help);
+            return false;
+        }
         let good = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         let fine = name.len() <= 100 && name.chars().all(good);
         if !fine {

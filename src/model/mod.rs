@@ -5,6 +5,7 @@
 
 mod description;
 mod names;
+mod notation;
 mod references;
 
 mod file;

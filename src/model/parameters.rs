@@ -3,13 +3,14 @@
 mod corners;
 mod interval;
 mod order;
+mod spec;
 
 use std::collections::{HashMap, HashSet};
 
 use symdiff::Formula;
 
+use self::spec::Spec;
 use super::description::{Parameter, ParameterValue};
-use super::file;
 use super::overrides::Override;
 use super::urdf;
 use crate::grammar::Symbol;
@@ -26,31 +27,14 @@ use crate::syntax::yaml::{Entry, Node};
 /// Most parameters: every name of a formula is looked for among them.
 const MOST: usize = 20_000;
 
-/// A parameter as it was written.
-#[derive(Default)]
-struct Spec<'n> {
-    value: Option<&'n Node>,
-    unit: Option<&'n Node>,
-    tolerance: Option<&'n Node>,
-    interval: Option<&'n Node>,
-    plus: Option<&'n Node>,
-    minus: Option<&'n Node>,
-}
-
 /// A parameter between its text and its value.
-struct Draft<'n> {
-    spec: Spec<'n>,
+struct Draft {
+    spec: Spec,
     name_span: Span,
     unit: Option<Unit>,
     value: Option<Written>,
     /// Parameters that the value's formula names.
     uses: Vec<usize>,
-}
-
-impl Spec<'_> {
-    fn is_uncertain(&self) -> bool {
-        self.tolerance.is_some() || self.interval.is_some() || self.plus.is_some() || self.minus.is_some()
-    }
 }
 
 /// Reads the parameters; after this, formulas of them can be checked and evaluated.
@@ -108,42 +92,20 @@ fn find_overrides<'o>(
 }
 
 /// What was written, its unit and its formula read.
-fn draft<'n>(reader: &mut Reader, entry: &'n Entry, replaced: Option<&'n Override>) -> Draft<'n> {
+fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Draft {
     let name_span = entry.key_span.clone();
-    let mut spec = Spec::default();
-    if matches!(entry.value.value, crate::syntax::yaml::Value::Mapping(_)) {
-        if let Some(fields) = reader.fields::<file::Parameter>(&entry.value, name_span.clone()) {
-            spec = Spec {
-                value: fields.get("value"),
-                unit: fields.get("unit"),
-                tolerance: fields.get("tolerance"),
-                interval: fields.get("interval"),
-                plus: fields.get("plus"),
-                minus: fields.get("minus"),
-            };
-            if let Some(description) = fields.get("description") {
-                reader.scalar(description, "a text");
-            }
-            if spec.value.is_none() && spec.interval.is_none() {
-                reader.error(name_span.clone(), "a parameter needs `value` or `interval`", None);
-            }
-        }
-    } else {
-        spec.value = Some(&entry.value);
-    }
+    let mut spec = Spec::read(reader, entry);
     if let Some(wanted) = replaced {
-        spec = Spec {
-            value: wanted.value.as_ref(),
-            tolerance: wanted.tolerance.as_ref(),
-            interval: wanted.interval.as_ref(),
-            unit: spec.unit,
-            ..Spec::default()
-        };
+        spec.replace(reader, &wanted.value);
     }
-    let unit = spec.unit.and_then(|node| unit(reader, node));
-    let value = spec.value.and_then(|node| reader.written(node));
+    if spec.value.is_none() && spec.interval.is_none() && !spec.contradictory {
+        reader.error(name_span.clone(), "a parameter needs `value` or `interval`", None);
+    }
+    let unit = spec.unit.as_ref().and_then(|node| unit(reader, node));
+    let value = spec.value.as_ref().and_then(|node| reader.written(node));
+    spec.check_units(reader);
     let mut uses = Vec::new();
-    if let (Some(Written::Formula(formula)), Some(node)) = (&value, spec.value)
+    if let (Some(Written::Formula(formula)), Some(node)) = (&value, &spec.value)
         && reader.check_names(node, formula, 0, Context::Constant)
     {
         uses = formula
@@ -171,7 +133,7 @@ pub(super) fn unit(reader: &mut Reader, node: &Node) -> Option<Unit> {
 
 /// Gives the parameter its value, its unit and its dimension; those it uses have theirs.
 fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) {
-    let (value, mut kind) = match (&draft.value, draft.spec.value) {
+    let (value, mut kind) = match (&draft.value, &draft.spec.value) {
         (Some(written), Some(node)) => match nominal(reader, draft, written, node) {
             Some((formula, kind)) => (Some(formula), kind),
             None => return,
@@ -185,20 +147,25 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
     let number = value.as_ref().and_then(|formula| evaluate(formula, at));
     if draft.spec.is_uncertain() {
         let nominal = number.filter(|number| number.is_finite());
-        if let (Some(node), true) = (draft.spec.value, interval::depends_on_uncertain(reader, draft)) {
+        if let (Some(node), true) = (&draft.spec.value, interval::depends_on_uncertain(reader, draft)) {
             let message = "the value of an uncertain parameter cannot depend on an uncertain parameter";
             let help = "leave the tolerance out: what depends on an uncertain parameter varies with it".to_owned();
             reader.error(node.span.clone(), message, help);
         }
         let Some([nominal, lower, upper]) = interval::bounds(reader, draft, nominal, &mut kind) else { return };
         values[index] = nominal;
-        reader.model.parameters[index].value = ParameterValue::Interval { nominal, lower, upper };
+        reader.model.parameters[index].value = if lower < upper {
+            ParameterValue::Interval { nominal, lower, upper }
+        } else {
+            reader.certain.insert(reader.model.parameters[index].name.clone());
+            ParameterValue::Formula(Formula::number(nominal))
+        };
     } else if let Some(formula) = value {
         values[index] = number.unwrap_or(f64::NAN);
         reader.model.parameters[index].value = ParameterValue::Formula(formula);
     }
     reader.kinds[index] = kind;
-    let declared = draft.unit.filter(|unit| unit.is_si()).and(draft.spec.unit).and_then(Node::scalar);
+    let declared = draft.unit.filter(|unit| unit.is_si()).and(draft.spec.unit.as_ref()).and_then(Node::scalar);
     reader.model.parameters[index].unit = match (declared, kind) {
         (Some(unit), _) => unit.text.trim().to_owned(),
         (None, Kind::Known { dimension, .. }) => dimension.unit(),
@@ -225,7 +192,7 @@ fn nominal(reader: &mut Reader, draft: &Draft, written: &Written, node: &Node) -
                 reader.check_fits(&node.span, found, unit.dimension);
             }
             if !unit.is_si() {
-                let place = draft.spec.unit.map_or_else(|| node.span.clone(), |unit| unit.span.clone());
+                let place = draft.spec.unit.as_ref().map_or_else(|| node.span.clone(), |unit| unit.span.clone());
                 let help = format!("give the unit as `{}`, or leave it out", unit.dimension.unit());
                 reader.error(place, "a formula gives its value in SI units, so its unit must be one", help);
                 return None;

@@ -43,7 +43,11 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
     };
     let to_si = |unit: Option<Unit>, value: f64| unit.map_or(value, |unit| unit.to_si(value));
     let values: Vec<(f64, f64)> = points.iter().map(|[x, y]| (to_si(units[0], x.0), to_si(units[1], y.0))).collect();
-    match Spline::through(&values) {
+    let periodic = match fields.get("periodic") {
+        Some(node) => reader.choice(node, &[("true", true), ("false", false)])?,
+        None => false,
+    };
+    match if periodic { Spline::periodic(&values) } else { Spline::through(&values) } {
         Ok(spline) => {
             let dimensions = units.map(|unit| unit.map(|unit| unit.dimension));
             Some(Table { name: entry.key.clone(), spline, dimensions })
@@ -54,6 +58,10 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
                 SplineError::NotFinite(point) => ("this point is not finite", points[point][0].1.clone()),
                 SplineError::NotAscending(point) => {
                     ("arguments ascend, but this one does not come after the one before", points[point][0].1.clone())
+                }
+                SplineError::NotPeriodic => {
+                    let last = points.last().map_or_else(|| entry.key_span.clone(), |point| point[1].1.clone());
+                    ("a periodic table ends with the value that it begins with", last)
                 }
             };
             reader.error(place, message, None);

@@ -84,12 +84,79 @@ fn parameters_can_be_written_in_several_ways() {
         ("{ value: 0.199, unit: m, interval: [0.198, 0.202] }", [0.199, 0.198, 0.202]),
         ("{ value: 0.2, plus: 0.01 }", [0.2, 0.2, 0.21]),
         ("{ value: 0.2, plus: 1%, minus: 2% }", [0.2, 0.196, 0.202]),
-        ("{ value: 0.2, tolerance: 0 }", [0.2, 0.2, 0.2]),
         ("{ value: -0.2, tolerance: 10% }", [-0.2, -0.22, -0.18]),
         ("{ value: 2*0.1, tolerance: 1% }", [0.2, 0.198, 0.202]),
+        ("0.2 m ± 1%", [0.2, 0.198, 0.202]),
+        ("0.2 m ±1%", [0.2, 0.198, 0.202]),
+        ("20 cm +/- 2 mm", [0.2, 0.198, 0.202]),
+        ("20 cm +- 0.2", [0.2, 0.198, 0.202]),
+        ("(200 ± 2) mm", [0.2, 0.198, 0.202]),
+        ("0.2 m +0.01 -0.02", [0.2, 0.18, 0.21]),
+        ("200 mm -2% +10", [0.2, 0.196, 0.21]),
+        ("0.2 m +1 cm / -20 mm", [0.2, 0.18, 0.21]),
+        ("\"[0.198, 0.202] m\"", [0.2, 0.198, 0.202]),
+        ("\"[198, 202] mm\"", [0.2, 0.198, 0.202]),
+        ("[0.198, 0.202]", [0.2, 0.198, 0.202]),
+        ("[198 mm, 0.202 m]", [0.2, 0.198, 0.202]),
+        ("{ value: 0.2 m, tolerance: ± 1% }", [0.2, 0.198, 0.202]),
+        ("{ value: 200, unit: mm, tolerance: +10 -20 }", [0.2, 0.18, 0.21]),
+        ("{ value: 0.2 m, tolerance: +1 cm -20 mm }", [0.2, 0.18, 0.21]),
+        ("{ value: 0.2 m ± 1%, description: its length }", [0.2, 0.198, 0.202]),
+        ("{ value: 200 ± 2, unit: mm }", [0.2, 0.198, 0.202]),
+        ("{ interval: \"[198, 202] mm\" }", [0.2, 0.198, 0.202]),
+        ("-0.2 m ± 1%", [-0.2, -0.202, -0.198]),
+        ("2*0.1 ± 1%", [0.2, 0.198, 0.202]),
     ] {
         let model = good(&BAR.replace("{ value: 0.2, unit: m, tolerance: 1% }", written));
         close(interval(&model, "l"), wanted);
+    }
+}
+
+/// An interval without width is a certain parameter, wherever it is written.
+#[test]
+fn an_interval_without_width_is_a_certain_parameter() {
+    let certain = |model: &Description| match &model.parameters[0].value {
+        ParameterValue::Formula(formula) => formula.as_number(),
+        ParameterValue::Interval { .. } => None,
+    };
+    for written in [
+        "0.2 m ± 0",
+        "0.2 m ± 0%",
+        "\"[0.2, 0.2] m\"",
+        "[0.2, 0.2]",
+        "{ value: 0.2, tolerance: 0 }",
+        "{ value: 200 mm, plus: 0%, minus: 0 mm }",
+        "0.2 m +0 -0",
+        "{ interval: [200 mm, 0.2 m] }",
+    ] {
+        let model = good(&BAR.replace("{ value: 0.2, unit: m, tolerance: 1% }", written));
+        assert_eq!(certain(&model), Some(0.2), "{written}");
+        assert_eq!(model.uncertain().count(), 0, "{written}");
+    }
+    // Numbers of points may stay that the file gives to an uncertain parameter.
+    let counted = format!("{BAR}bounds: {{ scan: {{ points: {{ l: 7 }} }} }}\n");
+    let model = load_str("x.yaml", &counted, &[Override::parse("l=0.2±0").unwrap()]).unwrap();
+    assert!(model.bounds.scan.unwrap().points.is_empty());
+}
+
+#[test]
+fn scenes_take_every_form() {
+    for (written, wanted) in [
+        ("0.3 ± 1%", [0.3, 0.297, 0.303]),
+        ("± 5%", [0.2, 0.19, 0.21]),
+        ("5%", [0.2, 0.19, 0.21]),
+        ("+1 cm -20 mm", [0.2, 0.18, 0.21]),
+        ("[0.1, 0.3]", [0.2, 0.1, 0.3]),
+        ("\"[10, 30] cm\"", [0.2, 0.1, 0.3]),
+        ("{ tolerance: ± 5% }", [0.2, 0.19, 0.21]),
+    ] {
+        for model in ["{ value: 0.2, unit: m, tolerance: 1% }", "{ value: 0.2 ± 3%, unit: m }", "0.2 m ± 1%"] {
+            let text = BAR.replace("{ value: 0.2, unit: m, tolerance: 1% }", model);
+            let text = format!("{text}scenes: {{ other: {{ parameters: {{ l: {written} }} }} }}\n");
+            let reading = read_str("x.yaml", &text, &[]);
+            assert!(!reading.diagnostics.has_errors(), "{model}, {written}: {}", reading.diagnostics);
+            close(interval(&reading.scenes[0].description, "l"), wanted);
+        }
     }
 }
 
@@ -102,6 +169,13 @@ fn overrides_replace_value_and_tolerance() {
     close(interval(&with("l=160±2%"), "l"), [0.16, 0.1568, 0.1632]);
     close(interval(&with("l = 160 +- 2"), "l"), [0.16, 0.158, 0.162]);
     close(interval(&with("l=[100,0.2 m]"), "l"), [0.15, 0.1, 0.2]);
+    close(interval(&with("l=[10, 20] cm"), "l"), [0.15, 0.1, 0.2]);
+    close(interval(&with("l=160 +2 -1"), "l"), [0.16, 0.159, 0.162]);
+    close(interval(&with("l=0.16 m +/- 2"), "l"), [0.16, -1.84, 2.16]);
+    // A deviation alone is that of the file's value.
+    close(interval(&with("l=±2%"), "l"), [0.2, 0.196, 0.204]);
+    close(interval(&with("l=2%"), "l"), [0.2, 0.196, 0.204]);
+    close(interval(&with("l = +1 -2"), "l"), [0.2, 0.198, 0.201]);
     close(interval(&with("l=15 cm±1 mm"), "l"), [0.15, 0.149, 0.151]);
     let ParameterValue::Formula(value) = with("l=150").parameters.remove(0).value else { panic!("deterministic") };
     assert_eq!(value.as_number(), Some(0.15));

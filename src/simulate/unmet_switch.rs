@@ -110,7 +110,7 @@ pub fn unmet_switch(
 fn one_sided(program: &SwitchProgram, met: &[Signs]) -> Vec<(usize, usize)> {
     let other = |(switch, met): (usize, &Signs)| {
         let side = usize::from(met[0]);
-        (program.switches[switch].1.is_some() && met[0] != met[1]).then_some((switch, side))
+        (program.switches[switch].rate.is_some() && met[0] != met[1]).then_some((switch, side))
     };
     met.iter().enumerate().filter_map(other).collect()
 }
@@ -279,7 +279,7 @@ impl<'a> Between<'a> {
             tile.run(self.program.sample());
             tile.run(self.program.evaluate());
             for (place, &switch) in switches.iter().enumerate() {
-                let (register, _) = self.program.switches[switch];
+                let register = self.program.switches[switch].value;
                 let into = &mut values[place * points.len() + first..][..count];
                 into.copy_from_slice(&tile.lane(register)[..count]);
             }

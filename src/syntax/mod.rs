@@ -1,10 +1,12 @@
 //! Text → a tree in which every node knows its place, and the diagnostics that point there.
 
+mod commas;
 pub(crate) mod diagnostic;
 mod harmless;
 mod render;
 pub(crate) mod source;
 pub(crate) mod suggest;
+mod tree;
 pub(crate) mod yaml;
 
 pub use diagnostic::{Diagnostics, Record};

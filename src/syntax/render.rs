@@ -1,5 +1,6 @@
 //! Diagnostics as text, in the style of rustc, through `annotate-snippets`.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
@@ -10,6 +11,12 @@ use super::source::{Place, Source};
 
 /// Diagnostics shown; the others are counted.
 const MOST_SHOWN: usize = 50;
+
+/// From so many places on, a message is shown once, with the other places' lines.
+const MANY: usize = 3;
+
+/// Lines of these that are named.
+const MOST_LINES: usize = 8;
 
 /// Begins a colour; what comes from a file cannot hold it where it reaches the renderer.
 const ESCAPE: char = '\u{1b}';
@@ -29,9 +36,11 @@ impl Diagnostics {
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let mut text = String::new();
-        for diagnostic in self.iter().take(MOST_SHOWN) {
+        let shown = self.distinct();
+        for (diagnostic, repeated) in shown.iter().take(MOST_SHOWN) {
             let diagnostic = diagnostic.harmless();
-            let (report, moved) = self.report(&diagnostic);
+            let note = self.note(repeated);
+            let (report, moved) = self.report(&diagnostic, note.as_deref());
             let mut rendered = renderer.render(&report);
             for (shown, meant) in moved {
                 rendered = rendered.replacen(&shown, &meant, 1);
@@ -40,7 +49,7 @@ impl Diagnostics {
             text += &rendered.replace(|c| is_harmful(c) && c != ESCAPE, "\u{fffd}");
             text += "\n\n";
         }
-        let hidden = self.iter().count().saturating_sub(MOST_SHOWN);
+        let hidden = shown.len().saturating_sub(MOST_SHOWN);
         if hidden > 0 {
             text += &format!("… and {hidden} more\n\n");
         }
@@ -51,8 +60,54 @@ impl Diagnostics {
         text
     }
 
+    /// All, but of a message that comes many times the first only, with the others.
+    fn distinct(&self) -> Vec<(&Diagnostic, Vec<&Diagnostic>)> {
+        let mut distinct: Vec<(&Diagnostic, Vec<&Diagnostic>)> = Vec::new();
+        let mut first: HashMap<(&str, Severity), usize> = HashMap::new();
+        let mut counts: HashMap<(&str, Severity), usize> = HashMap::new();
+        for diagnostic in self.iter() {
+            *counts.entry((diagnostic.message.as_str(), diagnostic.severity)).or_default() += 1;
+        }
+        for diagnostic in self.iter() {
+            let key = (diagnostic.message.as_str(), diagnostic.severity);
+            match first.get(&key) {
+                Some(&place) if counts[&key] >= MANY => distinct[place].1.push(diagnostic),
+                _ => {
+                    first.entry(key).or_insert(distinct.len());
+                    distinct.push((diagnostic, Vec::new()));
+                }
+            }
+        }
+        distinct
+    }
+
+    /// Where the same message comes again.
+    fn note(&self, repeated: &[&Diagnostic]) -> Option<String> {
+        if repeated.is_empty() {
+            return None;
+        }
+        let places = repeated.iter().filter_map(|diagnostic| self.sources.locate(diagnostic.span.as_ref()?));
+        let mut lines: Vec<String> = places
+            .map(|(source, span)| {
+                let line = source.place(span.start).line;
+                let first = self.sources.first().is_some_and(|first| std::ptr::eq(first, source));
+                if first { line.to_string() } else { harmless(&format!("{}:{line}", source.name)) }
+            })
+            .collect();
+        lines.dedup();
+        let more = lines.len() > MOST_LINES;
+        lines.truncate(MOST_LINES);
+        let count = repeated.len();
+        let lines = if lines.is_empty() { String::new() } else { format!(": line {}", lines.join(", ")) };
+        Some(format!("the same in {count} more places{lines}{}", if more { ", …" } else { "" }))
+    }
+
     /// What to render, and the places in it to write anew: columns count from where a long line was cut.
-    fn report<'d>(&'d self, diagnostic: &'d Diagnostic) -> (Vec<Group<'d>>, Vec<(String, String)>) {
+    fn report<'d>(
+        &'d self,
+        diagnostic: &'d Diagnostic,
+        note: Option<&'d str>,
+    ) -> (Vec<Group<'d>>, Vec<(String, String)>) {
         let level = match diagnostic.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
@@ -69,7 +124,8 @@ impl Diagnostics {
             moved.extend(places);
         }
         let help = diagnostic.help.as_deref().map(|help| Level::HELP.message(wrapped(help)));
-        (vec![group.elements(help)], moved)
+        let note = note.map(|note| Level::NOTE.message(note));
+        (vec![group.elements(help).elements(note)], moved)
     }
 
     /// The lines with their markers; none where the file as a whole is meant.

@@ -7,105 +7,17 @@ use std::collections::HashMap;
 
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, options};
 
+use super::commas::{join_items, join_values};
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::source::Span;
 use super::suggest::clip;
+pub use super::tree::{Entry, Node, Scalar, Value};
 
 /// How deep mappings and sequences may nest. The grammar needs six.
 const MAX_DEPTH: usize = 40;
 
 /// How many scalars, beginnings and ends a file may have.
 const MAX_EVENTS: usize = 1_000_000;
-
-/// A node of the tree.
-#[derive(Clone, Debug)]
-pub struct Node {
-    /// Its bytes.
-    pub span: Span,
-    /// What it is.
-    pub value: Value,
-}
-
-/// What a node is.
-#[derive(Clone, Debug)]
-pub enum Value {
-    /// A piece of text.
-    Scalar(Scalar),
-    /// A list.
-    Sequence(Vec<Node>),
-    /// Keys with values, in the order of the file.
-    Mapping(Vec<Entry>),
-}
-
-/// A key with its value.
-#[derive(Clone, Debug)]
-pub struct Entry {
-    /// The key's text.
-    pub key: String,
-    /// The key's place.
-    pub key_span: Span,
-    /// What stands behind the key.
-    pub value: Node,
-}
-
-/// A piece of text.
-#[derive(Clone, Debug)]
-pub struct Scalar {
-    /// The text, escapes resolved.
-    pub text: String,
-    /// Written without quotes.
-    pub plain: bool,
-    /// Where the text stands word for word in the source, if it does.
-    pub start: Option<usize>,
-}
-
-impl Scalar {
-    /// Nothing was written, or `null`.
-    pub fn is_null(&self) -> bool {
-        self.plain && matches!(self.text.as_str(), "" | "~" | "null" | "Null" | "NULL")
-    }
-
-    /// The place of a part of the text; of the whole node where escapes or line breaks stand between.
-    pub fn place(&self, node: &Span, part: Span) -> Span {
-        match self.start {
-            Some(start) => start + part.start..start + part.end,
-            None => node.clone(),
-        }
-    }
-}
-
-impl Node {
-    /// The value of a key of a mapping.
-    pub fn get(&self, key: &str) -> Option<&Node> {
-        match &self.value {
-            Value::Mapping(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.value),
-            _ => None,
-        }
-    }
-
-    /// The scalar, if it is one.
-    pub fn scalar(&self) -> Option<&Scalar> {
-        match &self.value {
-            Value::Scalar(scalar) => Some(scalar),
-            _ => None,
-        }
-    }
-
-    /// Nothing was written, or `null`.
-    pub fn is_null(&self) -> bool {
-        self.scalar().is_some_and(Scalar::is_null)
-    }
-
-    /// What it is, for messages.
-    pub fn kind(&self) -> &'static str {
-        match &self.value {
-            Value::Scalar(scalar) if scalar.is_null() => "nothing",
-            Value::Scalar(_) => "a value",
-            Value::Sequence(_) => "a list",
-            Value::Mapping(_) => "a mapping",
-        }
-    }
-}
 
 /// Reads one document from a text whose first byte has offset 0; `None` where there is no tree to go on with.
 pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
@@ -176,7 +88,11 @@ impl Builder<'_, '_> {
         let tab =
             self.text[..at].rsplit('\n').next().is_some_and(|line| line.trim_start_matches(' ').starts_with('\t'))
                 || self.text[at..].starts_with('\t');
-        let help = tab.then(|| "YAML is indented with spaces, not tabs".to_owned());
+        let help = if tab {
+            Some("YAML is indented with spaces, not tabs".to_owned())
+        } else {
+            interval_before(self.text, at).map(|interval| format!("quote the interval: `\"{}\"`", clip(interval)))
+        };
         self.diagnostics.push(diagnostic.help(help));
     }
 
@@ -266,15 +182,29 @@ impl Builder<'_, '_> {
     fn close(&mut self, end: usize) {
         let node = match self.open.pop() {
             Some(Open::Sequence { start, items }) => {
+                let items = self.whole_items(start, items);
                 Node { span: start..self.trimmed(start, end), value: Value::Sequence(items) }
             }
             Some(Open::Mapping { start, entries, .. }) => {
+                let entries = self.whole_values(start, entries);
                 let entries = self.without_duplicates(entries);
                 Node { span: start..self.trimmed(start, end), value: Value::Mapping(entries) }
             }
             None => return,
         };
         self.add(node);
+    }
+
+    /// The items, if the list stands in brackets without what a comma has cut.
+    fn whole_items(&mut self, start: usize, items: Vec<Node>) -> Vec<Node> {
+        let flow = self.text.get(start..).is_some_and(|text| text.starts_with('['));
+        if flow { join_items(self.text, items, self.diagnostics) } else { items }
+    }
+
+    /// The entries, if the mapping stands in braces without what a comma has cut.
+    fn whole_values(&mut self, start: usize, entries: Vec<Entry>) -> Vec<Entry> {
+        let flow = self.text.get(start..).is_some_and(|text| text.starts_with('{'));
+        if flow { join_values(self.text, entries, self.diagnostics) } else { entries }
     }
 
     /// The end of a collection without the space behind it: a block ends where the next one begins.
@@ -300,6 +230,19 @@ impl Builder<'_, '_> {
         }
         unique
     }
+}
+
+/// The interval with a unit behind it, `[0.49, 0.51] m`, at which the text stops to be YAML.
+fn interval_before(text: &str, at: usize) -> Option<&str> {
+    // The error is told at the unit, or at what comes behind it.
+    let start_of_line = text[..at].trim_end().rfind('\n').map_or(0, |newline| newline + 1);
+    let end_of_line = text[at..].find('\n').map_or(text.len(), |newline| at + newline);
+    let line = &text[start_of_line..end_of_line];
+    let open = line[..(at - start_of_line).min(line.len())].rfind('[')?;
+    let close = open + line[open..].find(']')?;
+    let behind = line[close + 1..].find([',', '}', '#', '\n']).map_or(line.len(), |end| close + 1 + end);
+    let unit = line[close + 1..behind].trim();
+    (unit.starts_with(char::is_alphabetic) || unit.starts_with('°')).then(|| line[open..behind].trim())
 }
 
 #[cfg(test)]
@@ -338,6 +281,50 @@ mod tests {
         assert_eq!(errors("? [1]\n: 2")[0].0, "a list cannot be a key");
         assert_eq!(errors("# nothing")[0].0, "the file is empty");
         assert!(errors("a: [1, 2")[0].0.starts_with("this is not YAML"));
+    }
+
+    #[test]
+    fn a_formula_that_is_cut_at_its_commas_is_told_once() {
+        for (text, formula) in [
+            ("{ a: max(1, 2), b: 3 }", "max(1, 2)"),
+            ("{ a: if(x, 0, 0), b: 3 }", "if(x, 0, 0)"),
+            ("a: [1, atan2(y, max(x, 2)), 3]", "atan2(y, max(x, 2))"),
+            ("{ a: [max(1, 2)] }", "max(1, 2)"),
+            ("a: { b: 2*min(1,2) , c: 1 }", "2*min(1,2)"),
+        ] {
+            let mut diagnostics = Diagnostics::new("test", text);
+            let root = parse(text, &mut diagnostics).unwrap();
+            let found: Vec<_> = diagnostics.iter().collect();
+            assert_eq!(found.len(), 1, "{text}: {diagnostics}");
+            assert_eq!(&text[found[0].span.clone().unwrap()], formula);
+            assert_eq!(found[0].help.as_deref(), Some(&*format!("quote the formula: `\"{formula}\"`")));
+            let mut nodes = vec![&root];
+            let mut texts = Vec::new();
+            while let Some(node) = nodes.pop() {
+                match &node.value {
+                    Value::Scalar(scalar) => texts.push(scalar.text.clone()),
+                    Value::Sequence(items) => nodes.extend(items),
+                    Value::Mapping(entries) => nodes.extend(entries.iter().map(|entry| &entry.value)),
+                }
+            }
+            assert!(texts.iter().any(|text| text == formula), "{text}: {texts:?}");
+        }
+        for text in ["{ a: \"max(1, 2)\" }", "a: max(1, 2)", "- max(1, 2)", "{ a: (1 }", "[ (, { b: 1 } ]"] {
+            assert_eq!(errors(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn an_interval_with_a_unit_is_quoted() {
+        for text in ["a: [1, 2] m", "a: [1, 2] m\nb: 1", "{ a: [1, 2] m, b: 3 }", "p:\n  a: [1, 2] N/m  # so\n  b: 1"] {
+            let mut diagnostics = Diagnostics::new("test", text);
+            parse(text, &mut diagnostics);
+            let help = diagnostics.iter().next().and_then(|found| found.help.clone());
+            assert!(
+                help.is_some_and(|help| help.starts_with("quote the interval: `\"[1, 2] ")),
+                "{text}: {diagnostics}"
+            );
+        }
     }
 
     #[test]

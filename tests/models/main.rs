@@ -20,6 +20,7 @@ mod composition;
 mod convergence;
 mod drawing_linkages;
 mod far;
+mod formulas;
 mod formulations;
 mod hard_cases;
 mod honesty;

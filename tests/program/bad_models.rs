@@ -187,11 +187,29 @@ fn all_errors_of_a_large_file_are_counted() {
     let mut text = "bodies: { b: { mass: 1, coordinates: [x] } }\noutputs: { x: b.x }\n".to_owned();
     text += "simulation: { duration: 1 }\nparameters:\n";
     for index in 0..20_000 {
-        text += &format!("  p{index}: {}\n", if index == 0 { "1".to_owned() } else { format!("p{} + q", index - 1) });
+        let value = if index == 0 { "1".to_owned() } else { format!("p{} + q{index}", index - 1) };
+        text += &format!("  p{index}: {value}\n");
     }
     let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
     assert_eq!(diagnostics.errors(), 19_999);
     assert!(diagnostics.render(false).ends_with("… and 19949 more\n"));
+}
+
+/// One habit that is wrong is one message, with the lines where it is found again; machines get all of them.
+#[test]
+fn a_message_that_comes_often_is_shown_once() {
+    let mut text = "outputs: { x: b1.x }\nsimulation: { duration: 1 }\nbodies:\n".to_owned();
+    for index in 1..=24 {
+        text += &format!("  b{index}: {{ mass: 1, density: 7800, coordinates: [x] }}\n");
+    }
+    let diagnostics = model::load_str("x.yaml", &text, &[]).unwrap_err();
+    assert_eq!(diagnostics.records().len(), 24);
+    let rendered = diagnostics.render(false);
+    assert_eq!(rendered.matches("error: ").count(), 1, "{rendered}");
+    assert!(rendered.contains("the same in 23 more places: line 5, 6, 7, 8, 9, 10, 11, 12, …"), "{rendered}");
+    let two = text.lines().take(5).collect::<Vec<_>>().join("\n");
+    let rendered = model::load_str("x.yaml", &two, &[]).unwrap_err().render(false);
+    assert_eq!(rendered.matches("error: ").count(), 2, "{rendered}");
 }
 
 #[test]
@@ -209,7 +227,8 @@ fn overrides_are_reported_where_they_stand() {
         ("l1=[2, 1]", "the interval is reversed", Some((1, 4)), Some("the smaller one stands first: `[1, 2]`")),
         ("l1=1 kg", "a mass (kg) stands where a length (m) belongs", Some((1, 4)), None),
         ("l1=1±-1%", "a tolerance cannot be negative", Some((1, 6)), None),
-        ("l1=1±", "a number belongs on either side of the `±`", Some((1, 4)), None),
+        ("l1=1±", "a number belongs behind the `±`", Some((1, 4)), Some("e.g. `0.5 m ± 1%`")),
+        ("l1=1 ± 1% ± 2%", "a tolerance has one `±`", Some((1, 4)), None),
         ("l1=1 + foo", "unknown parameter `foo`", Some((1, 8)), None),
     ] {
         let diagnostics = load(text).unwrap_err();

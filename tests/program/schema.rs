@@ -1,6 +1,7 @@
 //! The committed JSON Schema is that of the grammar, and the models keep to it.
 //!
-//! `MBINT_UPDATE_SCHEMA=1 cargo test --test program schema` writes it.
+//! `MBINT_UPDATE_SCHEMA=1 cargo test --test program schema` writes it, and `tests/program/only_semantics.txt`: the bad models of
+//! which the schema cannot see what is wrong.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,155 @@ fn the_models_keep_to_the_schema_and_name_it() {
     }
 }
 
+/// As an editor reads a file; `None` where it is no YAML that can be JSON.
+fn as_json(text: &str) -> Option<serde_json::Value> {
+    serde_yaml::from_str(text).ok()
+}
+
+/// What the schema refuses, the reader refuses; the list says of which bad models only the reader knows.
+#[test]
+fn only_semantics_is_beyond_the_schema() {
+    let validator = validator();
+    let mut list = String::new();
+    let mut paths = yaml_files("tests/bad_models");
+    paths.sort();
+    for path in paths {
+        let text = fs::read_to_string(&path).unwrap();
+        let Some(instance) = as_json(&text) else { continue };
+        let diagnostics = model::read(&path, &[]).diagnostics;
+        if !validator.is_valid(&instance) {
+            assert!(diagnostics.has_errors(), "{}: only the schema refuses it", path.display());
+        } else if diagnostics.has_errors() {
+            let name = path.file_stem().unwrap().to_string_lossy();
+            let first =
+                diagnostics.records().into_iter().find(|record| format!("{:?}", record.severity) == "Error").unwrap();
+            list += &format!("{name}: {}\n", first.message.lines().next().unwrap_or_default());
+        }
+    }
+    let path = root().join("tests/program/only_semantics.txt");
+    if std::env::var_os("MBINT_UPDATE_SCHEMA").is_some() {
+        fs::write(&path, &list).unwrap();
+    }
+    let committed = fs::read_to_string(&path).unwrap_or_default();
+    assert!(committed == list, "write it anew: MBINT_UPDATE_SCHEMA=1 cargo test --test program schema\n{list}");
+}
+
+/// Every value of every model is replaced by what may be wrong there: where the schema refuses, the reader does.
+#[test]
+fn the_schema_refuses_nothing_that_can_be_read() {
+    let validator = validator();
+    let others = ["-1", "0", "0.5", "2", "\"-3 m\"", "text", "[1, 2]", "{}", "-0.05"];
+    let mut refused = 0;
+    for path in yaml_files("models") {
+        let text = fs::read_to_string(&path).unwrap();
+        let whole = as_json(&text).unwrap();
+        if whole.get("scenes").is_some() || text.len() > 6000 {
+            continue;
+        }
+        // A text that looks like a number is a text for the reader.
+        let texts = ["/model", "/description", "/units/0", "/units/1"];
+        for pointer in leaves(&whole).into_iter().filter(|leaf| !texts.iter().any(|end| leaf.ends_with(end))) {
+            for other in others {
+                let mut changed = whole.clone();
+                *changed.pointer_mut(&pointer).unwrap() = as_json(other).unwrap();
+                if validator.is_valid(&changed) {
+                    continue;
+                }
+                refused += 1;
+                let written = serde_yaml::to_string(&changed).unwrap();
+                let read = model::read_str(&path.display().to_string(), &written, &[]);
+                assert!(read.diagnostics.has_errors(), "{}: {pointer} = {other} is refused", path.display());
+            }
+        }
+    }
+    assert!(refused > 1000, "{refused}");
+}
+
+/// Places of all scalars.
+fn leaves(value: &serde_json::Value) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![(String::new(), value)];
+    while let Some((pointer, value)) = open.pop() {
+        match value {
+            serde_json::Value::Object(object) => open.extend(
+                object
+                    .iter()
+                    .map(|(key, value)| (format!("{pointer}/{}", key.replace('~', "~0").replace('/', "~1")), value)),
+            ),
+            serde_json::Value::Array(items) => {
+                open.extend(items.iter().enumerate().map(|(place, value)| (format!("{pointer}/{place}"), value)));
+            }
+            _ => found.push(pointer),
+        }
+    }
+    found
+}
+
+#[test]
+fn the_schema_knows_ranges_and_keys_that_exclude_each_other() {
+    let validator = validator();
+    let valid = |text: &str| validator.is_valid(&as_json(text).unwrap());
+    let bar = "
+parameters: { l: { value: 0.2, unit: m, tolerance: 1% } }
+bodies: { bar: { mass: 1, inertia: 0.1, points: { A: [l, 0] } } }
+joints: { j: { revolute: [ground, bar.A] }, m: { motor: { on: j, speed: 60 rpm } } }
+effects: { d: { drag: { on: bar, linear: 2 } } }
+outputs: { a: bar.angle }
+simulation: { duration: 1, step: 1e-3, alpha: -0.2 }
+bounds: { scan: { points: 3 }, chebyshev: { order: 4 } }
+";
+    assert!(valid(bar));
+    for (good, bad) in [
+        ("points: 3", "points: 0"),
+        ("points: 3", "points: { l: 1 }"),
+        ("order: 4", "order: 0"),
+        ("order: 4", "order: 100000"),
+        ("alpha: -0.2", "alpha: 0.5"),
+        ("alpha: -0.2", "alpha: 0"),
+        ("alpha: -0.2", "alpha: -0.4"),
+        ("duration: 1", "duration: -1"),
+        ("duration: 1", "duration: -1 s"),
+        ("duration: 1", "duration: 0"),
+        ("step: 1e-3", "step: -1 ms"),
+        ("step: 1e-3", "step: 1e-3, tolerance: 1e-4"),
+        ("speed: 60 rpm", "from: 2"),
+        ("speed: 60 rpm", "speed: 60 rpm, position: t"),
+        ("speed: 60 rpm", "to: 90 deg"),
+        ("mass: 1, ", ""),
+        ("inertia: 0.1, ", ""),
+        ("mass: 1, ", "mass: -1, "),
+        ("mass: 1, ", "mass: -1 kg, "),
+        ("tolerance: 1%", "tolerance: -1%"),
+        ("tolerance: 1%", "tolerance: 1%, interval: [0, 1]"),
+        ("tolerance: 1%", "tolerance: 1%, plus: 1"),
+        ("speed: 60 rpm", "to: 1, profile: quintic, duration: -1"),
+        ("speed: 60 rpm", "to: 1, profile: quintic, duration: -1 s"),
+        ("outputs: { a: bar.angle }", "outputs: {}"),
+        ("outputs: { a: bar.angle }", ""),
+        ("bodies: {", "bodies: { ground: { mass: 1 },"),
+        ("bounds: {", "limits: { impact: { stiffness: 1e6 } }\nbounds: {"),
+        ("bodies: {", "model: a/b\nbodies: {"),
+    ] {
+        let text = bar.replacen(good, bad, 1);
+        assert_ne!(text, bar, "{bad}");
+        assert!(!valid(&text), "{bad}");
+        assert!(model::read_str("x.yaml", &text, &[]).diagnostics.has_errors(), "{bad}");
+    }
+    for (good, other) in [
+        ("tolerance: 1%", "tolerance: +1% -2%"),
+        ("{ value: 0.2, unit: m, tolerance: 1% }", "0.2 m ± 1%"),
+        ("{ value: 0.2, unit: m, tolerance: 1% }", "[0.1, 0.2]"),
+        ("{ value: 0.2, unit: m, tolerance: 1% }", "{ interval: \"[1, 2] mm\" }"),
+        ("mass: 1, ", "mass: 5*l, "),
+        ("duration: 1", "duration: 2 - 1"),
+        ("bar.A", "bar"),
+        ("mass: 1, inertia: 0.1", "inertia: 0.1, coordinates: [angle]"),
+    ] {
+        let text = bar.replacen(good, other, 1);
+        assert!(valid(&text), "{other}");
+    }
+}
+
 #[test]
 fn the_schema_knows_wrong_keys_and_types() {
     let validator = validator();
@@ -58,7 +208,9 @@ fn the_schema_knows_wrong_keys_and_types() {
         assert!(!validator.is_valid(&instance), "{name}");
     }
     let with = |simulation: &str| {
-        let text = format!("bodies: {{}}\noutputs: {{}}\nbounds: {{ taylor: }}\nsimulation: {simulation}\n");
+        let text = format!(
+            "bodies: {{ b: {{ mass: 1, inertia: 1 }} }}\noutputs: {{ x: b.x }}\nbounds: {{ taylor: }}\nsimulation: {simulation}\n"
+        );
         validator.is_valid(&serde_yaml::from_str(&text).unwrap())
     };
     assert!(with("{ duration: 2 s, step: 1e-3 }"));

@@ -104,6 +104,7 @@ fn keys(parts: &[Part]) -> TokenStream {
         }
         let (doc, unit) = (&key.doc, key.unit.as_ref().map_or(String::new(), LitStr::value));
         let required = matches!(key.absent, Absent::Required);
+        let requirement = requirement(part);
         let (default, words) = match &key.absent {
             Absent::Default(value) => (quote!(<#ty as crate::grammar::Value>::to_json(&#value)), quote!(None)),
             Absent::Computed(words, _) => (quote!(None), quote!(Some(#words))),
@@ -121,6 +122,7 @@ fn keys(parts: &[Part]) -> TokenStream {
                 default: #default,
                 default_in_words: #words,
                 schema: <#ty as crate::grammar::Value>::schema(generator),
+                requirement: #requirement,
                 keys: <#ty as crate::grammar::Value>::keys(),
             });
         }
@@ -163,6 +165,14 @@ fn read(about: &Struct, parts: &[Part]) -> TokenStream {
     }
 }
 
+/// What must hold of a key's number.
+fn requirement(part: &Part) -> TokenStream {
+    match &part.key.requirement {
+        Some(requirement) => quote!(Some(#requirement)),
+        None => quote!(None),
+    }
+}
+
 fn read_field(part: &Part) -> TokenStream {
     let (ident, name, ty, key) = (&part.field.ident, part.name(), &part.field.ty, &part.key);
     if key.is_derived {
@@ -176,10 +186,7 @@ fn read_field(part: &Part) -> TokenStream {
     }
     let unit = key.unit.as_ref().map_or(String::new(), LitStr::value);
     let context = format_ident!("{}", key.context);
-    let requirement = match &key.requirement {
-        Some(requirement) => quote!(Some(#requirement)),
-        None => quote!(None),
-    };
+    let requirement = requirement(part);
     let dimension = match &key.dimension {
         Some(dimension) => quote!(Some(#dimension)),
         None => quote!(None),
@@ -267,6 +274,13 @@ fn element(ident: &syn::Ident, about: &Struct, keyword: &LitStr, what: &LitStr) 
     let (doc, equations) = (&about.doc, &about.equations);
     let short = about.short.as_ref().map_or(quote!(None), |key| quote!(Some(#key)));
     let schema = json_schema(ident, &quote!(<Self as crate::grammar::Element>::object(generator)));
+    let constrain = about.checked.then(|| {
+        quote! {
+            fn constrain(schema: &mut schemars::Schema) {
+                <Self as crate::grammar::Checked>::constrain(schema);
+            }
+        }
+    });
     Ok(quote! {
         #schema
 
@@ -278,6 +292,8 @@ fn element(ident: &syn::Ident, about: &Struct, keyword: &LitStr, what: &LitStr) 
             const SOURCE: &'static str = #source;
             const EXAMPLE: &'static str = #example;
             const SHORT: Option<&'static str> = #short;
+
+            #constrain
         }
     })
 }

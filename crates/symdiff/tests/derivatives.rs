@@ -21,7 +21,8 @@ enum Tree {
 fn tree() -> impl Strategy<Value = Tree> {
     use Unary::*;
     let leaf = prop_oneof![3 => (0..VARIABLES).prop_map(Tree::Variable), 1 => (-2.0..2.0_f64).prop_map(Tree::Constant)];
-    let unary = prop::sample::select(vec![Neg, Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Abs, Tanh, Sign]);
+    let unary =
+        prop::sample::select(vec![Neg, Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Abs, Tanh, Sign, Floor]);
     let binary = prop::sample::select(vec![
         Binary::Add,
         Binary::Sub,
@@ -68,6 +69,12 @@ fn build(graph: &mut Graph, variables: &[Expr], tree: &Tree) -> Expr {
                 Unary::Abs | Unary::Sign => {
                     let a = positive(graph, a);
                     graph.neg(a)
+                }
+                // Between two whole numbers.
+                Unary::Floor => {
+                    let (a, shift) = (inside(graph, a), graph.constant(2.5));
+                    let half = graph.scale(0.5, a);
+                    graph.add(half, shift)
                 }
                 _ => a,
             };

@@ -229,7 +229,7 @@ proptest! {
         let (x, y) = (graph.symbol("x"), graph.symbol("y"));
         let value_of = |expr| if expr == x { a[0] } else { b[0] };
         for function in [Unary::Neg, Unary::Sin, Unary::Cos, Unary::Tan, Unary::Asin, Unary::Acos, Unary::Atan,
-                         Unary::Sqrt, Unary::Exp, Unary::Log, Unary::Abs, Unary::Tanh, Unary::Sign] {
+                         Unary::Sqrt, Unary::Exp, Unary::Log, Unary::Abs, Unary::Tanh, Unary::Sign, Unary::Floor] {
             let node = graph.unary(function, x);
             let expected = graph.evaluate(&[node], value_of)[0];
             prop_assert_eq!(jets.unary(function, &a)[0].to_bits(), expected.to_bits());

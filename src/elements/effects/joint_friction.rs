@@ -194,6 +194,7 @@ impl Group for FrictionJoint {
             default: None,
             default_in_words: None,
             schema,
+            requirement: None,
             keys: Vec::new(),
         }]
     }

@@ -88,7 +88,7 @@ impl Element for Equation {
     fn read_node<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span) -> Option<Self> {
         let scalar = reader.scalar(node, "an equation")?;
         let text = scalar.text.as_str();
-        let Some(equals) = text.find('=') else {
+        let Some(equals) = equals_sign(text) else {
             let help = "write `left = right`, e.g. `crank.angle = omega*t`".to_owned();
             reader.error(node.span.clone(), "an equation has two sides", help);
             return None;
@@ -118,6 +118,12 @@ impl Element for Equation {
         }
         Some(Self { left, right })
     }
+}
+
+/// The place of the `=` between the sides, which is none of a comparison.
+fn equals_sign(text: &str) -> Option<usize> {
+    let compares = |place: usize| text[..place].ends_with(['<', '>', '!', '=']) || text[place + 1..].starts_with('=');
+    text.match_indices('=').map(|(place, _)| place).find(|&place| !compares(place))
 }
 
 impl JsonSchema for Equation {

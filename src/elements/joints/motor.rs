@@ -25,7 +25,7 @@ use mbint_derive::{Choice, Element};
 use symdiff::{Builder, Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable};
+use crate::grammar::{Checked, Context, Fields, JointCoordinate, OnJoint, Reader, Requirement, SymbolTable, one_of};
 use crate::multibody::{BuildError, Vector};
 
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows};
@@ -207,6 +207,18 @@ impl Checked for Motor {
             return;
         }
         reader.required(fields, "duration");
+    }
+
+    fn constrain(schema: &mut schemars::Schema) {
+        one_of(schema, &["position", "speed", "to"]);
+        let together = serde_json::json!({
+            "profile": ["duration"],
+            "to": ["profile", "duration"],
+            "start": ["profile"],
+            "duration": ["profile"],
+            "ramp": ["profile"],
+        });
+        schema.insert("dependentRequired".to_owned(), together);
     }
 
     fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {

@@ -33,8 +33,8 @@ use sensitivity::SensitivityAnalysis;
 const LEAST_SHARE: f64 = 0.25;
 
 /// Highest degree, and most nodes along an axis.
-const MOST_ORDER: usize = 200;
-const MOST_NODES: usize = 1000;
+pub(super) const MOST_ORDER: usize = 200;
+pub(super) const MOST_NODES: usize = 1000;
 
 const EXPAND: [(&str, Expand); 2] = [("coordinates", Expand::Coordinates), ("output", Expand::Output)];
 

@@ -6,6 +6,7 @@ use schemars::Schema;
 use schemars::transform::{RecursiveTransform, Transform};
 
 mod bodies;
+mod constraints;
 mod model;
 mod run;
 mod values;
@@ -27,6 +28,7 @@ pub fn schema() -> String {
     schema.insert("$id".to_owned(), SCHEMA_ID.into());
     schema.insert("title".to_owned(), "mbint model".into());
     RecursiveTransform(without_null).transform(&mut schema);
+    constraints::constrain(&mut schema);
     // A schema is a tree of JSON values: writing it out cannot fail.
     let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     text.push('\n');

@@ -102,14 +102,14 @@ grammar! {
 
     /// A parameter; deterministic unless it has a tolerance, an interval, or plus and minus.
     Parameter is "a parameter" {
-        /// Its nominal value.
+        /// Its nominal value, perhaps with its deviation: `0.5 m ± 1%`.
         value: Option<Number>,
         /// Unit of the bare numbers given here, e.g. `mm` or `N*s/m`.
         unit: Option<String>,
-        /// Largest deviation either way: `1%` of the value, or a quantity.
+        /// Largest deviation either way: `1%` of the value, or a quantity; or `+0.01 -0.02`.
         tolerance: Option<Number>,
-        /// Smallest and largest value; without `value`, the nominal is the middle.
-        interval: Option<[Number; 2]>,
+        /// Smallest and largest value, also as `[490, 510] mm` in quotes; without `value`, the nominal is the middle.
+        interval: Option<IntervalFile>,
         /// Largest deviation upwards.
         plus: Option<Number>,
         /// Largest deviation downwards.
@@ -118,7 +118,8 @@ grammar! {
         description: Option<String>,
     }
 
-    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends.
+    /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends, or a
+    /// periodic one.
     Table is "a table" {
         /// A CSV file, beside the model; `#` begins a comment.
         file: Option<String>,
@@ -126,6 +127,8 @@ grammar! {
         columns: Option<[Column; 2]>,
         /// Instead of `file`: pairs of argument and value, arguments ascending.
         points: Option<Vec<[f64; 2]>>,
+        /// Whether the table is one period, after which it begins anew: first and last value are the same.
+        periodic: Option<bool>,
         /// Units of argument and value, e.g. [ms, mm]; by default they are in SI units and fit anywhere.
         units: Option<[String; 2]>,
     }

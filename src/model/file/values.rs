@@ -104,10 +104,17 @@ schema_only! {
     }
 
     #[schemars(untagged, inline)]
+    pub enum IntervalFile {
+        Ends([Number; 2]),
+        /// `[490, 510] mm`
+        Text(String),
+    }
+
+    #[schemars(untagged, inline)]
     pub enum ParameterFile {
-        /// A number, a formula, or a number with its unit.
+        /// A number, a formula, or a number with its unit, perhaps with its deviation: `0.5 m ± 1%`, `0.5 m +0.01 -0.02`, `[0.49, 0.51] m`.
         Number(Number),
-        /// Of a number of the URDF: its smallest and largest value.
+        /// Its smallest and largest value.
         Interval([Number; 2]),
         Full(Parameter),
     }

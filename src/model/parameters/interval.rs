@@ -1,5 +1,7 @@
 //! How far a parameter may deviate: `tolerance`, `interval`, `plus` and `minus`.
 
+use symdiff::formula::Term;
+
 use super::{Draft, Spec};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
@@ -36,11 +38,7 @@ pub fn depends_on_uncertain(reader: &Reader, draft: &Draft) -> bool {
 /// Nominal, lower and upper value.
 pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<[f64; 3]> {
     let Spec { value, tolerance, interval, plus, minus, .. } = &draft.spec;
-    let ways = [*tolerance, *interval, plus.or(*minus)];
-    if let Some(second) = ways.iter().flatten().nth(1) {
-        let help = "give one of them".to_owned();
-        let message = "`tolerance`, `interval` and `plus`/`minus` say the same thing";
-        reader.error(second.span.clone(), message, help);
+    if draft.spec.contradictory {
         return None;
     }
     if let Some(node) = interval {
@@ -58,7 +56,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
             (Some(_), nominal) => nominal?,
         };
         if !(lower..=upper).contains(&nominal) {
-            let place = value.map_or_else(|| node.span.clone(), |value| value.span.clone());
+            let place = value.as_ref().map_or_else(|| node.span.clone(), |value| value.span.clone());
             let diagnostic = Diagnostic::error(place, "the value lies outside its interval");
             reader.diagnostics.push(diagnostic.also(node.span.clone(), "the interval"));
             return None;
@@ -72,12 +70,15 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
             let either = deviation(reader, draft, Some(node), nominal, kind);
             (either, either)
         }
-        None => (deviation(reader, draft, *plus, nominal, kind), deviation(reader, draft, *minus, nominal, kind)),
+        None => {
+            let above = deviation(reader, draft, plus.as_ref(), nominal, kind);
+            (above, deviation(reader, draft, minus.as_ref(), nominal, kind))
+        }
     };
     let (nominal, above, below) = (nominal?, above?, below?);
     let (lower, upper) = (nominal - below, nominal + above);
     if !(lower.is_finite() && upper.is_finite() && (upper - lower).is_finite()) {
-        let written = [*tolerance, *plus, *minus].into_iter().flatten().next();
+        let written = [tolerance, plus, minus].into_iter().flatten().next();
         let place = written.map_or_else(|| 0..0, |node| node.span.clone());
         reader.error(place, "the parameter's limits are no finite numbers", None);
         return None;
@@ -131,17 +132,28 @@ fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind)
                 return None;
             }
             let own_unit = matches!(draft.value, Some(Written::Quantity { .. })) && draft.unit.is_none();
-            if own_unit {
-                let unit = draft.spec.value.and_then(Node::scalar).and_then(|scalar| number_and_unit(&scalar.text));
+            let bare = formula.terms().iter().all(|(term, _)| !matches!(term, Term::Quantity(..)));
+            if own_unit && bare {
+                let unit =
+                    draft.spec.value.as_ref().and_then(Node::scalar).and_then(|scalar| number_and_unit(&scalar.text));
                 let help = format!("e.g. `{} {}`", text(node), unit.map_or("m", |(_, unit, _)| unit));
                 reader.error(node.span.clone(), "this number has no unit, but the value has", help);
                 return None;
             }
+            let dimension = reader.kind(node, &formula, 0).dimension();
+            if let (Some(found), Some(wanted)) = (dimension, kind.dimension()) {
+                reader.check_fits(&node.span, found, wanted).then_some(())?;
+            }
+            // With units in it, the formula gives SI.
+            let in_si = dimension.is_some();
             let number = evaluate(&formula, |_| None).filter(|number| number.is_finite());
             if number.is_none() {
                 reader.error(node.span.clone(), format!("`{}` is not a finite number", text(node)), None);
             }
-            Some(draft.unit.map_or(number?, |unit| unit.to_si(number.unwrap_or(f64::NAN))))
+            match draft.unit {
+                Some(unit) if !in_si => number.map(|number| unit.to_si(number)),
+                _ => number,
+            }
         }
     }
 }

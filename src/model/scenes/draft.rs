@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::{LeftOut, unknown};
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
+use crate::model::notation::{self, field};
 use crate::model::urdf;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -235,17 +236,17 @@ fn names(reader: &mut Reader, node: &Node, wanted: &str) -> Vec<(String, Span)> 
 
 /// A model's parameter as a scene has it.
 fn overridden(model: &Entry, scene: &Entry) -> Entry {
-    let field =
-        |key: &str, value: &Node| Entry { key: key.to_owned(), key_span: value.span.clone(), value: value.clone() };
-    let mut fields = match &model.value.value {
-        Value::Mapping(fields) => fields.clone(),
-        _ => vec![field("value", &model.value)],
-    };
     let changes = match &scene.value.value {
         Value::Mapping(changes) => changes.clone(),
-        _ => vec![field("value", &scene.value)],
+        _ => {
+            // In one piece as long as it is whole; a tolerance alone is one of the model's value.
+            let parts = notation::fields(&scene.value);
+            let whole = parts.iter().any(|part| part.key == "value");
+            if whole { vec![field("value", scene.value.clone())] } else { parts }
+        }
     };
     let says = |keys: &[&str]| changes.iter().any(|change| keys.contains(&change.key.as_str()));
+    let mut fields = notation::fields_of_parameter(&model.value);
     if says(&["value"]) || says(&DEVIATION) {
         fields.retain(|field| !DEVIATION.contains(&field.key.as_str()));
     }

@@ -3,7 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::robot::{Number, Robot};
+use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
+use crate::model::notation::{self, field};
 use crate::model::overrides::Override;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -70,13 +72,9 @@ const FORMS: &str = "e.g. `link.NAME.mass`, `.com.x`, `.inertia.xx`, `joint.NAME
 
 fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> Entry {
     let mut fields = match (written, &number.uncertain) {
-        (Some(entry), _) => match &entry.value.value {
-            Value::Mapping(fields) => fields.clone(),
-            Value::Sequence(_) => vec![field("interval", entry.value.clone())],
-            Value::Scalar(scalar) => deviation(&scalar.text, &entry.value.span, scalar.start),
-        },
+        (Some(entry), _) => notation::fields_of_parameter(&entry.value),
         (None, Some((text, span))) => {
-            let fields = deviation(text, span, Some(span.start));
+            let fields = notation::fields(&scalar(text.clone(), span.clone(), Some(span.start)));
             if fields.iter().any(|field| field.key == "value") {
                 let message = format!("`{}` says no deviation", clip(text));
                 reader.error(span.clone(), message, "write `5%`, `± 0.1` or `[lower, upper]`".to_owned());
@@ -101,48 +99,18 @@ fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> E
     Entry { key: number.name.clone(), key_span, value: Node { span: value_span, value: Value::Mapping(fields) } }
 }
 
-/// Whether an interval of bare numbers has the file's number in it, which is then the nominal one.
+/// Whether an interval has the file's number in it, which is then the nominal one.
 fn holds(interval: &Node, number: &Number) -> bool {
     let Value::Sequence(ends) = &interval.value else { return false };
-    let ends: Vec<f64> = ends.iter().filter_map(|end| end.scalar()?.text.trim().parse().ok()).collect();
-    matches!(ends.as_slice(), [lower, upper] if (*lower..=*upper).contains(&number.value))
-}
-
-/// `5%`, `± 0.5 mm`, `[0.1, 0.2]`, `3 ± 5%`, or a value that replaces the file's.
-fn deviation(text: &str, span: &Span, start: Option<usize>) -> Vec<Entry> {
-    let part = |range: Span| {
-        let piece = &text[range.clone()];
-        let from = range.start + piece.len() - piece.trim_start().len();
-        let start = start.map(|start| start + from);
-        let place = start.map_or_else(|| span.clone(), |start| start..start + piece.trim().len());
-        scalar(piece.trim().to_owned(), place, start)
-    };
-    let whole = 0..text.len();
-    let trimmed = text.trim();
-    if trimmed.starts_with('[') && trimmed.ends_with(']') {
-        let open = text.find('[').unwrap_or(0) + 1;
-        let close = text.rfind(']').unwrap_or(text.len());
-        let mut at = open;
-        let ends = text[open..close].split(',').map(|piece| {
-            let range = at..at + piece.len();
-            at += piece.len() + 1;
-            part(range)
-        });
-        return vec![field("interval", Node { span: span.clone(), value: Value::Sequence(ends.collect()) })];
-    }
-    let sign = ["±", "+-", "+/-"].into_iter().find_map(|sign| Some((text.find(sign)?, sign.len())));
-    if let Some((at, length)) = sign {
-        let mut fields = vec![field("tolerance", part(at + length..text.len()))];
-        if !text[..at].trim().is_empty() {
-            fields.push(field("value", part(0..at)));
+    let in_si = |end: &Node| {
+        let text = end.scalar()?.text.trim();
+        match number_and_unit(text) {
+            Some((value, unit, _)) => Some(Unit::parse(unit).ok()?.to_si(value)),
+            None => text.parse().ok(),
         }
-        return fields;
-    }
-    vec![field(if trimmed.ends_with('%') { "tolerance" } else { "value" }, part(whole))]
-}
-
-fn field(key: &str, value: Node) -> Entry {
-    Entry { key: key.to_owned(), key_span: value.span.clone(), value }
+    };
+    let ends: Vec<f64> = ends.iter().filter_map(in_si).collect();
+    matches!(ends.as_slice(), [lower, upper] if (*lower..=*upper).contains(&number.value))
 }
 
 fn scalar(text: String, span: Span, start: Option<usize>) -> Node {

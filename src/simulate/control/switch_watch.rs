@@ -2,7 +2,7 @@
 
 use symdiff::Tile;
 
-use crate::compile::SwitchProgram;
+use crate::compile::{Switch, SwitchProgram};
 use crate::simulate::step::Stepper;
 
 /// A cubic's first root is searched for at this many points between the ends of a step, and then by bisection.
@@ -85,18 +85,29 @@ impl<'s> SwitchWatch<'s> {
         self.tile.lane_mut(layout.time).copy_from_slice(stepper.tile().lane(layout.time));
         self.tile.run(self.program.evaluate());
         into.clear();
-        for &(value, rate) in &self.program.switches {
+        for Switch { value, rate, .. } in &self.program.switches {
             for lane in 0..width {
                 let rate = rate.map_or(f64::NAN, |rate| self.tile.lane(rate)[lane]);
-                into.push([self.tile.lane(value)[lane], rate]);
+                into.push([self.tile.lane(*value)[lane], rate]);
             }
         }
     }
 
     /// The first crossing of a lane in the step of length h between [`begin`](Self::begin) and [`end`](Self::end).
     pub fn crossing(&self, lane: usize, h: f64) -> Option<Crossing> {
-        let places = (lane..self.before.len()).step_by(self.tile.width());
-        let crossings = places.filter_map(|place| crossing(self.before[place], self.after[place], h));
+        let width = self.tile.width();
+        let of_switch = |switch: usize| {
+            let place = switch * width + lane;
+            crossing(self.before[place], self.after[place], h)
+        };
+        // What jumps where a whole number is passed has no crossing of its own there.
+        let jumps = |switch: &usize| {
+            self.program.switches[*switch]
+                .jumps_with
+                .iter()
+                .any(|&other| other != *switch && of_switch(other).is_some())
+        };
+        let crossings = (0..self.program.switches.len()).filter(|switch| !jumps(switch)).filter_map(of_switch);
         crossings.reduce(|a, b| if b.share < a.share { Crossing { hidden: b.hidden || a.hidden, ..b } } else { a })
     }
 }

@@ -2,7 +2,7 @@
 
 use symdiff::{Expr, Graph, Interval, Ranges};
 
-use super::terms::functions;
+use super::terms::{Condition, functions};
 use crate::simulate::simulator::Simulator;
 
 /// A step is divided where a function may change by more than this, as a share of its own size.
@@ -23,6 +23,9 @@ const PIECES: usize = 400;
 
 /// Pieces of a step over which a function is enclosed whose rate has no bound.
 const PARTS: usize = 16;
+
+/// Cuts of a quarter by which a jump is located.
+const MOST_CUTS: usize = 120;
 
 /// Parts of the box of parameters looked at to tell how often a step is switched, and how often a part is halved.
 const MOST_PARTS: usize = 300;
@@ -52,9 +55,14 @@ struct Term {
     frozen: bool,
 }
 
-/// What a jump depends on: value and rate.
+/// What a jump depends on.
 #[derive(Clone, Debug)]
-struct Switch(Ranges);
+struct Switch {
+    /// Value and rate.
+    ranges: Ranges,
+    /// Places of switches at which the value jumps itself.
+    jumps_with: Vec<usize>,
+}
 
 /// Whether something switches at some time of an interval.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -89,7 +97,9 @@ impl TimeFunctions {
                 terms.push(Term { ranges, size, frozen });
             }
         }
-        let switches: Vec<Switch> = functions.conditions.into_iter().map(|expr| Switch(with_rate(expr))).collect();
+        let switch =
+            |condition: Condition| Switch { ranges: with_rate(condition.of), jumps_with: condition.jumps_with };
+        let switches: Vec<Switch> = functions.conditions.into_iter().map(switch).collect();
         let halvings = if system.constraint.is_empty() { MOST_HALVINGS } else { MOST_HALVINGS_WITH_CONSTRAINTS };
         let found = Self { duration, parameters, terms, switches, halvings };
         (!(found.terms.is_empty() && found.switches.is_empty())).then_some(found)
@@ -141,8 +151,14 @@ impl TimeFunctions {
         let mut seen = 0;
         while let Some((symbols, depth)) = boxes.pop() {
             let (mut possible, mut sure, mut unknown) = (0, 0, false);
-            for switch in &self.switches {
-                match switch.over(&symbols, work) {
+            let states: Vec<Switches> = self.switches.iter().map(|switch| switch.over(&symbols, work)).collect();
+            for (switch, &state) in self.switches.iter().zip(&states) {
+                let with = switch.jumps_with.iter().find(|&&other| matches!(states[other], Switches::Once { .. }));
+                let state = match with {
+                    Some(&other) if state != Switches::Never => switch.beside(&self.switches[other], &symbols, work),
+                    _ => state,
+                };
+                match state {
                     Switches::Never => {}
                     Switches::Once { surely } => {
                         possible += 1;
@@ -204,8 +220,34 @@ impl Term {
 }
 
 impl Switch {
+    /// What switches beside the jump that another one brings about, which counts by itself: before it and after it.
+    fn beside(&self, other: &Self, symbols: &[Interval], work: &mut Vec<Interval>) -> Switches {
+        let during = |a: f64, b: f64| [&[Interval::new(a, b)], &symbols[1..]].concat();
+        let (first, last) = (symbols[0].lower(), symbols[0].upper());
+        let (mut low, mut high) = (first, last);
+        for _ in 0..MOST_CUTS {
+            let quarter = 0.25 * (high - low);
+            let mut cut = |a: f64, b: f64| other.over(&during(a, b), work) == Switches::Never;
+            match (cut(low, low + quarter), cut(high - quarter, high)) {
+                (false, false) => break,
+                (from_below, from_above) => {
+                    low += if from_below { quarter } else { 0.0 };
+                    high -= if from_above { quarter } else { 0.0 };
+                }
+            }
+        }
+        // Where a whole number is passed is rounded.
+        let slack = 1e-9 * (last - first);
+        let (low, high) = ((low - slack).max(first), (high + slack).min(last));
+        let mut side = |a: f64, b: f64| if b - a <= slack { Switches::Never } else { self.over(&during(a, b), work) };
+        match (side(first, low), side(high, last)) {
+            (Switches::Never, state) | (state, Switches::Never) => state,
+            _ => Switches::Unknown,
+        }
+    }
+
     fn over(&self, symbols: &[Interval], work: &mut Vec<Interval>) -> Switches {
-        let (value, rate) = pair(&self.0, symbols, work);
+        let (value, rate) = pair(&self.ranges, symbols, work);
         if value.lower() > 0.0 || value.upper() < 0.0 {
             return Switches::Never;
         }
@@ -215,7 +257,7 @@ impl Switch {
         let mut at = |t: f64| {
             let point: Vec<Interval> =
                 std::iter::once(Interval::point(t)).chain(symbols[1..].iter().copied()).collect();
-            pair(&self.0, &point, work).0
+            pair(&self.ranges, &point, work).0
         };
         let (first, last) = (at(symbols[0].lower()), at(symbols[0].upper()));
         let surely = first.upper() < 0.0 && last.lower() > 0.0 || first.lower() > 0.0 && last.upper() < 0.0;

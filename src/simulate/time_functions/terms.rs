@@ -2,6 +2,7 @@
 //! where they are sums, since each summand has a size of its own.
 
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Node, Unary};
@@ -14,7 +15,7 @@ pub(super) struct Functions {
     /// Functions, and whether other symbols have been replaced by their values at the start.
     pub terms: Vec<(Expr, bool)>,
     /// What a jump depends on: it is where such an expression changes its sign.
-    pub conditions: Vec<Expr>,
+    pub conditions: Vec<Condition>,
 }
 
 /// On what an expression depends.
@@ -52,7 +53,7 @@ pub(super) fn functions(simulator: &Simulator) -> Option<Functions> {
     let all: Vec<(Expr, bool)> =
         terms.into_iter().map(|term| (term, false)).chain(of_frozen.into_iter().map(|term| (term, true))).collect();
     let within: Vec<Expr> = all.iter().map(|&(term, _)| term).collect();
-    let conditions = conditions(&graph, system.time, &within);
+    let conditions = conditions(&mut graph, system.time, &within);
     Some(Functions { graph, terms: all, conditions })
 }
 
@@ -142,16 +143,33 @@ fn summands(graph: &Graph, time: Expr, whole: &[Expr]) -> BTreeSet<Expr> {
     found
 }
 
-/// Expressions of the time at whose changes of sign functions jump.
-fn conditions(graph: &Graph, time: Expr, terms: &[Expr]) -> Vec<Expr> {
+/// An expression of the time at whose changes of sign functions jump.
+#[derive(Clone, Debug)]
+pub(super) struct Condition {
+    pub of: Expr,
+    /// Places of conditions of whole numbers by which this one jumps itself.
+    pub jumps_with: Vec<usize>,
+}
+
+fn conditions(graph: &mut Graph, time: Expr, terms: &[Expr]) -> Vec<Condition> {
     let mut found = BTreeSet::new();
+    let mut of_floor: FxHashMap<Expr, Expr> = FxHashMap::default();
     for expr in graph.reachable(terms) {
         match graph.node(expr) {
+            Node::Unary(Unary::Floor, a) => {
+                let turns = graph.scale(PI, a);
+                let sine = graph.sin(turns);
+                of_floor.insert(expr, sine);
+                found.insert(sine);
+            }
             Node::Unary(Unary::Sign, a) | Node::Binary(Binary::Select | Binary::SelectElse, a, _) => {
                 found.insert(a);
             }
             _ => {}
         }
     }
-    found.into_iter().filter(|&condition| graph.symbols_of(&[condition]).contains(&time)).collect()
+    let steady: Vec<Expr> = found.into_iter().filter(|&of| graph.changes_steadily(of, &[time])).collect();
+    let place = |of: Expr| of_floor.get(&of).and_then(|sine| steady.binary_search(sine).ok());
+    let jumps_with = |of: Expr| graph.reachable(&[of]).into_iter().filter_map(place).collect();
+    steady.iter().map(|&of| Condition { of, jumps_with: jumps_with(of) }).collect()
 }

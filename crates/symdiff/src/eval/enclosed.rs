@@ -32,6 +32,7 @@ pub fn unary(function: Unary, a: Interval) -> Interval {
         Unary::Abs => magnitude(a),
         Unary::Tanh => rising(a, libm::tanh),
         Unary::Sign => Interval::new(sign(a.lower()), sign(a.upper())),
+        Unary::Floor => Interval::new(a.lower().floor(), a.upper().floor()),
         Unary::Spline(spline, order) => spline.enclose(order, a),
     }
 }
@@ -126,6 +127,7 @@ mod tests {
             let mut functions = vec![
                 Unary::Neg, Unary::Sin, Unary::Cos, Unary::Tan, Unary::Asin, Unary::Acos, Unary::Atan, Unary::Sqrt,
                 Unary::Exp, Unary::Log, Unary::Abs, Unary::Tanh, Unary::Sign,
+                Unary::Floor,
             ];
             functions.extend((0..5).map(|order| Unary::Spline(table, order)));
             for function in functions {

@@ -20,6 +20,7 @@ pub fn unary(function: Unary, a: f64) -> f64 {
         Unary::Abs => a.abs(),
         Unary::Tanh => libm::tanh(a),
         Unary::Sign => sign(a),
+        Unary::Floor => a.floor(),
         Unary::Spline(spline, order) => spline.derivative(order, a),
     }
 }

@@ -52,7 +52,8 @@ impl SparseMatrix {
 }
 
 impl Graph {
-    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken;
+    /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of `sign`,
+    /// `floor`) have no derivative;
     /// a guarded value is taken to be continuous where its condition changes sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
         let order = self.reachable(&[of]);
@@ -151,7 +152,7 @@ impl Graph {
                 let square = self.mul(value, value);
                 self.sub(one, square)
             }
-            Unary::Sign => self.constant(0.0),
+            Unary::Sign | Unary::Floor => self.constant(0.0),
             Unary::Spline(spline, order) => self.unary(Unary::Spline(spline, order + 1), a),
         }
     }

@@ -42,6 +42,8 @@ pub enum Unary {
     Tanh,
     /// −1, 0 or 1.
     Sign,
+    /// The largest whole number that is not larger.
+    Floor,
     /// A derivative, of this order, of a table.
     Spline(Spline, u8),
 }

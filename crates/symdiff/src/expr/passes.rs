@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::graph::Graph;
-use super::node::{Binary, Expr, Node};
+use super::node::{Binary, Expr, Node, Unary};
 use crate::eval::functions;
 
 /// A sum of something under a condition and something elsewhere.
@@ -60,6 +60,25 @@ impl Graph {
         found
     }
 
+    /// Whether an expression changes with a symbol other than by jumps: what stands in `sign`, `floor` or in a condition alone
+    /// makes it jump, and is constant between two jumps.
+    pub fn changes_steadily(&self, of: Expr, with: &[Expr]) -> bool {
+        let mut steadily = FxHashSet::default();
+        for expr in self.reachable(&[of]) {
+            let changes = match self.node(expr) {
+                Node::Constant(_) => false,
+                Node::Symbol(_) => with.contains(&expr),
+                Node::Unary(Unary::Sign | Unary::Floor, _) => false,
+                Node::Binary(Binary::Select | Binary::SelectElse, _, value) => steadily.contains(&value),
+                node => node.children().any(|child| steadily.contains(&child)),
+            };
+            if changes {
+                steadily.insert(expr);
+            }
+        }
+        steadily.contains(&of)
+    }
+
     /// `roots` with every key of `replacements` replaced by its value.
     pub fn substitute(&mut self, roots: &[Expr], replacements: &FxHashMap<Expr, Expr>) -> Vec<Expr> {
         self.rebuild(roots, |expr, _, _| replacements.get(&expr).copied())
@@ -110,6 +129,21 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn jumps_are_no_steady_change() {
+        let mut g = Graph::new();
+        let (x, y) = (g.symbol("x"), g.symbol("y"));
+        let one = g.constant(1.0);
+        let holds = g.only_where(x, one);
+        let floor = g.unary(Unary::Floor, x);
+        let product = g.mul(holds, floor);
+        assert!(!g.changes_steadily(product, &[x]));
+        let sum = g.add(product, y);
+        assert!(!g.changes_steadily(sum, &[x]) && g.changes_steadily(sum, &[x, y]));
+        let guarded = g.only_where(y, x);
+        assert!(g.changes_steadily(guarded, &[x]) && !g.changes_steadily(guarded, &[y]));
+    }
 
     #[test]
     fn substitution_rebuilds_and_folds() {

@@ -2,6 +2,7 @@
 //!
 //! Between neighbouring knots the function is a cubic; its second derivative is zero at the ends, and beyond them it goes on
 //! along its tangents, so that it has two continuous derivatives everywhere (de Boor, *A Practical Guide to Splines*, ch. 4).
+//! A periodic one repeats itself instead, with two continuous derivatives where it begins anew.
 //!
 //! A table is kept for the life of the process, once whatever the number of graphs that use it: an expression refers to it as to
 //! any other function, and is copied, compared and hashed like one.
@@ -21,6 +22,8 @@ struct Pieces {
     knots: Vec<f64>,
     /// Of powers of x − knot; the knot is the one before, but for the first piece.
     cubics: Vec<[f64; 4]>,
+    /// Whether what is between the first and the last knot goes on beyond them.
+    periodic: bool,
 }
 
 /// Points that make no spline.
@@ -35,6 +38,9 @@ pub enum SplineError {
     /// The point at this place does not come after the one before.
     #[error("point {} does not come after the one before", .0 + 1)]
     NotAscending(usize),
+    /// A periodic one does not end with the value that it begins with.
+    #[error("the last value is not the first")]
+    NotPeriodic,
 }
 
 impl Spline {
@@ -43,7 +49,19 @@ impl Spline {
     /// # Errors
     /// The first point that is wrong.
     pub fn through(points: &[(f64, f64)]) -> Result<Self, SplineError> {
-        static KNOWN: OnceLock<Mutex<HashMap<Vec<u64>, Spline>>> = OnceLock::new();
+        Self::of(points, false)
+    }
+
+    /// Through points (x, y), x ascending, over a period from the first to the last, which have the same y.
+    ///
+    /// # Errors
+    /// The first point that is wrong.
+    pub fn periodic(points: &[(f64, f64)]) -> Result<Self, SplineError> {
+        Self::of(points, true)
+    }
+
+    fn of(points: &[(f64, f64)], periodic: bool) -> Result<Self, SplineError> {
+        static KNOWN: OnceLock<Mutex<HashMap<(Vec<u64>, bool), Spline>>> = OnceLock::new();
         if points.len() < 2 {
             return Err(SplineError::TooFew);
         }
@@ -55,11 +73,15 @@ impl Spline {
                 return Err(SplineError::NotAscending(place));
             }
         }
+        if periodic && points[0].1 != points[points.len() - 1].1 {
+            return Err(SplineError::NotPeriodic);
+        }
         let bits = points.iter().flat_map(|&(x, y)| [x.to_bits(), y.to_bits()]).collect();
         let known = KNOWN.get_or_init(Mutex::default);
         // A panic while the lock was held leaves the map as it was before.
         let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(*known.entry(bits).or_insert_with(|| Self(Box::leak(Box::new(Pieces::natural(points))))))
+        let pieces = || if periodic { Pieces::periodic(points) } else { Pieces::natural(points) };
+        Ok(*known.entry((bits, periodic)).or_insert_with(|| Self(Box::leak(Box::new(pieces())))))
     }
 
     /// The derivative of this order at x.
@@ -69,12 +91,26 @@ impl Spline {
 
     /// Taylor coefficients, of powers 0 to 3, of the derivative of this order about x.
     pub(crate) fn taylor(self, order: u8, x: f64) -> [f64; 4] {
-        self.taylor_of(self.0.knots.partition_point(|knot| *knot <= x), order, x)
+        let x = if self.0.periodic { x - self.shift(x) } else { x };
+        self.taylor_of(self.piece(x), order, x)
+    }
+
+    /// The piece that a number is in.
+    fn piece(self, x: f64) -> usize {
+        let piece = self.0.knots.partition_point(|knot| *knot <= x);
+        // What rounding puts at an end of the period belongs to the piece there.
+        if self.0.periodic { piece.clamp(1, self.0.knots.len() - 1) } else { piece }
+    }
+
+    /// The periods between a number and the first one.
+    fn shift(self, x: f64) -> f64 {
+        let (first, last) = self.range();
+        (last - first) * ((x - first) / (last - first)).floor()
     }
 
     /// The same of the cubic of a piece, which x need not be in.
     fn taylor_of(self, piece: usize, order: u8, x: f64) -> [f64; 4] {
-        let Pieces { knots, cubics } = self.0;
+        let Pieces { knots, cubics, .. } = self.0;
         let s = x - knots[piece.max(1) - 1];
         let [a, b, c, d] = cubics[piece];
         let about = [a + s * (b + s * (c + s * d)), b + s * (2.0 * c + 3.0 * s * d), c + 3.0 * s * d, d];
@@ -92,9 +128,36 @@ impl Spline {
         if !x.magnitude().is_finite() {
             return Interval::ENTIRE;
         }
+        if self.0.periodic {
+            return self.enclose_periodic(order, x);
+        }
+        self.enclose_pieces(order, x)
+    }
+
+    /// The same of a periodic one: over a whole period, or over the parts of one that the interval covers.
+    fn enclose_periodic(self, order: u8, x: Interval) -> Interval {
+        let (first, last) = self.range();
+        let whole = || self.enclose_pieces(order, Interval::new(first, last));
+        let shift = self.shift(x.lower());
+        // The shift is rounded; and what is moved out of the period by that is near its end.
+        let slack = 4.0 * f64::EPSILON * x.magnitude().max(shift.abs());
+        let (lower, upper) = (x.lower() - shift - slack, x.upper() - shift + slack);
+        if !(upper - lower < last - first) {
+            return whole();
+        }
+        if lower >= first && upper <= last {
+            return self.enclose_pieces(order, Interval::new(lower, upper));
+        }
+        let (below, above) =
+            if lower < first { (lower + (last - first), upper) } else { (lower, upper - (last - first)) };
+        let [a, b] = [Interval::new(below.clamp(first, last), last), Interval::new(first, above.clamp(first, last))]
+            .map(|part| self.enclose_pieces(order, part));
+        Interval::new(a.lower().min(b.lower()), a.upper().max(b.upper()))
+    }
+
+    fn enclose_pieces(self, order: u8, x: Interval) -> Interval {
         let knots = &self.0.knots;
-        let pieces =
-            knots.partition_point(|knot| *knot <= x.lower())..=knots.partition_point(|knot| *knot <= x.upper());
+        let pieces = self.piece(x.lower())..=self.piece(x.upper());
         let of_piece = |piece: usize| {
             let [first, last] = [piece.wrapping_sub(1), piece].map(|knot| knots.get(knot).copied());
             let (first, last) = (x.lower().max(first.unwrap_or(x.lower())), x.upper().min(last.unwrap_or(x.upper())));
@@ -136,18 +199,54 @@ impl Pieces {
         for i in (1..n - 1).rev() {
             second[i] = (right[i] - widths[i] * second[i + 1]) / diagonal[i];
         }
+        Self::with_second(points, &second, false)
+    }
+
+    /// As natural ones, but m₀ = mₙ₋₁, and what holds at inner knots holds there: the matrix is cyclic. With m₀ known the others
+    /// solve a tridiagonal system, of which m₀ is a factor on the right side; the row of knot 0 gives it.
+    fn periodic(points: &[(f64, f64)]) -> Self {
+        let n = points.len();
+        let widths: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+        let slopes: Vec<f64> = points.windows(2).zip(&widths).map(|(pair, h)| (pair[1].1 - pair[0].1) / h).collect();
+        // Rows of knots 1 to n − 2, each with its right sides: of the data, and of m₀ = mₙ₋₁.
+        let (mut diagonal, mut data, mut of_first) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
+        for i in 1..n - 1 {
+            let factor = if i > 1 { widths[i - 1] / diagonal[i - 1] } else { 0.0 };
+            diagonal[i] = 2.0 * (widths[i - 1] + widths[i]) - factor * widths[i - 1];
+            let ends = if i == 1 { -widths[0] } else { 0.0 } + if i == n - 2 { -widths[n - 2] } else { 0.0 };
+            data[i] = 6.0 * (slopes[i] - slopes[i - 1]) - factor * data[i - 1];
+            of_first[i] = ends - factor * of_first[i - 1];
+        }
+        let (mut of_data, mut per_first) = (vec![0.0; n], vec![0.0; n]);
+        for i in (1..n - 1).rev() {
+            of_data[i] = (data[i] - widths[i] * of_data[i + 1]) / diagonal[i];
+            per_first[i] = (of_first[i] - widths[i] * per_first[i + 1]) / diagonal[i];
+        }
+        // hₙ₋₂ mₙ₋₂ + 2 (hₙ₋₂ + h₀) m₀ + h₀ m₁ = 6 (slope₀ − slopeₙ₋₂), m₁ = mₙ₋₁ where there are two points.
+        let (h, last) = (widths[0], widths[n - 2]);
+        let right = 6.0 * (slopes[0] - slopes[n - 2]) - last * of_data[n - 2] - h * of_data[1];
+        let first = if n > 2 { right / (2.0 * (last + h) + last * per_first[n - 2] + h * per_first[1]) } else { 0.0 };
+        let mut second: Vec<f64> = of_data.iter().zip(&per_first).map(|(own, per)| own + per * first).collect();
+        (second[0], second[n - 1]) = (first, first);
+        Self::with_second(points, &second, true)
+    }
+
+    /// From second derivatives at the knots.
+    fn with_second(points: &[(f64, f64)], second: &[f64], periodic: bool) -> Self {
+        let n = points.len();
         let mut cubics = Vec::with_capacity(n + 1);
         for i in 0..n - 1 {
-            let (h, m, next) = (widths[i], second[i], second[i + 1]);
-            let slope = slopes[i] - h * (2.0 * m + next) / 6.0;
+            let (h, m, next) = (points[i + 1].0 - points[i].0, second[i], second[i + 1]);
+            let slope = (points[i + 1].1 - points[i].1) / h - h * (2.0 * m + next) / 6.0;
             if i == 0 {
                 cubics.push([points[0].1, slope, 0.0, 0.0]);
             }
             cubics.push([points[i].1, slope, 0.5 * m, (next - m) / (6.0 * h)]);
         }
-        let (h, m) = (widths[n - 2], second[n - 2]);
-        cubics.push([points[n - 1].1, slopes[n - 2] + h * m / 6.0, 0.0, 0.0]);
-        Self { knots: points.iter().map(|point| point.0).collect(), cubics }
+        let (h, m) = (points[n - 1].0 - points[n - 2].0, second[n - 2]);
+        let slope = (points[n - 1].1 - points[n - 2].1) / h;
+        cubics.push([points[n - 1].1, slope + h * m / 6.0, 0.0, 0.0]);
+        Self { knots: points.iter().map(|point| point.0).collect(), cubics, periodic }
     }
 }
 
@@ -211,6 +310,48 @@ mod tests {
         }
         assert_eq!(spline.derivative(2, -1.0), 0.0);
         assert_eq!(spline.range(), (0.0, 3.0));
+    }
+
+    #[test]
+    fn a_periodic_one_begins_anew() {
+        let wave = |x: f64| 2.0 + x.sin() + 0.3 * (2.0 * x).cos();
+        let error = |n: i32| {
+            let period = std::f64::consts::TAU;
+            let mut points: Vec<_> =
+                (0..=n).map(|i| f64::from(i) / f64::from(n) * period).map(|x| (x, wave(x))).collect();
+            let last = points.len() - 1;
+            points[last].1 = points[0].1;
+            let spline = Spline::periodic(&points).unwrap();
+            for order in 0..=2 {
+                let [below, above] = [-1e-9, 1e-9].map(|d| spline.derivative(order, period + d));
+                assert!((below - above).abs() < 1e-7, "order {order}: {below} {above}");
+            }
+            let at = |i: i32| 0.0131 * f64::from(i);
+            (-2000..2000).map(at).map(|x| (spline.derivative(0, x) - wave(x)).abs()).fold(0.0, f64::max)
+        };
+        // Of order four up to the ends: there is no end.
+        let ratio = error(16) / error(32);
+        assert!((ratio - 16.0).abs() < 2.0, "{ratio}");
+        assert_eq!(Spline::periodic(&[(0.0, 1.0), (1.0, 2.0)]), Err(SplineError::NotPeriodic));
+        let constant = Spline::periodic(&[(0.0, 1.0), (1.0, 1.0)]).unwrap();
+        assert_eq!((constant.derivative(0, 7.3), constant.derivative(1, 7.3)), (1.0, 0.0));
+        assert_ne!(constant, Spline::through(&[(0.0, 1.0), (1.0, 1.0)]).unwrap());
+    }
+
+    #[test]
+    fn a_periodic_one_is_enclosed() {
+        let spline = Spline::periodic(&[(0.5, 1.0), (1.0, -2.0), (2.25, 0.3), (3.0, 1.0)]).unwrap();
+        for (lower, width) in [(0.6, 0.1), (2.9, 0.3), (-7.1, 0.9), (40.3, 2.4), (3.0, 0.2), (1.7, 9.0), (0.5, 2.5)] {
+            for order in 0..=3 {
+                let range = spline.enclose(order, Interval::new(lower, lower + width));
+                for part in 0..=100 {
+                    let value = spline.derivative(order, lower + width * f64::from(part) / 100.0);
+                    assert!(range.contains(value), "order {order} of {lower} + {width}: {range:?} {value}");
+                }
+                let size = spline.enclose(order, Interval::new(0.5, 3.0));
+                assert!(range.upper() - range.lower() <= (size.upper() - size.lower()) * (1.0 + 1e-9));
+            }
+        }
     }
 
     #[test]

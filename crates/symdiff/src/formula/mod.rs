@@ -1,24 +1,34 @@
 //! The formula language: text → [`Formula`] → [`Expr`].
 //!
 //! ```text
-//! sum     = product { ("+" | "-") product }
-//! product = signed { ("*" | "/") signed }
-//! signed  = ("+" | "-") signed | power
-//! power   = atom [ "^" signed ]                   right-associative; binds tighter than a sign: -a^2 = -(a^2)
-//! atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
-//! name    = letter { letter | digit | "_" } { "." name }
+//! formula    = both { "or" both }
+//! both       = negation { "and" negation }
+//! negation   = "not" negation | comparison
+//! comparison = sum [ ("<" | "<=" | ">" | ">=" | "==" | "!=") sum ]      1 where it holds, 0 elsewhere
+//! sum        = product { ("+" | "-") product }
+//! product    = signed { ("*" | "/") signed }
+//! signed     = ("+" | "-") signed | power
+//! power      = atom [ "^" signed ]               right-associative; binds tighter than a sign: -a^2 = -(a^2)
+//! atom       = number [ unit ] | name | function "(" formula { "," formula } ")" | "(" formula ")"
+//! name       = letter { letter | digit | "_" } { "." name }
 //! ```
 //!
-//! `pi` is the number; every other name, `t` included, is for the caller to resolve.
+//! `pi` is the number; every other name, `t` included, is for the caller to resolve, and so are units.
 
+mod composed;
+mod conditions;
 mod parser;
+mod vocabulary;
+
+pub use composed::Composed;
+pub use vocabulary::{Quantity, ReadUnit, Vocabulary};
 
 use std::ops::Range;
 
-use crate::expr::{Binary, Builder, Expr, Scalar, Spline, Unary};
+use crate::expr::{Binary, Builder, Expr, Scalar, Unary};
 
 /// The functions of the language.
-pub const FUNCTIONS: [NamedFunction; 15] = [
+pub const FUNCTIONS: [NamedFunction; 23] = [
     NamedFunction::new("sin", Function::Unary(Unary::Sin), "x", "all x, rad", "sine"),
     NamedFunction::new("cos", Function::Unary(Unary::Cos), "x", "all x, rad", "cosine"),
     NamedFunction::new("tan", Function::Unary(Unary::Tan), "x", "x ≠ π/2 + kπ, rad", "tangent"),
@@ -40,6 +50,56 @@ pub const FUNCTIONS: [NamedFunction; 15] = [
     NamedFunction::new("sign", Function::Unary(Unary::Sign), "x", "all x", "−1, 0 or 1"),
     NamedFunction::new("min", Function::Binary(Binary::Min), "a, b", "all a, b", "the smaller of two"),
     NamedFunction::new("max", Function::Binary(Binary::Max), "a, b", "all a, b", "the larger of two"),
+    NamedFunction::new(
+        "floor",
+        Function::Unary(Unary::Floor),
+        "x",
+        "all x",
+        "the largest whole number that is not larger",
+    ),
+    NamedFunction::new(
+        "ceil",
+        Function::Composed(Composed::Ceil),
+        "x",
+        "all x",
+        "the smallest whole number that is not smaller",
+    ),
+    NamedFunction::new(
+        "round",
+        Function::Composed(Composed::Round),
+        "x",
+        "all x",
+        "the nearest whole number; of a half, the larger one",
+    ),
+    NamedFunction::new("mod", Function::Composed(Composed::Mod), "a, b", "b ≠ 0", "a − b floor(a/b), of the sign of b"),
+    NamedFunction::new(
+        "if",
+        Function::Composed(Composed::If),
+        "condition, a, b",
+        "all",
+        "a where the condition is true (or a positive number), else b",
+    ),
+    NamedFunction::new(
+        "clamp",
+        Function::Composed(Composed::Clamp),
+        "x, low, high",
+        "low ≤ high",
+        "x, but not below low nor above high",
+    ),
+    NamedFunction::new(
+        "smoothstep",
+        Function::Composed(Composed::Smoothstep),
+        "a, b, x",
+        "a ≠ b",
+        "0 up to x = a, 1 from x = b on, between them 3u² − 2u³ with u = (x − a)/(b − a)",
+    ),
+    NamedFunction::new(
+        "deg",
+        Function::Composed(Composed::Degrees),
+        "x",
+        "all x, rad",
+        "the angle x in degrees, a pure number",
+    ),
 ];
 
 /// A function as formulas call it.
@@ -67,6 +127,11 @@ impl NamedFunction {
     ) -> Self {
         Self { name, function, arguments, domain, value }
     }
+
+    /// Whether nothing else may have the name. Of `floor`, `round` and the like, only a call is one: models have a floor, too.
+    pub fn is_reserved(&self) -> bool {
+        !matches!(self.function, Function::Composed(_) | Function::Unary(Unary::Floor))
+    }
 }
 
 /// A function of the language.
@@ -76,6 +141,8 @@ pub enum Function {
     Unary(Unary),
     /// Of two arguments.
     Binary(Binary),
+    /// Made of several.
+    Composed(Composed),
 }
 
 /// One node of a formula; operands are positions of earlier nodes.
@@ -83,12 +150,18 @@ pub enum Function {
 pub enum Term {
     /// A literal number.
     Number(f64),
+    /// A literal number with a unit: its value, and what the caller's reader of units says of its dimension.
+    Quantity(f64, u64),
     /// A name, dots included.
     Name(String),
     /// A function of one term.
     Unary(Unary, usize),
     /// A function of two terms.
     Binary(Binary, usize, usize),
+    /// The difference of two terms of which only the sign is asked for.
+    Compared(usize, usize),
+    /// An angle's number of degrees.
+    Degrees(usize),
 }
 
 /// A parsed formula: its nodes, operands first, the result last, each with its place (bytes) in the text.
@@ -115,15 +188,15 @@ impl Formula {
     /// # Errors
     /// The first syntax error, with its place.
     pub fn parse(text: &str) -> Result<Self, SyntaxError> {
-        Self::parse_with(text, &[])
+        Self::parse_with(text, &Vocabulary::default())
     }
 
-    /// Reads a formula in which tables, by their names, are functions of one argument.
+    /// Reads a formula in which there are tables and units.
     ///
     /// # Errors
     /// The first syntax error, with its place.
-    pub fn parse_with(text: &str, tables: &[(&str, Spline)]) -> Result<Self, SyntaxError> {
-        Ok(Self { terms: parser::terms(text, tables)? })
+    pub fn parse_with(text: &str, vocabulary: &Vocabulary) -> Result<Self, SyntaxError> {
+        Ok(Self { terms: parser::terms(text, vocabulary)? })
     }
 
     /// The formula that is just a number.
@@ -144,7 +217,9 @@ impl Formula {
             let term = match term {
                 Term::Unary(function, a) => Term::Unary(*function, a + shift),
                 Term::Binary(function, a, b) => Term::Binary(*function, a + shift, b + shift),
-                Term::Number(_) | Term::Name(_) => term.clone(),
+                Term::Compared(a, b) => Term::Compared(a + shift, b + shift),
+                Term::Degrees(a) => Term::Degrees(a + shift),
+                Term::Number(_) | Term::Quantity(..) | Term::Name(_) => term.clone(),
             };
             (term, span.clone())
         };
@@ -189,10 +264,12 @@ impl Formula {
         let mut built: Vec<Expr> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
             let expr = match term {
-                Term::Number(value) => builder.with(|graph| graph.constant(*value)),
+                Term::Number(value) | Term::Quantity(value, _) => builder.with(|graph| graph.constant(*value)),
                 Term::Name(name) => resolve(name)?.expr(),
                 Term::Unary(function, a) => builder.with(|graph| graph.unary(*function, built[*a])),
                 Term::Binary(function, a, b) => builder.with(|graph| graph.binary(*function, built[*a], built[*b])),
+                Term::Compared(a, b) => builder.with(|graph| graph.sub(built[*a], built[*b])),
+                Term::Degrees(a) => builder.with(|graph| graph.scale(180.0 / std::f64::consts::PI, built[*a])),
             };
             built.push(expr);
         }
@@ -201,55 +278,4 @@ impl Formula {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn value(text: &str) -> f64 {
-        let builder = Builder::new();
-        let built = Formula::parse(text).unwrap().build(&builder, |name| Err(name.to_owned())).unwrap();
-        built.as_constant().unwrap()
-    }
-
-    #[test]
-    fn precedence_and_associativity_are_those_of_mathematics() {
-        assert_eq!(value("1 + 2*3"), 7.0);
-        assert_eq!(value("10 - 4 - 3"), 3.0);
-        assert_eq!(value("2^3^2"), 512.0);
-        assert_eq!(value("-2^2"), -4.0);
-        assert_eq!(value("2^-1"), 0.5);
-        assert_eq!(value("12/3/2"), 2.0);
-        assert_eq!(value("2*-3"), -6.0);
-        assert_eq!(value("1.5e2 + .5 + 2."), 152.5);
-        assert_eq!(value("max(1, 2) + min(3, 4) + abs(-1) + sign(-5)"), 5.0);
-        assert!((value("sin(pi/6)") - 0.5).abs() < 1e-15);
-        assert!((value("atan2(1, -1)") - 0.75 * std::f64::consts::PI).abs() < 1e-15);
-    }
-
-    #[test]
-    fn names_keep_their_dots_and_places() {
-        let formula = Formula::parse("crank.angle + rod.C.y*l1").unwrap();
-        let names: Vec<_> = formula.names().collect();
-        assert_eq!(names, [("crank.angle", 0..11), ("rod.C.y", 14..21), ("l1", 22..24)]);
-    }
-
-    #[test]
-    fn errors_say_where() {
-        let span = |text: &str| Formula::parse(text).unwrap_err().span;
-        assert_eq!(span("1 + * 2"), 4..5);
-        assert_eq!(span("1 +"), 3..3);
-        assert_eq!(span("(1 + 2"), 6..6);
-        assert_eq!(span("1 2"), 2..3);
-        assert_eq!(span("foo(1)"), 0..3);
-        assert_eq!(span("2 + sin"), 4..7);
-        assert_eq!(span("sin(1, 2)"), 0..9);
-        assert_eq!(span("1e999"), 0..5);
-        assert_eq!(span(""), 0..0);
-        assert!(Formula::parse(&"(".repeat(10_000)).unwrap_err().message.contains("nests deeper"));
-        assert!(Formula::parse(&"-".repeat(10_000)).unwrap_err().message.contains("nests deeper"));
-    }
-
-    #[test]
-    fn long_sums_do_not_nest() {
-        assert_eq!(value(&vec!["1"; 100_000].join("+")), 100_000.0);
-    }
-}
+mod tests;

@@ -2,19 +2,26 @@
 
 use std::ops::Range;
 
+use rustc_hash::FxHashSet;
+
+use super::vocabulary::Vocabulary;
 use super::{FUNCTIONS, Function, SyntaxError, Term};
-use crate::expr::{Binary, Spline, Unary};
+use crate::expr::{Binary, Unary};
 
 /// How deep parentheses, signs and powers may nest.
 const MAX_DEPTH: usize = 100;
+
+/// Words that join conditions.
+const WORDS: [&str; 3] = ["and", "or", "not"];
 
 /// The terms of a formula with their places.
 ///
 /// # Errors
 /// The first syntax error.
-pub(super) fn terms(text: &str, tables: &[(&str, Spline)]) -> Result<Vec<(Term, Range<usize>)>, SyntaxError> {
-    let mut parser = Parser { text, tables, position: 0, depth: 0, terms: Vec::new() };
-    parser.sum()?;
+pub(super) fn terms(text: &str, vocabulary: &Vocabulary) -> Result<Vec<(Term, Range<usize>)>, SyntaxError> {
+    let truths = FxHashSet::default();
+    let mut parser = Parser { text, vocabulary, position: 0, depth: 0, terms: Vec::new(), truths };
+    parser.condition()?;
     parser.skip_space();
     if parser.position < text.len() {
         return Err(parser.unexpected("an operator or the end of the formula"));
@@ -22,16 +29,18 @@ pub(super) fn terms(text: &str, tables: &[(&str, Spline)]) -> Result<Vec<(Term, 
     Ok(parser.terms)
 }
 
-struct Parser<'t> {
-    text: &'t str,
-    tables: &'t [(&'t str, Spline)],
-    position: usize,
+pub(super) struct Parser<'t> {
+    pub(super) text: &'t str,
+    vocabulary: &'t Vocabulary<'t>,
+    pub(super) position: usize,
     depth: usize,
-    terms: Vec<(Term, Range<usize>)>,
+    pub(super) terms: Vec<(Term, Range<usize>)>,
+    /// Terms that are 1 or 0.
+    pub(super) truths: FxHashSet<usize>,
 }
 
 impl Parser<'_> {
-    fn skip_space(&mut self) {
+    pub(super) fn skip_space(&mut self) {
         self.position = self.text.len() - self.text[self.position..].trim_start().len();
     }
 
@@ -49,7 +58,7 @@ impl Parser<'_> {
         found
     }
 
-    fn push(&mut self, term: Term, span: Range<usize>) -> usize {
+    pub(super) fn push(&mut self, term: Term, span: Range<usize>) -> usize {
         self.terms.push((term, span));
         self.terms.len() - 1
     }
@@ -69,7 +78,7 @@ impl Parser<'_> {
                 message: format!("unexpected `{found}` in formula"),
                 span: self.position..self.position + found.len_utf8(),
                 help: Some(match found {
-                    '=' => "comparisons are not part of formulas".to_owned(),
+                    '=' => "equality is written `==`".to_owned(),
                     '*' => "a power is written `^`".to_owned(),
                     _ => format!("expected {expected}"),
                 }),
@@ -83,7 +92,10 @@ impl Parser<'_> {
     }
 
     /// Runs `inner` one level deeper.
-    fn nested(&mut self, inner: impl FnOnce(&mut Self) -> Result<usize, SyntaxError>) -> Result<usize, SyntaxError> {
+    pub(super) fn nested(
+        &mut self,
+        inner: impl FnOnce(&mut Self) -> Result<usize, SyntaxError>,
+    ) -> Result<usize, SyntaxError> {
         if self.depth == MAX_DEPTH {
             return Err(SyntaxError {
                 message: format!("the formula nests deeper than {MAX_DEPTH} levels"),
@@ -97,7 +109,7 @@ impl Parser<'_> {
         result
     }
 
-    fn sum(&mut self) -> Result<usize, SyntaxError> {
+    pub(super) fn sum(&mut self) -> Result<usize, SyntaxError> {
         let mut left = self.product()?;
         loop {
             let function = if self.take('+') {
@@ -155,7 +167,7 @@ impl Parser<'_> {
         match self.peek() {
             Some('(') => self.nested(|parser| {
                 parser.take('(');
-                let inner = parser.sum()?;
+                let inner = parser.condition()?;
                 parser.close()?;
                 Ok(inner)
             }),
@@ -187,13 +199,33 @@ impl Parser<'_> {
         self.position = start + end;
         let span = start..self.position;
         match self.text[span.clone()].parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(self.push(Term::Number(value), span)),
+            Ok(value) if value.is_finite() => self.measured(value, span),
             _ => Err(SyntaxError {
                 message: format!("`{}` is not a finite number", &self.text[span.clone()]),
                 span,
                 help: None,
             }),
         }
+    }
+
+    /// A number with the unit that may stand behind it.
+    fn measured(&mut self, number: f64, span: Range<usize>) -> Result<usize, SyntaxError> {
+        let end = self.position;
+        let starts_unit = |c: char| c.is_alphabetic() || c == '°';
+        let rest = match self.peek() {
+            Some(c) if starts_unit(c) => &self.text[self.position..],
+            _ => "",
+        };
+        let word = rest.split(|c: char| !c.is_alphanumeric()).next().unwrap_or("");
+        let Some(unit) = self.vocabulary.unit.filter(|_| !rest.is_empty() && !WORDS.contains(&word)) else {
+            self.position = end;
+            return Ok(self.push(Term::Number(number), span));
+        };
+        let start = self.position;
+        let quantity = unit(number, rest)
+            .map_err(|error| SyntaxError { span: start + error.span.start..start + error.span.end, ..error })?;
+        self.position += quantity.length;
+        Ok(self.push(Term::Quantity(quantity.value, quantity.mark), span.start..self.position))
     }
 
     fn name_or_call(&mut self) -> Result<usize, SyntaxError> {
@@ -220,7 +252,15 @@ impl Parser<'_> {
         if name == "pi" {
             return Ok(self.push(Term::Number(std::f64::consts::PI), span));
         }
-        if FUNCTIONS.iter().any(|known| known.name == name) || self.tables.iter().any(|(table, _)| *table == name) {
+        if WORDS.contains(&name) {
+            return Err(SyntaxError {
+                message: format!("`{name}` joins two conditions"),
+                span,
+                help: Some("e.g. `a < b and c < d`".to_owned()),
+            });
+        }
+        let is_table = self.vocabulary.tables.iter().any(|(table, _)| *table == name);
+        if FUNCTIONS.iter().any(|known| known.name == name && known.is_reserved()) || is_table {
             return Err(SyntaxError {
                 message: format!("`{name}` is a function"),
                 span,
@@ -231,14 +271,14 @@ impl Parser<'_> {
     }
 
     fn call(&mut self, name: &str, span: Range<usize>) -> Result<usize, SyntaxError> {
-        let table = self.tables.iter().find(|(known, _)| *known == name);
-        let function = match table {
-            Some((_, spline)) => Some(Function::Unary(Unary::Spline(*spline, 0))),
-            None => FUNCTIONS.iter().find(|known| known.name == name).map(|known| known.function),
+        let tables = self.vocabulary.tables;
+        let called = match tables.iter().find(|(known, _)| *known == name) {
+            Some((_, spline)) => Some((Function::Unary(Unary::Spline(*spline, 0)), "x")),
+            None => FUNCTIONS.iter().find(|known| known.name == name).map(|known| (known.function, known.arguments)),
         };
-        let Some(function) = function else {
+        let Some((function, wanted)) = called else {
             let known: Vec<&str> =
-                FUNCTIONS.iter().map(|known| known.name).chain(self.tables.iter().map(|(known, _)| *known)).collect();
+                FUNCTIONS.iter().map(|known| known.name).chain(tables.iter().map(|(known, _)| *known)).collect();
             return Err(SyntaxError {
                 message: format!("unknown function `{name}`"),
                 span,
@@ -247,28 +287,42 @@ impl Parser<'_> {
         };
         self.nested(|parser| {
             parser.take('(');
-            let first = parser.sum()?;
-            let second = if parser.take(',') { Some(parser.sum()?) } else { None };
-            if second.is_some() && parser.peek() == Some(',') {
-                return Err(wrong_count(name, span.start..parser.position + 1, function));
+            let mut arguments = vec![parser.condition()?];
+            while arguments.len() < function.arity().max(2) && parser.take(',') {
+                arguments.push(parser.condition()?);
+            }
+            if parser.peek() == Some(',') {
+                return Err(wrong_count(name, span.start..parser.position + 1, function, wanted));
             }
             parser.close()?;
             let span = span.start..parser.position;
-            match (function, second) {
-                (Function::Unary(function), None) => Ok(parser.push(Term::Unary(function, first), span)),
-                (Function::Binary(function), Some(second)) => {
-                    Ok(parser.push(Term::Binary(function, first, second), span))
+            match (function, arguments.as_slice()) {
+                (Function::Unary(function), &[a]) => Ok(parser.push(Term::Unary(function, a), span)),
+                (Function::Binary(function), &[a, b]) => Ok(parser.push(Term::Binary(function, a, b), span)),
+                (Function::Composed(function), arguments) if arguments.len() == function.arity() => {
+                    parser.composed(function, arguments, span)
                 }
-                _ => Err(wrong_count(name, span, function)),
+                _ => Err(wrong_count(name, span, function, wanted)),
             }
         })
     }
 }
 
-fn wrong_count(name: &str, span: Range<usize>, function: Function) -> SyntaxError {
-    let expected = match function {
-        Function::Unary(_) => format!("one argument: `{name}(x)`"),
-        Function::Binary(_) => format!("two arguments: `{name}(x, y)`"),
+impl Function {
+    fn arity(self) -> usize {
+        match self {
+            Self::Unary(_) => 1,
+            Self::Binary(_) => 2,
+            Self::Composed(function) => function.arity(),
+        }
+    }
+}
+
+fn wrong_count(name: &str, span: Range<usize>, function: Function, arguments: &str) -> SyntaxError {
+    let expected = match function.arity() {
+        1 => format!("one argument: `{name}({arguments})`"),
+        2 => format!("two arguments: `{name}({arguments})`"),
+        _ => format!("three arguments: `{name}({arguments})`"),
     };
     SyntaxError { message: format!("`{name}` takes {expected}"), span, help: None }
 }

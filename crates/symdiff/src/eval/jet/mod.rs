@@ -252,7 +252,7 @@ impl JetSpace {
                 self.scale(functions::sign(a[0]), a, out);
                 out[0] = value;
             }
-            Unary::Sign => self.constant(value, out),
+            Unary::Sign | Unary::Floor => self.constant(value, out),
             // A polynomial in a − a₀, by Horner.
             Unary::Spline(spline, order) => {
                 let [constant, linear, square, cube] = spline.taylor(order, a[0]);

@@ -296,6 +296,10 @@ impl ModelSpace {
                 self.jets.scale(sign, x, self.split_mut(out).0);
                 *self.split_mut(out).1 = e;
             }
+            Unary::Floor => {
+                let range = self.range(a);
+                self.constant(Interval::new(range.lower().floor(), range.upper().floor()), out);
+            }
             _ => self.unknown(out),
         }
     }
@@ -349,7 +353,7 @@ pub fn encloses(node: Node) -> bool {
         Node::Constant(_) | Node::Symbol(_) => true,
         Node::Unary(function, _) => matches!(
             function,
-            Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Sin | Unary::Cos | Unary::Tan
+            Unary::Neg | Unary::Sqrt | Unary::Abs | Unary::Sign | Unary::Floor | Unary::Sin | Unary::Cos | Unary::Tan
         ),
         Node::Binary(function, ..) => matches!(
             function,

@@ -1,0 +1,149 @@
+use super::*;
+
+fn value(text: &str) -> f64 {
+    let builder = Builder::new();
+    let built = Formula::parse(text).unwrap().build(&builder, |name| Err(name.to_owned())).unwrap();
+    built.as_constant().unwrap()
+}
+
+#[test]
+fn precedence_and_associativity_are_those_of_mathematics() {
+    assert_eq!(value("1 + 2*3"), 7.0);
+    assert_eq!(value("10 - 4 - 3"), 3.0);
+    assert_eq!(value("2^3^2"), 512.0);
+    assert_eq!(value("-2^2"), -4.0);
+    assert_eq!(value("2^-1"), 0.5);
+    assert_eq!(value("12/3/2"), 2.0);
+    assert_eq!(value("2*-3"), -6.0);
+    assert_eq!(value("1.5e2 + .5 + 2."), 152.5);
+    assert_eq!(value("max(1, 2) + min(3, 4) + abs(-1) + sign(-5)"), 5.0);
+    assert!((value("sin(pi/6)") - 0.5).abs() < 1e-15);
+    assert!((value("atan2(1, -1)") - 0.75 * std::f64::consts::PI).abs() < 1e-15);
+}
+
+#[test]
+fn functions_of_steps_and_pieces_are_those_of_other_languages() {
+    for (text, wanted) in [
+        ("floor(2.5) + floor(-2.5)", -1.0),
+        ("ceil(2.5) + 10*ceil(-2.5)", -17.0),
+        ("round(2.5) + 10*round(-2.5) + 100*round(2.4)", 183.0),
+        ("mod(7, 3) + 10*mod(-7, 3) + 100*mod(7, -3)", -179.0),
+        ("if(1 < 2, 3, 4)", 3.0),
+        ("if(2 <= 1, 3, 4)", 4.0),
+        ("if(0, 3, 4) + if(2, 30, 40) + if(-1, 300, 400)", 434.0),
+        ("clamp(5, 1, 3) + 10*clamp(-5, 1, 3) + 100*clamp(2, 1, 3)", 213.0),
+        ("smoothstep(1, 3, 0) + 10*smoothstep(1, 3, 4) + 100*smoothstep(1, 3, 2)", 60.0),
+        ("smoothstep(0, 1, 0.25)", 0.156_25),
+        ("smoothstep(1, 0, 0.25)", 0.843_75),
+        ("deg(pi - 1 + 1)", 180.0),
+    ] {
+        let value = match text.starts_with("deg") {
+            true => built(text, std::f64::consts::PI),
+            false => value(text),
+        };
+        assert!((value - wanted).abs() < 1e-12, "{text}: {value}");
+    }
+}
+
+/// With `x` for the name `pi`, as `deg` of a bare number is refused.
+fn built(text: &str, x: f64) -> f64 {
+    let builder = Builder::new();
+    let text = text.replace("pi", "x");
+    let resolve = |_: &str| Ok::<_, ()>(builder.number(x));
+    Formula::parse(&text).unwrap().build(&builder, resolve).unwrap().as_constant().unwrap()
+}
+
+#[test]
+fn comparisons_are_one_where_they_hold() {
+    for (text, wanted) in [
+        ("1 < 2", 1.0),
+        ("2 < 1", 0.0),
+        ("1 < 1", 0.0),
+        ("1 <= 1", 1.0),
+        ("2 <= 1", 0.0),
+        ("1 >= 1", 1.0),
+        ("1 >= 2", 0.0),
+        ("2 > 1", 1.0),
+        ("1 > 1", 0.0),
+        ("1 == 1", 1.0),
+        ("1 == 2", 0.0),
+        ("1 != 2", 1.0),
+        ("1 != 1", 0.0),
+        ("1 < 2 and 3 < 2", 0.0),
+        ("1 < 2 and 2 < 3", 1.0),
+        ("1 < 2 or 3 < 2", 1.0),
+        ("2 < 1 or 3 < 2", 0.0),
+        ("not 1 < 2", 0.0),
+        ("not (1 < 2) or 5", 1.0),
+        ("5 and 3", 1.0),
+        ("-5 or 0", 0.0),
+        ("1 + 1 < 1*3", 1.0),
+        ("0 < 1 and not 2 < 1 or 0", 1.0),
+        ("(1 < 2)*5 + (2 < 1)", 5.0),
+        ("if(1 < 2 and 2 < 3, 7, 8)", 7.0),
+        ("if(not 1 < 2, 7, 8)", 8.0),
+        ("if(1 == 2, 7, 8)", 8.0),
+    ] {
+        assert_eq!(value(text), wanted, "{text}");
+    }
+    for (text, wanted) in [
+        ("1 < 2 < 3", "comparisons do not chain"),
+        ("1 < ", "the formula ends too early"),
+        ("1 = 2", "unexpected `=` in formula"),
+        ("and", "`and` joins two conditions"),
+        ("deg(30)", "`deg(x)` is the angle x in degrees"),
+        ("if(1, 2)", "`if` takes three arguments: `if(condition, a, b)`"),
+        ("clamp(1, 2, 3, 4)", "`clamp` takes three arguments: `clamp(x, low, high)`"),
+    ] {
+        assert_eq!(Formula::parse(text).unwrap_err().message, wanted, "{text}");
+    }
+}
+
+#[test]
+fn units_are_the_callers() {
+    let unit = |value: f64, text: &str| match text.strip_prefix("mm") {
+        Some(_) => Ok(Quantity { value: value / 1e3, mark: 7, length: 2 }),
+        None => Err(SyntaxError { message: "no unit".to_owned(), span: 0..1, help: None }),
+    };
+    let vocabulary = Vocabulary { unit: Some(&unit), ..Vocabulary::default() };
+    let formula = Formula::parse_with("2*150 mm + x", &vocabulary).unwrap();
+    assert_eq!(formula.terms()[1], (Term::Quantity(0.15, 7), 2..8));
+    assert_eq!(Formula::parse_with("2 + 3 km", &vocabulary).unwrap_err().span, 6..7);
+    assert_eq!(Formula::parse("2 mm").unwrap_err().message, "unexpected `m` in formula");
+    assert!(Formula::parse_with("if(2 mm > 1 and 3 mm < 1, 1, 2)", &vocabulary).is_ok());
+    assert!(Formula::parse_with("if(2 and 3, 1, 2)", &vocabulary).is_ok());
+}
+
+#[test]
+fn a_floor_is_a_name_unless_it_is_called() {
+    let formula = Formula::parse("floor.force + floor(round)").unwrap();
+    assert_eq!(formula.names().map(|(name, _)| name).collect::<Vec<_>>(), ["floor.force", "round"]);
+}
+
+#[test]
+fn names_keep_their_dots_and_places() {
+    let formula = Formula::parse("crank.angle + rod.C.y*l1").unwrap();
+    let names: Vec<_> = formula.names().collect();
+    assert_eq!(names, [("crank.angle", 0..11), ("rod.C.y", 14..21), ("l1", 22..24)]);
+}
+
+#[test]
+fn errors_say_where() {
+    let span = |text: &str| Formula::parse(text).unwrap_err().span;
+    assert_eq!(span("1 + * 2"), 4..5);
+    assert_eq!(span("1 +"), 3..3);
+    assert_eq!(span("(1 + 2"), 6..6);
+    assert_eq!(span("1 2"), 2..3);
+    assert_eq!(span("foo(1)"), 0..3);
+    assert_eq!(span("2 + sin"), 4..7);
+    assert_eq!(span("sin(1, 2)"), 0..9);
+    assert_eq!(span("1e999"), 0..5);
+    assert_eq!(span(""), 0..0);
+    assert!(Formula::parse(&"(".repeat(10_000)).unwrap_err().message.contains("nests deeper"));
+    assert!(Formula::parse(&"-".repeat(10_000)).unwrap_err().message.contains("nests deeper"));
+}
+
+#[test]
+fn long_sums_do_not_nest() {
+    assert_eq!(value(&vec!["1"; 100_000].join("+")), 100_000.0);
+}

@@ -1,0 +1,34 @@
+//! What formulas may use beside the functions of the language.
+
+use super::SyntaxError;
+use crate::expr::Spline;
+
+/// Tables and units.
+#[derive(Clone, Copy, Default)]
+pub struct Vocabulary<'v> {
+    /// Functions of one argument that are given by their values, by their names.
+    pub tables: &'v [(&'v str, Spline)],
+    /// Reads the unit that stands behind a number; without it, numbers have no units.
+    pub unit: Option<&'v ReadUnit<'v>>,
+}
+
+/// From a number and the text behind it, which begins with the unit. Places of errors are in that text.
+pub type ReadUnit<'v> = dyn Fn(f64, &str) -> Result<Quantity, SyntaxError> + 'v;
+
+/// A number with its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    /// The value in the units in which formulas compute.
+    pub value: f64,
+    /// What the caller is to know of it, for instance its dimension.
+    pub mark: u64,
+    /// Bytes of the unit's text.
+    pub length: usize,
+}
+
+impl std::fmt::Debug for Vocabulary<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let tables: Vec<&str> = self.tables.iter().map(|(name, _)| *name).collect();
+        formatter.debug_struct("Vocabulary").field("tables", &tables).field("units", &self.unit.is_some()).finish()
+    }
+}

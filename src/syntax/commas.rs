@@ -1,0 +1,52 @@
+//! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`. The pieces are
+//! put together again, so that what is told is the comma, and not what follows from it.
+
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::source::Span;
+use super::suggest::clip;
+use super::tree::{Entry, Node, Scalar, Value};
+
+/// The values of a mapping in braces, those in one that a comma has cut.
+pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Diagnostics) -> Vec<Entry> {
+    let mut joined: Vec<Entry> = Vec::with_capacity(entries.len());
+    for entry in entries {
+        match joined.last_mut().filter(|last| is_open(&last.value) && entry.value.is_null()) {
+            Some(last) => last.value = together(text, &last.value, &entry.key_span, diagnostics),
+            None => joined.push(entry),
+        }
+    }
+    joined
+}
+
+/// The items of a list in brackets, those in one that a comma has cut.
+pub(super) fn join_items(text: &str, items: Vec<Node>, diagnostics: &mut Diagnostics) -> Vec<Node> {
+    let mut joined: Vec<Node> = Vec::with_capacity(items.len());
+    for item in items {
+        match joined.last_mut().filter(|last| is_open(last) && item.scalar().is_some_and(|scalar| scalar.plain)) {
+            Some(last) => *last = together(text, last, &item.span, diagnostics),
+            None => joined.push(item),
+        }
+    }
+    joined
+}
+
+/// Whether a parenthesis of an unquoted text is not closed.
+fn is_open(node: &Node) -> bool {
+    let depth = |text: &str| text.matches('(').count() > text.matches(')').count();
+    node.scalar().is_some_and(|scalar| scalar.plain && depth(&scalar.text))
+}
+
+/// A text and the piece behind its comma; where the last parenthesis closes, the comma is told.
+fn together(text: &str, first: &Node, second: &Span, diagnostics: &mut Diagnostics) -> Node {
+    let span = first.span.start..second.end.max(first.span.end);
+    let written = text.get(span.clone()).unwrap_or("").trim_end();
+    let span = span.start..span.start + written.len();
+    let scalar = Scalar { text: written.to_owned(), plain: true, start: Some(span.start) };
+    let node = Node { span: span.clone(), value: Value::Scalar(scalar) };
+    if !is_open(&node) {
+        let help = format!("quote the formula: `\"{}\"`", clip(written));
+        diagnostics
+            .push(Diagnostic::error(span, "an unquoted comma ends the value between braces or brackets").help(help));
+    }
+    node
+}
