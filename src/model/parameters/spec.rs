@@ -153,12 +153,12 @@ impl Spec {
             return;
         }
         let deviations = [&self.tolerance, &self.plus];
-        let unit = deviations.iter().filter_map(|node| {
+        let mut units = deviations.iter().filter_map(|node| {
             let written = text(node)?;
             let (_, unit, _) = number_and_unit(&written)?;
             (unit != "%").then(|| unit.to_owned())
         });
-        if let Some(unit) = unit.last() {
+        if let Some(unit) = units.next() {
             let place = self.place();
             let help = format!("write `{value} {unit} ± …`");
             reader.error(place, "the deviation has a unit, but the value has none", help);

@@ -17,6 +17,9 @@ use crate::eval::interval::Interval;
 #[derive(Clone, Copy)]
 pub struct Spline(&'static Pieces);
 
+/// Bits of the points' coordinates, and whether the spline is periodic.
+type Points = (Vec<u64>, bool);
+
 /// Cubics: below the first knot, between each two, above the last.
 struct Pieces {
     knots: Vec<f64>,
@@ -61,7 +64,7 @@ impl Spline {
     }
 
     fn of(points: &[(f64, f64)], periodic: bool) -> Result<Self, SplineError> {
-        static KNOWN: OnceLock<Mutex<HashMap<(Vec<u64>, bool), Spline>>> = OnceLock::new();
+        static KNOWN: OnceLock<Mutex<HashMap<Points, Spline>>> = OnceLock::new();
         if points.len() < 2 {
             return Err(SplineError::TooFew);
         }
@@ -142,7 +145,7 @@ impl Spline {
         // The shift is rounded; and what is moved out of the period by that is near its end.
         let slack = 4.0 * f64::EPSILON * x.magnitude().max(shift.abs());
         let (lower, upper) = (x.lower() - shift - slack, x.upper() - shift + slack);
-        if !(upper - lower < last - first) {
+        if upper - lower >= last - first {
             return whole();
         }
         if lower >= first && upper <= last {
