@@ -85,7 +85,7 @@ fn bodies_are_where_geometry_puts_them() {
     {
         assert!(titles.contains(part), "{part} is not in {titles:?}");
     }
-    assert!(picture.contains("crank = 0.3 m ± 0.003 m") && picture.contains("100 mm"));
+    assert!(picture.contains("crank = 0.3 m ± 0.003 m") && picture.contains("50 mm"));
 
     let (text, _) = place.run("show press.yaml -o out", 0);
     let row = text.lines().find(|line| line.trim_start().starts_with("block ")).unwrap();
