@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use crate::grammar::JointCoordinate;
 use crate::model::{Description, ParameterValue, TreeJoint, TreeLink};
 
 /// A line a link: the joint that leads to it, its mass, and what is uncertain of both. Empty where there is no robot.
@@ -21,14 +22,17 @@ pub(super) fn of(model: &Description) -> String {
 
 fn joint(joint: &TreeJoint) -> String {
     let mut text = format!(" ← {} ({}", joint.name, joint.kind);
+    let (preposition, unit) = match joint.coordinate {
+        JointCoordinate::Angle => ("about", "rad"),
+        JointCoordinate::Displacement => ("along", "m"),
+    };
     if let Some([x, y, z]) = joint.axis {
-        let preposition = if joint.unit == "m" { "along" } else { "about" };
         let _ = write!(text, " {preposition} {x} {y} {z}");
     }
     let _ = match joint.limits.map(|limit| limit.filter(|_| joint.axis.is_some())) {
-        [Some(lower), Some(upper)] => write!(text, ", {lower} to {upper} {}", joint.unit),
-        [Some(lower), None] => write!(text, ", from {lower} {}", joint.unit),
-        [None, Some(upper)] => write!(text, ", up to {upper} {}", joint.unit),
+        [Some(lower), Some(upper)] => write!(text, ", {lower} to {upper} {unit}"),
+        [Some(lower), None] => write!(text, ", from {lower} {unit}"),
+        [None, Some(upper)] => write!(text, ", up to {upper} {unit}"),
         [None, None] => Ok(()),
     };
     for (what, value) in [("damping", joint.damping), ("friction", joint.friction)] {

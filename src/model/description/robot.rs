@@ -1,6 +1,6 @@
 //! The links and joints of a URDF, as the file has them.
 
-use crate::grammar::PointRef;
+use crate::grammar::{JointCoordinate, PointRef};
 
 /// The links and joints of a URDF, which the bodies and joints of the model were made of.
 #[derive(Clone, Debug)]
@@ -37,8 +37,8 @@ pub struct TreeJoint {
     pub axis: Option<[f64; 3]>,
     /// Smallest and largest position, where there is one.
     pub limits: [Option<f64>; 2],
-    /// rad or m, of its position.
-    pub unit: &'static str,
+    /// What its position is.
+    pub coordinate: JointCoordinate,
     /// N m s/rad or N s/m
     pub damping: f64,
     /// N m or N

@@ -7,7 +7,7 @@ use super::bodies::{Group, body};
 use super::joints::{joint, mimic};
 use super::robot::{Joint as UrdfJoint, Kind, Number};
 use super::source::{Built, Pose, Source, coordinate, point};
-use crate::grammar::PointRef;
+use crate::grammar::{JointCoordinate, PointRef};
 use crate::model::description::{RobotTree, TreeJoint, TreeLink};
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -109,7 +109,7 @@ fn tree(source: &Source, built: &Built) -> RobotTree {
                 kind: joint.kind.word(),
                 axis: coordinate(joint.kind).map(|_| joint.axis),
                 limits: limits.map_or([None; 2], |limits| [end(&limits.lower), end(&limits.upper)]),
-                unit: if joint.kind.turns() { "rad" } else { "m" },
+                coordinate: if joint.kind.turns() { JointCoordinate::Angle } else { JointCoordinate::Displacement },
                 damping: joint.damping.value,
                 friction: joint.friction.value,
                 mimics: joint.mimic.as_ref().map(|mimic| robot.joints[mimic.joint].name.clone()),

@@ -49,7 +49,7 @@ pub enum CostError {
     Reference(String),
     /// A reference would take most of the budget, or more.
     #[error("even a coarse reference takes {seconds:.1} s")]
-    TooDear { seconds: f64 },
+    TooCostly { seconds: f64 },
     /// A reference would take too many simulations.
     #[error("{parameters} uncertain parameters: even a coarse reference takes {simulations:.1e} simulations")]
     TooMany { parameters: usize, simulations: f64 },
@@ -80,7 +80,7 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         .and_then(|plan| Ok((Reference::compute(model, &plan, &within, &progress)?, plan)));
     let (reference, plan) = match planned {
         Ok(found) => found,
-        Err(CostError::TooDear { seconds }) if !(options.interrupted)() => {
+        Err(CostError::TooCostly { seconds }) if !(options.interrupted)() => {
             return Ok(without_reference(model, composable, options, seconds.max(begun.elapsed().as_secs_f64())));
         }
         // What was cut short at the end of the budget.

@@ -114,7 +114,7 @@ impl Plan {
             .unwrap_or((least, FINEST[FINEST.len() - 1]));
         let least_seconds = seconds(order, parts);
         if (options.interrupted)() || least_seconds > MOST * options.budget {
-            return Err(CostError::TooDear { seconds: least_seconds });
+            return Err(CostError::TooCostly { seconds: least_seconds });
         }
         let rate = fine.seconds / trials[1].work(k);
         Ok(Self { method, order, parts, scan: dense_scan(model, parts, options)?, rate })

@@ -214,7 +214,7 @@ impl Scene {
         let parameters = &assembled.system.parameters;
         let nominal: Vec<f64> = parameters.iter().map(|parameter| parameter.nominal).collect();
         let mut found = Vec::new();
-        for (place, parameter) in parameters.iter().enumerate().filter(|(_, parameter)| parameter.unit == "m") {
+        for (place, parameter) in parameters.iter().enumerate() {
             let ends = [parameter.lower, parameter.upper];
             let distances = ends.map(|end| {
                 let mut sample = nominal.clone();

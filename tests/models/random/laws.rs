@@ -148,7 +148,7 @@ fn momentum_is_conserved() {
 
 /// Joints stay closed to Newton's tolerance.
 #[test]
-fn joints_do_not_gape() {
+fn joints_stay_closed() {
     let looped = |kind: Kind| Kind { looped: true, ..kind };
     holds(&[PLANAR, SPATIAL, looped(PLANAR), looped(SPATIAL)], |mechanism| {
         let axes: &[&str] = if mechanism.kind.spatial { &["x", "y", "z"] } else { &["x", "y"] };
