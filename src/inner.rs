@@ -9,7 +9,7 @@ pub mod cli {
 }
 
 pub mod compile {
-    pub use crate::compile::Scheme;
+    pub use crate::compile::{Scheme, Tapes};
 }
 
 pub mod elements {

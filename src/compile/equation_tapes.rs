@@ -4,6 +4,7 @@ use symdiff::{Expr, Graph, Lowered, SparseMatrix, Tape, lower};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
+use super::tapes::Tapes;
 use crate::assemble::System;
 
 /// A matrix's entries: (row, column, register).
@@ -37,22 +38,13 @@ const JACOBIAN: usize = 2;
 const OBSERVE: usize = 3;
 const GIVEN: usize = 4;
 
+impl Tapes for EquationsProgram {
+    fn lowered(&self) -> &Lowered {
+        &self.lowered
+    }
+}
+
 impl EquationsProgram {
-    /// Number of registers of a memory.
-    pub fn registers(&self) -> usize {
-        self.lowered.registers
-    }
-
-    /// Numbers that a new memory holds.
-    pub fn constants(&self) -> &[(u32, f64)] {
-        &self.lowered.constants
-    }
-
-    /// Once for a box of parameters.
-    pub fn sample(&self) -> &Tape {
-        &self.lowered.stages[0]
-    }
-
     /// The equations of motion and Φ.
     pub fn residual(&self) -> &Tape {
         &self.lowered.kernels[RESIDUAL]

@@ -23,6 +23,7 @@ mod start_equations;
 mod start_program;
 mod step;
 mod switches;
+mod tapes;
 
 pub use equation_tapes::{EquationsProgram, compile_equations};
 pub use equations::{ClosureRow, Equation, time_derivative};
@@ -36,3 +37,4 @@ pub use start_equations::Residual;
 pub use start_program::StartProgram;
 pub use step::compile;
 pub use switches::{Switch, SwitchProgram, compile_switches};
+pub use tapes::Tapes;

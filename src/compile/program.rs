@@ -4,6 +4,7 @@ use symdiff::{Lowered, Tape};
 
 use super::layout::Layout;
 use super::scheme::Coefficients;
+use super::tapes::Tapes;
 
 /// A state that guides the choice of pivots: values of the layout's registers, at a step size.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,22 +83,13 @@ pub(super) const OBSERVE: usize = 3;
 pub(super) const MATRIX: usize = 4;
 pub(super) const ESTIMATE: usize = 5;
 
+impl Tapes for Program {
+    fn lowered(&self) -> &Lowered {
+        &self.lowered
+    }
+}
+
 impl Program {
-    /// Number of registers of a tile.
-    pub fn registers(&self) -> usize {
-        self.lowered.registers
-    }
-
-    /// Numbers that a new tile holds.
-    pub fn constants(&self) -> &[(u32, f64)] {
-        &self.lowered.constants
-    }
-
-    /// Once a sample: what depends on parameters only.
-    pub fn sample(&self) -> &Tape {
-        &self.lowered.stages[0]
-    }
-
     /// Once after a change of h.
     pub fn step_size(&self) -> &Tape {
         &self.lowered.stages[1]

@@ -5,6 +5,7 @@ use symdiff::{Lowered, Tape};
 use super::layout::Layout;
 use super::nearest::OpenStart;
 use super::start_equations::Residual;
+use super::tapes::Tapes;
 
 /// Tapes for the start of a tile of samples; states and corrections are in the registers of [`Layout`].
 #[derive(Clone, Debug)]
@@ -34,22 +35,13 @@ pub(super) const JACOBIAN: usize = 5;
 pub(super) const OBSERVE: usize = 6;
 const PROJECTION: usize = 7;
 
+impl Tapes for StartProgram {
+    fn lowered(&self) -> &Lowered {
+        &self.lowered
+    }
+}
+
 impl StartProgram {
-    /// Number of registers of a tile.
-    pub fn registers(&self) -> usize {
-        self.lowered.registers
-    }
-
-    /// Numbers that a new tile holds.
-    pub fn constants(&self) -> &[(u32, f64)] {
-        &self.lowered.constants
-    }
-
-    /// Once a sample.
-    pub fn sample(&self) -> &Tape {
-        &self.lowered.stages[0]
-    }
-
     /// Sets the positions and velocities that are given.
     pub fn given(&self) -> &Tape {
         &self.lowered.kernels[GIVEN]

@@ -8,6 +8,7 @@ use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Unary, lower};
 
 use super::equations::time_derivative;
 use super::layout::Layout;
+use super::tapes::Tapes;
 use crate::assemble::System;
 
 /// The switches of a system over the registers of [`Layout`]. A switch is where one of its values changes its sign.
@@ -31,22 +32,13 @@ pub struct Switch {
     pub jumps_with: Vec<usize>,
 }
 
+impl Tapes for SwitchProgram {
+    fn lowered(&self) -> &Lowered {
+        &self.lowered
+    }
+}
+
 impl SwitchProgram {
-    /// Number of registers of a tile.
-    pub fn registers(&self) -> usize {
-        self.lowered.registers
-    }
-
-    /// Numbers that a new tile holds.
-    pub fn constants(&self) -> &[(u32, f64)] {
-        &self.lowered.constants
-    }
-
-    /// Once a sample.
-    pub fn sample(&self) -> &Tape {
-        &self.lowered.stages[0]
-    }
-
     /// Values and rates at a state.
     pub fn evaluate(&self) -> &Tape {
         &self.lowered.kernels[0]

@@ -10,7 +10,7 @@ use super::error::{SimulationError, no_factors};
 use super::simulator::Simulator;
 use super::start::{Assembly, allowed_residual, free_columns};
 use crate::assemble::System;
-use crate::compile::{StartProgram, compile_start};
+use crate::compile::{StartProgram, Tapes, compile_start};
 
 /// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow without
 /// bound, so that they determine the configuration over whole turns.

@@ -11,7 +11,7 @@ use super::control::{Controller, Schedule};
 use super::ensemble::{EnsembleRun, Observed};
 use super::error::SimulationError;
 use super::simulator::Simulator;
-use crate::compile::SwitchProgram;
+use crate::compile::{SwitchProgram, Tapes};
 use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes};
 
 /// Degree of the motions' polynomials by the number of parameters; more than these are not looked at.

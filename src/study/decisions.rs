@@ -4,6 +4,7 @@ use symdiff::{Formula, Input, lower};
 
 use super::formulation::{as_chosen, compiled, instructions};
 use super::subsystems::{Prepared, prepare};
+use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};
 use crate::reduce::{Choices, Reduction};
 use crate::results::{Decision, Each, Saving};

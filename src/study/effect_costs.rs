@@ -89,6 +89,7 @@ fn difference(with: &Simulator, without: &Simulator) -> EffectCost {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compile::Tapes;
 
     #[test]
     fn every_effect_has_its_cost() {

@@ -4,7 +4,7 @@ use super::RunError;
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::subsystems::{Prepared, prepare};
-use crate::compile::Program;
+use crate::compile::{Program, Tapes};
 use crate::model::Description;
 use crate::reduce::Choices;
 use crate::results::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};

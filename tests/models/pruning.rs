@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use mbint::inner::compile::Tapes;
 use mbint::inner::export::bounds_csv;
 use mbint::inner::model::{self, Description};
 use mbint::inner::results::{Bounds, Method};

@@ -2,7 +2,7 @@
 
 use symdiff::Tile;
 
-use crate::compile::{Switch, SwitchProgram};
+use crate::compile::{Switch, SwitchProgram, Tapes};
 use crate::simulate::step::Stepper;
 
 /// A cubic's first root is searched for at this many points between the ends of a step, and then by bisection.

@@ -34,7 +34,7 @@ use symdiff::{Interval, ModelMemory};
 
 use super::control::Schedule;
 use super::simulator::Simulator;
-use crate::compile::{Coefficients, EquationsProgram, compile_equations};
+use crate::compile::{Coefficients, EquationsProgram, Tapes, compile_equations};
 use frame::{Frame, Units};
 use matrix::Models;
 

@@ -7,6 +7,7 @@
 use symdiff::{JetMemory, jet::JetSpace};
 
 use super::run::Stop;
+use crate::compile::Tapes;
 use crate::simulate::control::Schedule;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;

@@ -6,6 +6,7 @@
 
 use symdiff::Tile;
 
+use crate::compile::Tapes;
 use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{StepFailure, Stepper};

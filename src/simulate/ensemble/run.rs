@@ -6,6 +6,7 @@ use symdiff::WIDTHS;
 use super::lane_steps::LaneSteps;
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
+use crate::compile::Tapes;
 use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};

@@ -3,7 +3,7 @@
 use symdiff::{Tape, Tile};
 
 use crate::assemble::System;
-use crate::compile::{ClosureRow, Residual, StartProgram};
+use crate::compile::{ClosureRow, Residual, StartProgram, Tapes};
 
 /// Corrections of a tile's start before a lane is given up.
 const MAX_CORRECTIONS: usize = 40;

@@ -3,7 +3,7 @@
 use symdiff::Tile;
 
 use crate::assemble::System;
-use crate::compile::{Layout, PIVOT_SAMPLES, PivotSample, compile_start};
+use crate::compile::{Layout, PIVOT_SAMPLES, PivotSample, Tapes, compile_start};
 
 /// How far pivot samples are moved from the nominal start, in coordinate scales.
 const PIVOT_SAMPLE_SPREAD: f64 = 0.7;

@@ -5,7 +5,7 @@ use symdiff::Tile;
 use super::general_position::move_apart;
 use super::rank::dependent_rows;
 use crate::assemble::System;
-use crate::compile::StartProgram;
+use crate::compile::{StartProgram, Tapes};
 
 /// Rows of Φ_q that are independent of the others by less than this (scaled) count as dependent.
 pub const DEPENDENT: f64 = 1e-8;

@@ -3,7 +3,7 @@
 use symdiff::Tile;
 
 use super::newton::{Counters, Newton};
-use crate::compile::Program;
+use crate::compile::{Program, Tapes};
 
 /// A step that fails is divided into 2, 4, … substeps, up to 2 to the power of this, before it is given up.
 const MAX_HALVINGS: u32 = 10;
