@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use super::RunError;
 use super::formulation::assembled;
+use crate::elements::Glyph;
 use crate::elements::effects::Scope;
 use crate::grammar::{Coordinate, PointRef, Reference};
 use crate::model::{Body, Description};
@@ -99,6 +100,21 @@ struct End {
     position: Vector3<f64>,
 }
 
+fn drawn_element(
+    (name, kind, glyph): (&str, &'static str, Glyph),
+    ends: &[End],
+    axis: Option<Vector3<f64>>,
+) -> DrawnElement {
+    DrawnElement {
+        name: name.to_owned(),
+        kind,
+        glyph,
+        ends: ends.iter().map(|end| end.position.into()).collect(),
+        bodies: ends.iter().map(|end| end.body).collect(),
+        axis: axis.map(Into::into),
+    }
+}
+
 impl Scene {
     /// The frame at a point, in the ground's.
     fn frame(&self, of: PointRef) -> Frame {
@@ -147,34 +163,22 @@ impl Scene {
     }
 
     fn elements(&mut self, directions: &[Option<AskedVector>]) -> Vec<DrawnElement> {
-        let joints = self.description.joints.len();
-        (0..directions.len())
-            .map(|place| {
-                let direction = directions[place].map(|direction| self.values.vector(direction));
-                let (ends, axis) = if place < joints {
-                    let first = self.description.joints[place].kind.between().map(|between| between[0]);
-                    let turned = first.map(|point| self.frame(point).rotation);
-                    (self.joint(place), direction.zip(turned).map(|(direction, turned)| turned * direction))
-                } else {
-                    (self.effect(place - joints), direction)
-                };
-                let (name, kind, glyph) = if place < joints {
-                    let joint = &self.description.joints[place];
-                    (&joint.name, joint.kind.keyword(), joint.kind.glyph())
-                } else {
-                    let effect = &self.description.effects[place - joints];
-                    (&effect.name, effect.kind.keyword(), effect.kind.glyph())
-                };
-                DrawnElement {
-                    name: name.clone(),
-                    kind,
-                    glyph,
-                    ends: ends.iter().map(|end| end.position.into()).collect(),
-                    bodies: ends.iter().map(|end| end.body).collect(),
-                    axis: axis.map(Into::into),
-                }
-            })
-            .collect()
+        let (of_joints, of_effects) = directions.split_at(self.description.joints.len());
+        let mut elements = Vec::with_capacity(directions.len());
+        for (index, direction) in of_joints.iter().enumerate() {
+            let ends = self.joint(index);
+            let joint = &self.description.joints[index];
+            let turned = joint.kind.between().map(|[first, _]| self.frame(first).rotation);
+            let axis = direction.zip(turned).map(|(direction, turned)| turned * self.values.vector(direction));
+            elements.push(drawn_element((&joint.name, joint.kind.keyword(), joint.kind.glyph()), &ends, axis));
+        }
+        for (index, direction) in of_effects.iter().enumerate() {
+            let ends = self.effect(index);
+            let effect = &self.description.effects[index];
+            let axis = direction.map(|direction| self.values.vector(direction));
+            elements.push(drawn_element((&effect.name, effect.kind.keyword(), effect.kind.glyph()), &ends, axis));
+        }
+        elements
     }
 
     /// The sum of what acts on every body.
