@@ -1,4 +1,4 @@
-//! What effects cost that act only sometimes: a scan of 1024 samples in lockstep, without them, with them far from touching,
+//! What conditional effects cost: a scan of 1024 samples in lockstep, without them, with them far from touching,
 //! and where some samples touch some of the time. Medians of the ratios to the bare model, with
 //! the quartiles.
 
@@ -95,8 +95,7 @@ fn main() {
             paired(PAIRS, [&|| ran(&bare), &|| ran(description)]);
         let program = prepare(description).expect("the model compiles").program;
         let tapes = [program.step(), program.factor(), program.correct(), program.advance()];
-        let [all, apart] =
-            [true, false].map(|touching| tapes.iter().map(|tape| tape.len_where(touching)).sum::<usize>());
+        let [all, apart] = [true, false].map(|active| tapes.iter().map(|tape| tape.len_where(active)).sum::<usize>());
         println!("{name:30} {seconds:8.3} {ratio:7.3} ({low:.3} to {high:.3}) {all:14} {apart:7}");
     }
 }

@@ -1,7 +1,7 @@
 //! What is not asked for costs nothing: a model with ten more bodies and a scene that leaves effects out against the bare one, and
 //! islands apart against the same in one.
 //!
-//! The median of the pairs' ratios is told, with the quartiles.
+//! The median of the pairs' ratios is printed, with the quartiles.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 

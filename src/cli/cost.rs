@@ -231,7 +231,7 @@ fn choice(study: &CostStudy) -> String {
         (Some(point), _) => format!("The cheapest setting within {wanted:e} is {}.", described(point)),
         (None, Some(point)) => {
             let nearest = format!("No setting meets {wanted:e}; the nearest is {}.", described(point));
-            // Of those that were not run, dearer ones are nearer.
+            // Of those that were not run, costlier ones are nearer.
             match study.left_out.iter().any(|left_out| left_out.contains("budget")) {
                 true => format!("{nearest} Others were left out: {more} allows them."),
                 false => format!(

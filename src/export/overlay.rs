@@ -107,7 +107,7 @@ mod tests {
             let RGBColor(r, g, b) = color(place);
             assert!(svg.contains(&format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"")), "{name}");
         }
-        // Chebyshev is the method of those that have one, the third has none: so it is told.
+        // Chebyshev is the method of those that have one, the third has none, and the legend says so.
         for text in ["ideal (chebyshev)", "with friction (chebyshev)", "bare", "x3 [m]", "bound − nominal"] {
             assert!(svg.contains(text), "{text}");
         }

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use crate::numerics::{SparseWork, Surrogate, SurrogateWork};
 
-    /// What is told, and the largest true error.
+    /// The stated error, and the largest true error.
     fn told(n: usize, f: impl Fn(f64) -> f64) -> (f64, f64) {
         let surrogate = Surrogate::tensor(&[n], &[n + 1]);
         let values: Vec<f64> = surrogate.samples().iter().map(|xi| f(xi[0])).collect();

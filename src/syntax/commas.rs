@@ -1,5 +1,5 @@
 //! Formulas that YAML cuts at their commas: between braces, `torque: max(a, b)` is `torque: max(a`, and a key `b)`. The pieces are
-//! put together again, so that what is told is the comma, and not what follows from it.
+//! put together again, so that the message is about the comma, and not what follows from it.
 
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::source::Span;
@@ -36,7 +36,7 @@ fn is_open(node: &Node) -> bool {
     node.scalar().is_some_and(|scalar| scalar.plain && depth(&scalar.text))
 }
 
-/// A text and the piece behind its comma; where the last parenthesis closes, the comma is told.
+/// A text and the piece behind its comma; where the last parenthesis closes, the comma is reported.
 fn together(text: &str, first: &Node, second: &Span, diagnostics: &mut Diagnostics) -> Node {
     let span = first.span.start..second.end.max(first.span.end);
     let written = text.get(span.clone()).unwrap_or("").trim_end();

@@ -234,7 +234,7 @@ impl Builder<'_, '_> {
 
 /// The interval with a unit behind it, `[0.49, 0.51] m`, at which the text stops to be YAML.
 fn interval_before(text: &str, at: usize) -> Option<&str> {
-    // The error is told at the unit, or at what comes behind it.
+    // The error stands at the unit, or at what comes behind it.
     let start_of_line = text[..at].trim_end().rfind('\n').map_or(0, |newline| newline + 1);
     let end_of_line = text[at..].find('\n').map_or(text.len(), |newline| at + newline);
     let line = &text[start_of_line..end_of_line];

@@ -43,7 +43,7 @@ simulation: {{ duration: 0.3, step: 1e-3, output_step: 0.01 }}
 /// A pendulum whose pin rubs: the load hangs on the acceleration, which hangs on the friction. The same two equations,
 /// solved by iteration and integrated by Runge and Kutta's scheme.
 #[test]
-fn a_pendulum_with_a_rubbing_pin_agrees_with_runge_kutta() {
+fn a_pendulum_with_friction_in_its_pin_agrees_with_runge_kutta() {
     let (m, l, inertia, g, mu, r, u0) = (2.0_f64, 0.4_f64, 0.05_f64, 9.81_f64, 0.4_f64, 0.05_f64, 0.05_f64);
     let description = read(&format!(
         "

@@ -37,9 +37,9 @@ fn floors(count: usize) -> Description {
 }
 
 /// Instructions of a step with one correction, where everything touches or nothing does.
-fn instructions(simulator: &Simulator, touching: bool) -> usize {
+fn instructions(simulator: &Simulator, active: bool) -> usize {
     let p = &simulator.program;
-    [p.step(), p.factor(), p.correct(), p.advance()].map(|tape: &Tape| tape.len_where(touching)).into_iter().sum()
+    [p.step(), p.factor(), p.correct(), p.advance()].map(|tape: &Tape| tape.len_where(active)).into_iter().sum()
 }
 
 /// Bare, and then a few instructions for each contact: its gap and the greatest of the gaps, when the matrix is factorised and
@@ -51,7 +51,7 @@ fn a_far_contact_is_its_gap() {
     let mut before = instructions(&bare, true);
     for count in [1, 2, 4, 16] {
         let simulator = prepare(&floors(count)).unwrap();
-        let [all, apart] = [true, false].map(|touching| instructions(&simulator, touching));
+        let [all, apart] = [true, false].map(|active| instructions(&simulator, active));
         println!("{count} contacts: {all} instructions, {apart} while apart, {before} before");
         assert!(all > instructions(&bare, true) + 30 * count, "{count}: {all}");
         assert!(apart <= instructions(&bare, true) + 8 + 10 * count, "{count}: {apart}");
@@ -94,7 +94,7 @@ fn agrees_with_samples_alone(description: &Description, width: usize, steps: usi
         together.observe(&mut observed);
         let state = together.save();
         let registers = state.len() / width;
-        let mut touching = 0;
+        let mut active = 0;
         for (lane, alone) in alone.iter_mut().enumerate() {
             assert!(alone.step(STEP, end).is_empty(), "step {step}, lane {lane}");
             for (register, value) in alone.save().iter().enumerate() {
@@ -110,10 +110,10 @@ fn agrees_with_samples_alone(description: &Description, width: usize, steps: usi
                 assert_eq!(observed[output * width + lane].to_bits(), value.to_bits(), "step {step}, lane {lane}");
             }
             // The last output is what pushes.
-            touching += usize::from(one[outputs - 1] != 0.0);
+            active += usize::from(one[outputs - 1] != 0.0);
         }
-        touched += touching;
-        mixed += usize::from(touching > 0 && touching < width);
+        touched += active;
+        mixed += usize::from(active > 0 && active < width);
     }
     (mixed, touched)
 }

@@ -1,4 +1,4 @@
-//! `mbint snapshot`: what is recorded beside a model, and what is told when it moves.
+//! `mbint snapshot`: what is recorded beside a model, and what is reported when it moves.
 
 use std::fs;
 

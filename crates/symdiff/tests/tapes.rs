@@ -93,12 +93,12 @@ fn blocks_are_skipped_where_no_lane_wants_them() {
     // Apart, the sum is all there is; it stands where the block would put its choice, and is copied to x at the end.
     assert_eq!((tape.len_where(false), tape.len_where(true), tape.len()), (2, 24, 24), "{tape:?}");
     for width in WIDTHS {
-        for touching in 0..=width.min(2) {
+        for active in 0..=width.min(2) {
             let mut tile = Tile::new(width, lowered.registers, &lowered.constants);
             // What a block leaves behind may be anything.
             tile.values_mut()[3 * width..].fill(f64::NAN);
             lowered.constants.iter().for_each(|&(register, value)| tile.lane_mut(register as usize).fill(value));
-            let at = |lane: usize| [if lane < touching { 0.5 } else { -0.0 }, lane as f64 - 3.0, 1.0];
+            let at = |lane: usize| [if lane < active { 0.5 } else { -0.0 }, lane as f64 - 3.0, 1.0];
             for lane in 0..width {
                 at(lane).into_iter().enumerate().for_each(|(register, value)| tile.lane_mut(register)[lane] = value);
             }

@@ -13,7 +13,7 @@ const STARTS: (usize, usize) = (24, 2);
 const APART: f64 = 0.5;
 /// With a neighbour's extremes, other starts are tried that are within this share of the range of the best.
 const PROMISING: f64 = 0.05;
-/// Local extremes, beside the best, whose places a neighbour is told.
+/// Local extremes, beside the best, whose places a neighbour starts from.
 const OTHERS: usize = 4;
 
 /// The largest value of a function (sign 1), or of its negative.

@@ -1,4 +1,4 @@
-//! Nonlinear oscillators: coupled, with parameters that change in time, rubbing, knocking.
+//! Nonlinear oscillators: coupled, with parameters that change in time, stick-slip, posts.
 
 use std::f64::consts::{PI, TAU};
 

@@ -286,7 +286,7 @@ impl<'r> Row<'r> {
     /// What of an output is too small a difference to be one.
     fn rounding(&self, output: usize) -> f64 {
         let range = Range::of(self.own_samples(output));
-        // Of what is not a number nothing is known.
+        // Where it is NaN, nothing is known.
         ROUNDING * range.lower.abs().max(range.upper.abs()).max(0.0)
     }
 
