@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::polyline::Point;
+use super::figure::path::Point;
 
 /// plotters draws on whole pixels, which makes stairs of slanted lines: draw this much larger and let the SVG's view
 /// box scale it back.

@@ -4,9 +4,9 @@ use csv::WriterBuilder;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::axis::Axis;
 use super::canvas::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, svg, text_style, text_width};
 use super::csv::number;
+use super::figure::axis::Axis;
 use crate::results::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.
@@ -66,7 +66,7 @@ pub fn contributions_svg(times: &[f64], name: &str, contributions: &[Contributio
 fn draw(canvas: &Canvas, times: &[f64], name: &str, contributions: &[Contribution]) -> Drawn {
     canvas.fill(&WHITE)?;
     let (right, bottom) = (f64::from(SIZE.0) - RIGHT, f64::from(SIZE.1) - BOTTOM);
-    let time = Axis::fit(times.iter().copied(), 9, 0.0);
+    let time = Axis::fit(times.iter().copied(), "s", 9, 0.0, 0.0);
     let across = |t: f64| LEFT + time.place(t) * (right - LEFT);
     let up = |share: f64| bottom - share.clamp(0.0, 1.0) * (bottom - TOP);
     let line = |points: &[(f64, f64)], color: RGBColor| {
@@ -111,7 +111,7 @@ fn draw(canvas: &Canvas, times: &[f64], name: &str, contributions: &[Contributio
         text(&format!("{percent} %"), (LEFT - 7.0, y), HPos::Right, VPos::Center)?;
     }
     line(&[(LEFT, TOP), (right, TOP), (right, bottom), (LEFT, bottom), (LEFT, TOP)], FRAME)?;
-    text(&time.title("t", "s"), ((LEFT + right) / 2.0, bottom + 27.0), HPos::Center, VPos::Top)?;
+    text(&time.title("t"), ((LEFT + right) / 2.0, bottom + 27.0), HPos::Center, VPos::Top)?;
     text(&format!("share of {name}'s variance"), (right, TOP - 19.0), HPos::Right, VPos::Center)
 }
 

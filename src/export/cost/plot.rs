@@ -6,10 +6,10 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::log_axis::LogAxis;
 use crate::compile::Scheme;
 use crate::export::canvas::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, svg, text_style};
-use crate::export::polyline::Point;
+use crate::export::figure::log_axis::LogAxis;
+use crate::export::figure::path::Point;
 use crate::results::{CostMethod, CostPoint, CostStudy, cost_curves, pareto};
 
 /// Size on the page, px.
