@@ -40,8 +40,7 @@ pub fn write_results(
         let svg = plot_svg(caption, &bounds.times, output, noise(bounds, output))?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
         if let Some(contributions) = contributions {
-            let svg = contributions_svg(&bounds.times, &output.name, contributions)
-                .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
+            let svg = contributions_svg(caption, &bounds.times, &output.name, contributions)?;
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }

@@ -1,6 +1,5 @@
 //! Bounds → files: CSV, summary and plots.
 
-mod canvas;
 mod columns;
 mod contributions;
 mod cost;

@@ -80,7 +80,8 @@ impl Entry {
         SIGN + 7.0 + text_width(&self.label) + 22.0
     }
 
-    fn drawn(&self, (x, y): Point) -> Group {
+    /// The entry, its left end at a point.
+    pub fn drawn(&self, (x, y): Point) -> Group {
         let key = Group::new().set("data-group", self.group.clone()).add(Title::new(self.label.clone()));
         let label = text(&self.label, (x + SIGN + 7.0, y), Anchor::Start);
         let rectangle = |half: f64, right: f64| {

@@ -157,11 +157,27 @@ impl Panel<'_> {
             side.iter().zip(&band.error.total).map(|(bound, error)| bound + sign * error).collect()
         };
         let (lower, upper) = (apart(&band.lower, -1.0), apart(&band.upper, 1.0));
-        let opacity = LIGHTER * style.fill;
-        let runs = runs([times, &lower, &upper]);
-        runs.into_iter().fold(Hue::Color(style.color).paint(series(named), "series"), |group, rows| {
-            let outline = self.outline(times, [&lower, &upper], rows);
-            group.add(Path::new().set("class", "area").set("d", outline + "z").set("fill-opacity", rounded(opacity)))
+        self.areas(named, times, [&lower, &upper], style.color, "area", rounded(LIGHTER * style.fill))
+    }
+
+    /// A layer of a stack: what lies between two curves.
+    pub fn layer(&self, named: Named, times: &[f64], sides: [&[f64]; 2], color: Color) -> Group {
+        self.areas(named, times, sides, color, "layer", 1.0)
+    }
+
+    fn areas(
+        &self,
+        named: Named,
+        times: &[f64],
+        sides: [&[f64]; 2],
+        color: Color,
+        class: &str,
+        opacity: f64,
+    ) -> Group {
+        let pieces = runs([times, sides[0], sides[1]]).into_iter().filter(|rows| rows.len() > 1);
+        pieces.fold(Hue::Color(color).paint(series(named), "series"), |group, rows| {
+            let outline = self.outline(times, sides, rows) + "z";
+            group.add(Path::new().set("class", class).set("d", outline).set("fill-opacity", opacity))
         })
     }
 

@@ -15,6 +15,7 @@ pub const STYLE: &str = "
 .mbint-figure .line { stroke: currentColor; fill: none; stroke-linejoin: round; vector-effect: non-scaling-stroke; }
 .mbint-figure .band { stroke: currentColor; fill: currentColor; stroke-linejoin: round; vector-effect: non-scaling-stroke; }
 .mbint-figure .area { fill: currentColor; stroke: none; }
+.mbint-figure .layer { fill: currentColor; stroke: #fff; stroke: var(--mb-paper); stroke-width: 0.7; }
 .mbint-figure .hollow { fill: #fff; fill: var(--mb-paper); stroke: currentColor; }
 .mbint-figure .limit { stroke: #c00; stroke: var(--mb-limit, #c00); stroke-width: 1.5; stroke-dasharray: 7 3; fill: none; }
 .mbint-figure .forbidden { fill: #c00; fill: var(--mb-limit, #c00); fill-opacity: 0.08; }
