@@ -1,5 +1,6 @@
 //! The typed model: what a file says, checked, with every name resolved and every number in SI units.
 
+mod analysis;
 mod body;
 mod index;
 mod robot;
@@ -12,6 +13,7 @@ use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
+pub use analysis::Analysis;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
 pub use robot::{RobotTree, TreeJoint, TreeLink};
@@ -42,6 +44,10 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// In file order.
     pub effects: Vec<Effect>,
+    /// What is done with it.
+    pub analysis: Analysis,
+    /// Whether the start is an equilibrium, near where assembly begins to look.
+    pub starts_at_equilibrium: bool,
     /// Coordinates and velocities that are kept at the start, with their values.
     pub initial: Vec<StartValue>,
     /// Where assembly begins to look for the others.
@@ -154,6 +160,8 @@ impl Description {
             beams: Vec::new(),
             joints: Vec::new(),
             effects: Vec::new(),
+            analysis: Analysis::Motion,
+            starts_at_equilibrium: false,
             initial: Vec::new(),
             guess: Vec::new(),
             outputs: Vec::new(),

@@ -10,6 +10,7 @@ mod references;
 
 mod file;
 
+mod analysis;
 mod beams;
 mod bodies;
 mod bounds;

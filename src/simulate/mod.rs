@@ -21,9 +21,11 @@ mod error;
 mod modes;
 mod simulator;
 mod start;
+mod statics;
 mod step;
 mod time_functions;
 mod unmet_switch;
+mod visit;
 
 pub use closure::{Closure, Points, choose_independent};
 pub use control::{Controller, Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
@@ -35,4 +37,5 @@ pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
+pub use visit::Visit;
 pub use unmet_switch::unmet_switch;

@@ -40,7 +40,7 @@ impl<'a> Progress<'a> {
         Self { done: AtomicUsize::new(0), total, report }
     }
 
-    fn advance(&self, work: usize) {
+    pub fn advance(&self, work: usize) {
         let done = self.done.fetch_add(work, Ordering::Relaxed) + work;
         (self.report)((done as f64 / self.total as f64).min(1.0));
     }
@@ -48,15 +48,15 @@ impl<'a> Progress<'a> {
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
-    simulator: &'a Simulator,
-    domain: &'a ParameterBox,
-    schedule: &'a Schedule,
+    pub(super) simulator: &'a Simulator,
+    pub(super) domain: &'a ParameterBox,
+    pub(super) schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
     tolerance: Option<Controller>,
-    progress: &'a Progress<'a>,
-    interrupted: &'a (dyn Fn() -> bool + Sync),
+    pub(super) progress: &'a Progress<'a>,
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Simulations that are over: at the end, or where they stopped.
-    over: AtomicUsize,
+    pub(super) over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
 }
@@ -88,6 +88,16 @@ impl<'a> Motions<'a> {
     pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
+        if self.simulator.system.analysis.is_without_steps() {
+            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+            let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
+                for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
+                    let value = values[row * outputs + output];
+                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
+                }
+            })?;
+            return Ok((bands.finish(1, simulated), Vec::new()));
+        }
         let sample = std::slice::from_ref(&self.domain.nominal);
         let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
         let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
@@ -151,7 +161,7 @@ fn effort(counters: Counters) -> Effort {
     Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
 }
 
-fn stopped_at(stop: &Stop) -> methods::Stop {
+pub(super) fn stopped_at(stop: &Stop) -> methods::Stop {
     let cause = match stop.open {
         _ if stop.singular => StopCause::SingularJet,
         Some(OpenConstraint { constraint, residual }) => StopCause::Locked { constraint, residual },
@@ -205,6 +215,9 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
+        if self.simulator.system.analysis.is_without_steps() {
+            return Ok(self.visit(samples, sampling, reduce)?);
+        }
         let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
         Ok(self.advance(&mut run, samples, sampling, reduce))
     }
@@ -213,6 +226,9 @@ impl Ensemble for Motions<'_> {
         let parameters = 0..self.domain.dimension();
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
+        if self.simulator.system.analysis.is_without_steps() {
+            return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
+        }
         let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
         if self.tolerance.is_some() {
             jet = jet.controlled();
@@ -236,6 +252,12 @@ impl Ensemble for Motions<'_> {
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {
+        if self.simulator.system.analysis.is_without_steps() {
+            return Some(format!("`analysis: {}`", self.simulator.system.analysis.name()));
+        }
+        if self.simulator.equilibrium.is_some() {
+            return Some("a start at an equilibrium".to_owned());
+        }
         let effect = self.simulator.system.effects.iter().find(|effect| !effect.enclosed)?;
         Some(format!("effect {} ({})", effect.name, effect.kind))
     }
@@ -267,6 +289,10 @@ impl Ensemble for Motions<'_> {
     }
 
     fn scales(&self) -> &[f64] {
+        // Nothing is composed from coordinates then.
+        if self.simulator.system.analysis.is_without_steps() {
+            return &[];
+        }
         &self.simulator.program.scale
     }
 

@@ -25,6 +25,7 @@ mod single;
 mod step_search;
 mod steps;
 mod subsystems;
+mod visits;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;

@@ -37,9 +37,10 @@ type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
+    let has_steps = !simulator.system.analysis.is_without_steps();
     Problem {
         parameters,
-        composes: can_compose(parameters, simulator.system.q.len()),
+        composes: has_steps && can_compose(parameters, simulator.system.q.len()),
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
         tolerance: description.bounds.tolerance,
     }
@@ -64,7 +65,9 @@ impl<'a> Study<'a> {
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
-        let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
+        let has_steps = !simulator.system.analysis.is_without_steps();
+        let time_functions =
+            if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
         Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, interrupted })
     }
 
@@ -221,7 +224,7 @@ impl<'a> Study<'a> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<usize>, SimulationError> {
-        if (self.interrupted)() {
+        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
         let found = caught("the search for switches", || {

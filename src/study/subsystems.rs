@@ -12,7 +12,7 @@ use super::price::Price;
 use super::single::Study;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
-use crate::model::{Description, Formulation, ParameterValue};
+use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::{Choices, Reduction, Subsystem, narrow};
 use crate::results::{
@@ -100,7 +100,9 @@ fn as_far_as_joints_go<T>(
 /// # Errors
 /// As for any run.
 pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
+    // Stability and modes are those of the whole.
+    let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);
     let count = prepared.len();
@@ -209,9 +211,18 @@ impl<'a> Whole<'a> {
                 outputs[output] = Some(bounds);
             }
         }
+        // What an analysis adds to the model's outputs comes last.
+        let further = |done: &Done| done.bounds.outputs[done.subsystem.outputs.len()..].to_vec();
+        let outputs = outputs.into_iter().flatten().chain(ran.iter().flat_map(further)).collect();
+        if known {
+            contributions.extend(ran.iter().flat_map(|done| {
+                let own = done.subsystem.outputs.len()..done.bounds.outputs.len();
+                own.map(|place| self.contributions(done, place, &done.bounds.outputs[place])).collect::<Vec<_>>()
+            }));
+        }
         let bounds = Bounds {
             times,
-            outputs: outputs.into_iter().flatten().collect(),
+            outputs,
             contributions: if known { contributions } else { Vec::new() },
             covered: ran
                 .iter()

@@ -35,7 +35,7 @@ const APART: f64 = 0.5;
 
 /// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
 pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
-    parameters > 0 && coordinates <= MOST_COORDINATES
+    parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
 }
 
 /// One mechanism's closures, and what is evaluated through them.
