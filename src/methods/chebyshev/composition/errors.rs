@@ -21,7 +21,7 @@ impl Row<'_> {
         range_search: &RangeSearch,
         (points, direct): (&[Vec<f64>], &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() {
             return vec![f64::NAN; extents.len()];
@@ -47,7 +47,7 @@ impl Row<'_> {
         range_search: &RangeSearch,
         (direct, halved): (&ValidationTable, &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; extents.len()];
