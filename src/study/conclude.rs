@@ -214,6 +214,8 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .collect(),
         errors: ErrorSummary::of(bounds),
         contributions: ContributionSummary::of(bounds),
+        reduced: Vec::new(),
+        requirements: Vec::new(),
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),
