@@ -76,7 +76,7 @@ pub struct NearestCase {
     pub time: Option<f64>,
     /// Whether every parameter is at an end of its interval.
     pub corner: bool,
-    /// Arguments that give a run these parameters: `--set l1=0.15`.
+    /// Settings that give a run these parameters, for `--set`: `l1=0.15 m`.
     pub settings: Vec<String>,
     /// The command that shows it; empty where the model is of no file.
     #[serde(skip_serializing_if = "String::is_empty")]
