@@ -22,6 +22,7 @@ mod internal;
 mod kept;
 mod outcome;
 mod price;
+mod reduced;
 mod single;
 mod step_search;
 mod steps;
@@ -113,8 +114,9 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    let (bounds, summary, _) = pool.install(|| subsystems::run(description, &options, false))?;
-    Ok((bounds, summary))
+    let model = reduced::expanded(description);
+    let (bounds, summary, _) = pool.install(|| subsystems::run(&model, &options, false))?;
+    Ok(reduced::shown(description, (bounds, summary)))
 }
 
 /// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with
@@ -124,7 +126,10 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 /// As for [`run`].
 pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| subsystems::run(description, &options, true))
+    let model = reduced::expanded(description);
+    let (bounds, summary, kept) = pool.install(|| subsystems::run(&model, &options, true))?;
+    let (bounds, summary) = reduced::shown(description, (bounds, summary));
+    Ok((bounds, summary, kept))
 }
 
 /// A compiled model: of what `run` simulates, all in one.

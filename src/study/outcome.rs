@@ -2,6 +2,7 @@
 
 use super::internal::InternalError;
 use super::kept::KeptPart;
+use super::reduced::Found;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
@@ -31,6 +32,8 @@ pub(super) struct Results {
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.
     pub internal: Vec<InternalError>,
+    /// What is one number a motion.
+    pub found: Found,
 }
 
 impl Results {

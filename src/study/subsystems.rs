@@ -105,8 +105,9 @@ pub(super) fn run(
     options: &Options,
     keep: bool,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
-    // Stability and modes are those of the whole.
-    let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
+    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
     let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);
