@@ -9,6 +9,7 @@ mod explanation;
 mod merge;
 mod peaks;
 mod provenance;
+mod structure;
 mod summary;
 
 pub use crate::methods::Method;
@@ -23,6 +24,7 @@ pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut
 pub use merge::Piece;
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
+pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,
