@@ -1,8 +1,8 @@
 //! `analysis:`, `initial: equilibrium`, and what cannot be asked then.
 
 use super::description::{Analysis, Description, Stepping};
-use crate::grammar::reader::Fields;
 use crate::grammar::Symbol;
+use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node};

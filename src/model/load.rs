@@ -250,7 +250,11 @@ fn describe(
     requests::outputs(&mut reader, output_entries);
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     analysis::check_outputs(&mut reader, output_entries);
-    let simulation = if analysis::needs_time(&reader.model) { reader.required(&fields, "simulation") } else { fields.get("simulation") };
+    let simulation = if analysis::needs_time(&reader.model) {
+        reader.required(&fields, "simulation")
+    } else {
+        fields.get("simulation")
+    };
     if let Some(node) = simulation {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }

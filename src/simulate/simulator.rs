@@ -15,8 +15,8 @@ use super::statics::Equilibrium;
 use super::visit::further_outputs;
 use crate::assemble::System;
 use crate::compile::{
-    Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
-    compile_start, compile_switches,
+    Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
+    compile_switches,
 };
 use crate::model::Analysis;
 use crate::numerics::Sample;

@@ -26,6 +26,7 @@ mod reduced;
 mod single;
 mod step_search;
 mod steps;
+mod structure;
 mod subsystems;
 mod visits;
 
@@ -47,6 +48,7 @@ pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
 pub use price::Price;
+pub use structure::structure;
 
 /// How to run.
 pub struct Options<'a> {
@@ -146,14 +148,6 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
-}
-
-/// A whole model assembled, with the parts that no output depends on, and nothing merged: for checking it.
-///
-/// # Errors
-/// As for [`run`].
-pub fn assemble_whole(description: &Description) -> Result<Assembled, RunError> {
-    formulation::assembled(description)
 }
 
 /// What is simulated of a model, assembled: a part for each subsystem, as a run has them.

@@ -19,7 +19,9 @@ impl Study<'_> {
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
         let has_steps = !self.simulator.system.analysis.is_without_steps();
         match self.description.simulation.stepping {
-            Stepping::Fixed(_) if has_steps && !self.request.is_empty() => excited_modes(&self.simulator, schedule.longest_step()),
+            Stepping::Fixed(_) if has_steps && !self.request.is_empty() => {
+                excited_modes(&self.simulator, schedule.longest_step())
+            }
             _ => Vec::new(),
         }
     }

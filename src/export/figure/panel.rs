@@ -165,15 +165,7 @@ impl Panel<'_> {
         self.areas(named, times, sides, color, "layer", 1.0)
     }
 
-    fn areas(
-        &self,
-        named: Named,
-        times: &[f64],
-        sides: [&[f64]; 2],
-        color: Color,
-        class: &str,
-        opacity: f64,
-    ) -> Group {
+    fn areas(&self, named: Named, times: &[f64], sides: [&[f64]; 2], color: Color, class: &str, opacity: f64) -> Group {
         let pieces = runs([times, sides[0], sides[1]]).into_iter().filter(|rows| rows.len() > 1);
         pieces.fold(Hue::Color(color).paint(series(named), "series"), |group, rows| {
             let outline = self.outline(times, sides, rows) + "z";

@@ -5,10 +5,10 @@ use symdiff::jet::JetSpace;
 
 use crate::compile::{StartProgram, Tapes};
 use crate::model::Analysis;
+use crate::numerics::Sample;
 use crate::simulate::ensemble::Stop;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
-use crate::numerics::Sample;
 
 impl Simulator {
     /// The outputs' coefficients about `center`, row by row, output by output; the parameters' half widths are their first
