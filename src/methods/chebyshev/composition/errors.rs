@@ -13,6 +13,28 @@ const MOST_MOVED: usize = 4;
 /// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
 const FAR: f64 = 0.1;
 
+/// How motions are moved, to see what that does to outputs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Moves {
+    /// Lines, each by how much.
+    pub by: Vec<(usize, f64)>,
+    /// Coordinates, each along its velocity for so much time, s.
+    pub ahead: Vec<(usize, f64)>,
+}
+
+impl Moves {
+    /// All of these together, each so many times.
+    fn sum<'m>(moves: impl Iterator<Item = (&'m Moves, f64)>) -> Self {
+        let mut sum = Self::default();
+        for (moves, weight) in moves.filter(|(_, weight)| *weight != 0.0) {
+            let scaled = |&(line, amount): &(usize, f64)| (line, weight * amount);
+            sum.by.extend(moves.by.iter().map(scaled));
+            sum.ahead.extend(moves.ahead.iter().map(scaled));
+        }
+        sum
+    }
+}
+
 impl Row<'_> {
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
     /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
@@ -26,7 +48,10 @@ impl Row<'_> {
         if row >= direct.rows() {
             return vec![f64::NAN; extents.len()];
         }
-        let moved = self.moved(range_search, extents, &self.coordinate_errors(points, direct.motion(row)));
+        let errors = self.coordinate_errors(points, direct.motion(row));
+        let moves: Vec<Moves> =
+            errors.chunks_exact(2).map(|by| Moves { by: by.to_vec(), ..Moves::default() }).collect();
+        let moved = self.moved(range_search, extents, &moves);
         let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
             let simulated = direct.at(row, output);
             if expanded[output] {
@@ -42,6 +67,9 @@ impl Row<'_> {
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
     /// and with halved ones, move the ends.
+    ///
+    /// A coordinate that is too early or too late is so by about the same time over many turns. An end of a band that is full of turns
+    /// is at rest, and such a shift moves it by next to nothing. What of the errors is none may move an end wherever it is.
     pub fn step_errors(
         &self,
         range_search: &RangeSearch,
@@ -53,43 +81,49 @@ impl Row<'_> {
             return vec![f64::NAN; extents.len()];
         }
         let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        let moved = self.moved(range_search, extents, &errors);
+        let (mut apart, mut in_time) = (Vec::new(), Vec::new());
+        for pair in errors.chunks_exact(2) {
+            let (coordinate, velocity) = (pair[0].0, pair[1]);
+            let split = direct.time_shift(halved, row, coordinate);
+            in_time.extend(split.map(|split| Moves { ahead: vec![(coordinate, split.shift)], ..Moves::default() }));
+            let remainder = split.map_or(pair[0].1, |split| split.remainder);
+            apart.push(Moves { by: vec![(coordinate, remainder), velocity], ..Moves::default() });
+        }
+        let mut moved = self.moved(range_search, extents, &apart);
+        if !in_time.is_empty() {
+            let in_time = self.moved(range_search, extents, &in_time);
+            moved.iter_mut().zip(in_time).for_each(|(moved, in_time)| *moved += in_time);
+        }
         // Of what does not follow from coordinates, their errors say nothing.
         moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
     }
 
-    /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
+    /// How far moves of the independent coordinates, one for each, move the ends of the outputs' ranges.
     ///
     /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
     /// moved together: all one way, or every other one against the rest. Where that moves an end by little, the extreme stays where it
     /// is, to first order; else it is searched for again.
-    fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
-        let coordinates = errors.len() / 2;
-        let one_by_one = coordinates <= MOST_MOVED;
-        let rounds = if one_by_one { coordinates } else { 2 };
-        let weight = |round: usize, coordinate: usize| match (one_by_one, coordinate == round) {
+    fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {
+        let one_by_one = moves.len() <= MOST_MOVED;
+        let rounds = if one_by_one { moves.len() } else { 2 };
+        let weight = |round: usize, place: usize| match (one_by_one, place == round) {
             (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-            (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
+            (false, _) if round == 1 && place % 2 == 1 => -1.0,
             (false, _) => 1.0,
         };
-        let shift = |round: usize, sign: f64| -> Vec<(usize, f64)> {
-            let of_line = |(place, &(line, error)): (usize, &(usize, f64))| match weight(round, place / 2) {
-                0.0 => None,
-                weight => Some((line, sign * weight * error)),
-            };
-            errors.iter().enumerate().filter_map(of_line).collect()
+        let way = |round: usize, sign: f64| {
+            Moves::sum(moves.iter().enumerate().map(|(place, moves)| (moves, sign * weight(round, place))))
         };
-        let shifts: Vec<Vec<(usize, f64)>> =
-            (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| shift(round, sign))).collect();
+        let ways: Vec<Moves> = (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| way(round, sign))).collect();
         let mut moved = vec![0.0; found.len()];
-        let at_extremes = self.moved_at_extremes(found, &shifts);
-        for (shifts, at_extremes) in shifts.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
+        let at_extremes = self.moved_at_extremes(found, &ways);
+        for (ways, at_extremes) in ways.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
             let mut own = vec![0.0; found.len()];
-            for (shift, at_extremes) in shifts.iter().zip(at_extremes) {
+            for (way, at_extremes) in ways.iter().zip(at_extremes) {
                 own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
                 let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
                 let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
-                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), shift)) {
+                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), way)) {
                     let (from, to) = (found[output].range, shifted.range);
                     own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
                 }
@@ -101,32 +135,32 @@ impl Row<'_> {
         moved
     }
 
-    /// For each shift of lines, how far it moves every output at the places of its extremes.
-    fn moved_at_extremes(&self, found: &[Extent], shifts: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
+    /// For each way of moving, how far it moves every output at the places of its extremes.
+    fn moved_at_extremes(&self, found: &[Extent], ways: &[Moves]) -> Vec<Vec<f64>> {
         let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
-        let all: Vec<Vec<(usize, f64)>> = [Vec::new()].into_iter().chain(shifts.iter().cloned()).collect();
-        let values = self.evaluate_shifted(&places, &all);
-        let at = |output: usize, shift: usize, end: usize| {
-            values[(output * all.len() + shift) * places.len() + 2 * output + end]
+        let all: Vec<Moves> = [Moves::default()].into_iter().chain(ways.iter().cloned()).collect();
+        let values = self.evaluate_moved(&places, &all);
+        let at = |output: usize, way: usize, end: usize| {
+            values[(output * all.len() + way) * places.len() + 2 * output + end]
         };
         let of_output =
-            |shift: usize, output: usize| largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)));
-        (1..all.len()).map(|shift| (0..found.len()).map(|output| of_output(shift, output)).collect()).collect()
+            |way: usize, output: usize| largest([0, 1].map(|end| at(output, way, end) - at(output, 0, end)));
+        (1..all.len()).map(|way| (0..found.len()).map(|output| of_output(way, output)).collect()).collect()
     }
 
-    /// Ranges of some outputs with some lines shifted, near those that are known of all.
+    /// Ranges of some outputs with the motion moved, near those that are known of all.
     fn range_near(
         &self,
         range_search: &RangeSearch,
         (outputs, known): (&[usize], &[Extent]),
-        shift: &[(usize, f64)],
+        way: &Moves,
     ) -> Vec<Extent> {
         if outputs.is_empty() {
             return Vec::new();
         }
-        let shifts = [shift.to_vec()];
+        let ways = [way.clone()];
         let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
-            let values = self.evaluate_shifted(points, &shifts);
+            let values = self.evaluate_moved(points, &ways);
             outputs.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
         };
         let near = outputs.iter().map(|&output| &known[output]);

@@ -1,6 +1,7 @@
 //! Outputs at points of the box: the coordinates' polynomials, closed.
 
 use super::Row;
+use super::errors::Moves;
 use crate::numerics::{SparseWork, largest, surrogate_error, truncation};
 
 impl Row<'_> {
@@ -51,31 +52,35 @@ impl Row<'_> {
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        self.evaluate_shifted(points, &[Vec::new()])
+        self.evaluate_moved(points, &[Moves::default()])
     }
 
-    /// Every output with some lines shifted, output by output, shift by shift, point by point.
-    pub(super) fn evaluate_shifted(&self, points: &[Vec<f64>], shifts: &[Vec<(usize, f64)>]) -> Vec<f64> {
-        let lines = if self.closure.needs_velocities() { self.extent.len() } else { self.extent.len() / 2 };
-        let mut expanded = vec![0.0; lines * points.len()];
+    /// Every output with the motion moved in some ways, output by output, way by way, point by point.
+    pub(super) fn evaluate_moved(&self, points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
+        let n = self.extent.len() / 2;
+        let needs_velocities = self.closure.needs_velocities() || ways.iter().any(|moves| !moves.ahead.is_empty());
+        let mut expanded = vec![0.0; if needs_velocities { 2 * n } else { n } * points.len()];
         self.expand(points, &mut expanded);
-        let count = shifts.len() * points.len();
+        let count = ways.len() * points.len();
         let mut motion = vec![0.0; self.extent.len() * count];
         for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
-            for (place, shift) in shifts.iter().enumerate() {
-                let by: f64 = shift.iter().filter(|shift| shift.0 == line).map(|shift| shift.1).sum();
+            for (place, moves) in ways.iter().enumerate() {
+                let by: f64 = moves.by.iter().filter(|moved| moved.0 == line).map(|moved| moved.1).sum();
                 let into = &mut motion[line * count + place * points.len()..][..points.len()];
                 into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
+                for &(_, time) in moves.ahead.iter().filter(|ahead| ahead.0 == line) {
+                    let velocities = &expanded[(n + line) * points.len()..][..points.len()];
+                    into.iter_mut().zip(velocities).for_each(|(into, velocity)| *into += time * velocity);
+                }
             }
         }
         // Dependent coordinates are only a guess, and are kept within what the samples have.
-        let n = self.extent.len() / 2;
         for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(&self.extent).enumerate() {
             if !self.closure.independent().contains(&(line % n)) && low <= high {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
-        let all: Vec<Vec<f64>> = shifts.iter().flat_map(|_| points.iter().cloned()).collect();
+        let all: Vec<Vec<f64>> = ways.iter().flat_map(|_| points.iter().cloned()).collect();
         self.close(&all, motion)
     }
 
