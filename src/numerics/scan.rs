@@ -169,7 +169,7 @@ struct Along<'a> {
 const GROWTH: f64 = 1.5;
 const MOST_GROWTH: f64 = 8.0;
 
-/// The slope at the first of a row of samples is known to this share of their second difference, or better.
+/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is the second difference of three.
 const UNSURE: f64 = 0.25;
 
 impl Along<'_> {
@@ -188,7 +188,9 @@ impl Along<'_> {
     /// How far a smooth response may go below and above an inner sample; `None` at the ends.
     fn smooth(&self) -> Option<[f64; 2]> {
         let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
-        let height = (before - 2.0 * here + after).abs() / 8.0;
+        // Three samples do not tell how the second difference changes between them.
+        let unsure = if self.count == 3 { 1.0 + UNSURE } else { 1.0 };
+        let height = unsure * (before - 2.0 * here + after).abs() / 8.0;
         let lowest = here <= before && here <= after;
         let highest = here >= before && here >= after;
         Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])

@@ -80,22 +80,36 @@ impl Row<'_> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; extents.len()];
         }
-        let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        let (mut apart, mut in_time) = (Vec::new(), Vec::new());
-        for pair in errors.chunks_exact(2) {
-            let (coordinate, velocity) = (pair[0].0, pair[1]);
-            let split = direct.time_shift(halved, row, coordinate);
-            in_time.extend(split.map(|split| Moves { ahead: vec![(coordinate, split.shift)], ..Moves::default() }));
-            let remainder = split.map_or(pair[0].1, |split| split.remainder);
-            apart.push(Moves { by: vec![(coordinate, remainder), velocity], ..Moves::default() });
+        let mut errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
+        let mut in_time = Vec::new();
+        for (coordinate, error) in errors.iter_mut().step_by(2) {
+            if let Some(split) = direct.time_shift(halved, row, *coordinate) {
+                in_time.push(Moves { ahead: vec![(*coordinate, split.shift)], ..Moves::default() });
+                *error = split.remainder;
+            }
         }
-        let mut moved = self.moved(range_search, extents, &apart);
+        let mut moved = self.moved_by(range_search, extents, &errors);
         if !in_time.is_empty() {
             let in_time = self.moved(range_search, extents, &in_time);
             moved.iter_mut().zip(in_time).for_each(|(moved, in_time)| *moved += in_time);
         }
         // Of what does not follow from coordinates, their errors say nothing.
         moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
+    }
+
+    /// How far errors of the independent coordinates and of their velocities (pairwise) move the ends of the outputs' ranges. What
+    /// positions and velocities do adds up, too, since their errors may have either sign.
+    fn moved_by(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
+        let lines = |first: usize| errors.iter().skip(first).step_by(2);
+        let moves = |first: usize| -> Vec<Moves> {
+            lines(first).map(|&error| Moves { by: vec![error], ..Moves::default() }).collect()
+        };
+        let mut moved = self.moved(range_search, found, &moves(0));
+        if self.closure.needs_velocities() {
+            let by_velocities = self.moved(range_search, found, &moves(1));
+            moved.iter_mut().zip(by_velocities).for_each(|(moved, own)| *moved += own);
+        }
+        moved
     }
 
     /// How far moves of the independent coordinates, one for each, move the ends of the outputs' ranges.
