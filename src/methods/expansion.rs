@@ -3,6 +3,28 @@
 use super::ensemble::Closure;
 use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 
+/// How motions are moved, to see what that does to outputs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Moves {
+    /// Lines, each by how much.
+    pub by: Vec<(usize, f64)>,
+    /// Coordinates, each along its velocity for so much time, s.
+    pub ahead: Vec<(usize, f64)>,
+}
+
+impl Moves {
+    /// All of these together, each so many times.
+    pub fn sum<'m>(moves: impl Iterator<Item = (&'m Self, f64)>) -> Self {
+        let mut sum = Self::default();
+        for (moves, weight) in moves.filter(|(_, weight)| *weight != 0.0) {
+            let scaled = |&(line, amount): &(usize, f64)| (line, weight * amount);
+            sum.by.extend(moves.by.iter().map(scaled));
+            sum.ahead.extend(moves.ahead.iter().map(scaled));
+        }
+        sum
+    }
+}
+
 /// Polynomials of the 2n lines of a motion in one row over a box.
 #[derive(Clone, Copy)]
 pub(super) struct Expansion<'r> {
@@ -18,28 +40,32 @@ pub(super) struct Expansion<'r> {
 }
 
 impl Expansion<'_> {
-    /// Every output at some ξ with some lines shifted, output by output, shift by shift, point by point.
-    pub fn evaluate_shifted<P: AsRef<[f64]>>(&self, points: &[P], shifts: &[Vec<(usize, f64)>]) -> Vec<f64> {
-        let lines = if self.closure.needs_velocities() { self.extent.len() } else { self.extent.len() / 2 };
-        let mut expanded = vec![0.0; lines * points.len()];
+    /// Every output at some ξ with the motion moved in some ways, output by output, way by way, point by point.
+    pub fn evaluate_moved<P: AsRef<[f64]>>(&self, points: &[P], ways: &[Moves]) -> Vec<f64> {
+        let n = self.extent.len() / 2;
+        let needs_velocities = self.closure.needs_velocities() || ways.iter().any(|moves| !moves.ahead.is_empty());
+        let mut expanded = vec![0.0; if needs_velocities { 2 * n } else { n } * points.len()];
         self.expand(points, &mut expanded);
-        let count = shifts.len() * points.len();
+        let count = ways.len() * points.len();
         let mut motion = vec![0.0; self.extent.len() * count];
         for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
-            for (place, shift) in shifts.iter().enumerate() {
-                let by: f64 = shift.iter().filter(|shift| shift.0 == line).map(|shift| shift.1).sum();
+            for (place, moves) in ways.iter().enumerate() {
+                let by: f64 = moves.by.iter().filter(|moved| moved.0 == line).map(|moved| moved.1).sum();
                 let into = &mut motion[line * count + place * points.len()..][..points.len()];
                 into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
+                for &(_, time) in moves.ahead.iter().filter(|ahead| ahead.0 == line) {
+                    let velocities = &expanded[(n + line) * points.len()..][..points.len()];
+                    into.iter_mut().zip(velocities).for_each(|(into, velocity)| *into += time * velocity);
+                }
             }
         }
         // Dependent coordinates are only a guess, and are kept within what the samples have.
-        let n = self.extent.len() / 2;
         for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(self.extent).enumerate() {
             if !self.closure.independent().contains(&(line % n)) && low <= high {
                 values.iter_mut().for_each(|value| *value = value.clamp(low, high));
             }
         }
-        let all: Vec<&[f64]> = shifts.iter().flat_map(|_| points.iter().map(AsRef::as_ref)).collect();
+        let all: Vec<&[f64]> = ways.iter().flat_map(|_| points.iter().map(AsRef::as_ref)).collect();
         self.close(&all, motion)
     }
 

@@ -4,7 +4,7 @@
 //! or follows from the expanded coordinates through a loop closure, which whoever evaluates it has compiled.
 
 use super::ensemble::Closure;
-use super::expansion::Expansion;
+use super::expansion::{Expansion, Moves};
 use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
 
 /// A surrogate over the whole box.
@@ -159,7 +159,7 @@ impl KeptBox {
                     coefficients: &row.coefficients,
                     extent: &row.extent,
                 };
-                expansion.evaluate_shifted(points, &[Vec::new()])
+                expansion.evaluate_moved(points, &[Moves::default()])
             }
             _ => Vec::new(),
         };

@@ -1,7 +1,7 @@
 //! Outputs at points of the box: the coordinates' polynomials, closed.
 
 use super::Row;
-use crate::methods::expansion::Expansion;
+use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
 use crate::numerics::{SparseWork, largest, surrogate_error, truncation};
 
@@ -64,12 +64,12 @@ impl Row<'_> {
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        self.evaluate_shifted(points, &[Vec::new()])
+        self.evaluate_moved(points, &[Moves::default()])
     }
 
-    /// Every output with some lines shifted, output by output, shift by shift, point by point.
-    pub(super) fn evaluate_shifted(&self, points: &[Vec<f64>], shifts: &[Vec<(usize, f64)>]) -> Vec<f64> {
-        self.expansion().evaluate_shifted(points, shifts)
+    /// Every output with the motion moved in some ways, output by output, way by way, point by point.
+    pub(super) fn evaluate_moved(&self, points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
+        self.expansion().evaluate_moved(points, ways)
     }
 
     /// The polynomials' values: 2n lines of points.
