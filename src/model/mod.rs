@@ -20,6 +20,7 @@ mod overrides;
 mod parameters;
 mod requests;
 mod scenes;
+mod scheme;
 mod space;
 mod tables;
 mod teeth;

@@ -13,8 +13,9 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range, Sample};
 use crate::simulate::{
-    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
-    Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, ExtrapolatedJets, Integration, JetRun,
+    Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
+    choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -89,7 +90,7 @@ impl<'a> Motions<'a> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
         let sample = std::slice::from_ref(&self.domain.nominal);
-        let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
+        let mut run = SampleRun::start(self.simulator, sample, self.schedule)?.watching();
         let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
         let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
@@ -103,7 +104,7 @@ impl<'a> Motions<'a> {
 
     fn advance(
         &self,
-        run: &mut EnsembleRun,
+        run: &mut SampleRun,
         samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
@@ -143,6 +144,52 @@ impl<'a> Motions<'a> {
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
             missing: self.schedule.rows - reached,
+        }
+    }
+}
+
+/// The run of one jet, however the schedule's steps are taken.
+enum SampleJet<'s> {
+    Plain(Box<JetRun<'s>>),
+    Extrapolated(Box<ExtrapolatedJets<'s>>),
+}
+
+impl<'s> SampleJet<'s> {
+    fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_widths): (&[f64], &[f64]),
+        schedule: &Schedule,
+        controlled: bool,
+    ) -> Result<Self, SimulationError> {
+        let first_step = schedule.first_step();
+        Ok(match schedule.integration {
+            Integration::Plain => {
+                let jet = JetRun::start(simulator, space, center, half_widths, first_step)?;
+                Self::Plain(Box::new(if controlled { jet.controlled() } else { jet }))
+            }
+            Integration::Extrapolated { levels } => {
+                let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
+                Self::Extrapolated(Box::new(jets))
+            }
+        })
+    }
+
+    fn advance(&mut self, schedule: &Schedule, rows: Rows<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        match self {
+            Self::Plain(jet) => jet.advance(schedule, rows, into),
+            Self::Extrapolated(jets) => jets.advance(schedule, rows, into),
+        }
+    }
+
+    fn effort(&self) -> Effort {
+        match self {
+            Self::Plain(jet) => effort(jet.counters()),
+            Self::Extrapolated(jets) => {
+                let mut total = Effort::default();
+                jets.levels().iter().for_each(|jet| total += effort(jet.counters()));
+                total
+            }
         }
     }
 }
@@ -205,7 +252,7 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        let mut run = SampleRun::start(self.simulator, samples, self.schedule)?;
         Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 
@@ -213,10 +260,8 @@ impl Ensemble for Motions<'_> {
         let parameters = 0..self.domain.dimension();
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
-        let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
-        if self.tolerance.is_some() {
-            jet = jet.controlled();
-        }
+        let box_of_jet = (&center[..], &half_widths[..]);
+        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
@@ -232,7 +277,7 @@ impl Ensemble for Motions<'_> {
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
         let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
-        Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
+        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {
