@@ -26,8 +26,8 @@ pub mod methods {
 
 pub mod model {
     pub use crate::model::{
-        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, Stepping, load,
-        load_str, read, read_str, schema,
+        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, SchemeChoice,
+        Stepping, load, load_str, read, read_str, schema,
     };
 }
 

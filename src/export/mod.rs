@@ -23,7 +23,6 @@ pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
 pub use drawing::write_drawing;
 pub use error::ExportError;
-pub use figure::Caption;
 pub use files::{file_stem, write_results};
 pub use folder::{prepare_folder, write_pages};
 pub use overlay::SceneBounds;

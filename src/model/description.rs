@@ -19,7 +19,7 @@ pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
-pub use simulation::{Formulation, Simulation, Stepping};
+pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
@@ -179,6 +179,8 @@ impl Description {
                 alpha: -0.1,
                 output_step: 0.01,
                 formulation: Formulation::Auto,
+                scheme: SchemeChoice::Auto,
+                extrapolation: None,
             },
             bounds: BoundsRequest::default(),
             places: Places::default(),

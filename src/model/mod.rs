@@ -23,6 +23,7 @@ mod reduced;
 mod requests;
 mod requirements;
 mod scenes;
+mod scheme;
 mod space;
 mod tables;
 mod teeth;

@@ -260,6 +260,7 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
         Some(node) => reader.choice(node, &FORMULATIONS),
         None => Some(Formulation::Auto),
     };
+    let integration = super::scheme::read(reader, fields);
     if fields.get("step").is_some() && fields.get("tolerance").is_some() {
         let place = fields.key_span("tolerance");
         let diagnostic = Diagnostic::error(place, "`step` and `tolerance` exclude each other");
@@ -293,7 +294,8 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
             Stepping::Tolerance(_) => duration / 200.0,
         },
     };
-    Some(Simulation { duration, stepping, alpha: alpha?, output_step, formulation: formulation? })
+    let (formulation, (scheme, extrapolation)) = (formulation?, integration?);
+    Some(Simulation { duration, stepping, alpha: alpha?, output_step, formulation, scheme, extrapolation })
 }
 
 fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {

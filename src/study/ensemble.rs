@@ -14,8 +14,9 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range, Sample};
 use crate::simulate::{
-    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
-    Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, ExtrapolatedJets, Integration, JetRun,
+    Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
+    choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -85,8 +86,8 @@ impl<'a> Motions<'a> {
     }
 
     /// Samples at their start.
-    fn start(&self, samples: &[Sample]) -> Result<EnsembleRun<'a>, SimulationError> {
-        let run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+    fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
+        let run = SampleRun::start(self.simulator, samples, self.schedule)?;
         Ok(match self.store {
             Some(store) => run.reducing(&store.plan.channels),
             None => run,
@@ -131,7 +132,7 @@ impl<'a> Motions<'a> {
 
     fn advance(
         &self,
-        run: &mut EnsembleRun,
+        run: &mut SampleRun,
         samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
@@ -174,6 +175,52 @@ impl<'a> Motions<'a> {
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
             missing: self.schedule.rows - reached,
+        }
+    }
+}
+
+/// The run of one jet, however the schedule's steps are taken.
+enum SampleJet<'s> {
+    Plain(Box<JetRun<'s>>),
+    Extrapolated(Box<ExtrapolatedJets<'s>>),
+}
+
+impl<'s> SampleJet<'s> {
+    fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_widths): (&[f64], &[f64]),
+        schedule: &Schedule,
+        controlled: bool,
+    ) -> Result<Self, SimulationError> {
+        let first_step = schedule.first_step();
+        Ok(match schedule.integration {
+            Integration::Plain => {
+                let jet = JetRun::start(simulator, space, center, half_widths, first_step)?;
+                Self::Plain(Box::new(if controlled { jet.controlled() } else { jet }))
+            }
+            Integration::Extrapolated { levels } => {
+                let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
+                Self::Extrapolated(Box::new(jets))
+            }
+        })
+    }
+
+    fn advance(&mut self, schedule: &Schedule, rows: Rows<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        match self {
+            Self::Plain(jet) => jet.advance(schedule, rows, into),
+            Self::Extrapolated(jets) => jets.advance(schedule, rows, into),
+        }
+    }
+
+    fn effort(&self) -> Effort {
+        match self {
+            Self::Plain(jet) => effort(jet.counters()),
+            Self::Extrapolated(jets) => {
+                let mut total = Effort::default();
+                jets.levels().iter().for_each(|jet| total += effort(jet.counters()));
+                total
+            }
         }
     }
 }
@@ -250,10 +297,8 @@ impl Ensemble for Motions<'_> {
         if self.simulator.system.analysis.is_without_steps() {
             return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
         }
-        let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
-        if self.tolerance.is_some() {
-            jet = jet.controlled();
-        }
+        let box_of_jet = (&center[..], &half_widths[..]);
+        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
@@ -269,7 +314,7 @@ impl Ensemble for Motions<'_> {
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
         let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
-        Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
+        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {

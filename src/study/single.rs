@@ -46,7 +46,8 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
     Problem {
         parameters,
         composes: has_steps && can_compose(parameters, simulator.system.q.len()),
-        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
+        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
+            && description.simulation.extrapolation.is_none(),
         tolerance: description.bounds.tolerance,
     }
 }
@@ -108,7 +109,8 @@ impl<'a> Study<'a> {
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         match simulation.stepping {
             Stepping::Fixed(step) => {
-                let Divided { schedule, .. } = self.divided(Schedule::fixed(duration, step, output_step));
+                let fixed = Schedule::fixed(duration, step, output_step).taken(self.integration());
+                let Divided { schedule, .. } = self.divided(fixed);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let validation = self.validation(&schedule, None, Observed::Outputs, &progress)?;
                 let Validation { points, simulated, .. } = validation;
@@ -139,7 +141,7 @@ impl<'a> Study<'a> {
         match simulation.stepping {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                let results = self.methods(&schedule, None)?;
+                let results = self.methods(&schedule.taken(self.integration()), None)?;
                 Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
@@ -224,7 +226,7 @@ impl<'a> Study<'a> {
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
         let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        let mut steps = StepSearch::new(schedule);
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let begun = std::time::Instant::now();
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
@@ -394,5 +396,6 @@ pub(super) fn validation_summary(
 
 /// Steps up to where a sample stopped, or to the end.
 fn steps(schedule: &Schedule, stop: Option<&Stop>) -> usize {
-    schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1))
+    let before = schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1));
+    before * schedule.integration.steps()
 }

@@ -100,6 +100,10 @@ grammar! {
         output_step: Option<Number>,
         /// By which coordinates the motion is described.
         formulation: Option<FormulationName>,
+        /// By what the motion is integrated.
+        scheme: Option<SchemeName>,
+        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
+        extrapolation: Option<u32>,
     }
 
     /// Stops at the limits of a robot's joints.
