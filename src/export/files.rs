@@ -155,6 +155,8 @@ mod tests {
             errors: vec![],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,
