@@ -13,6 +13,7 @@ mod file;
 mod beams;
 mod bodies;
 mod bounds;
+mod display;
 mod effects;
 mod joints;
 mod load;

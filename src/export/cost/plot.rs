@@ -111,7 +111,8 @@ impl Panel {
     /// Lines at the decades.
     fn mesh(&self) -> Group {
         let decades = |ticks: Vec<(f64, Option<String>)>| ticks.into_iter().filter(|(_, label)| label.is_some());
-        let across = decades(self.x.ticks()).map(|(at, _)| self.across(at)).map(|x| line((x, self.top), (x, self.bottom)));
+        let across =
+            decades(self.x.ticks()).map(|(at, _)| self.across(at)).map(|x| line((x, self.top), (x, self.bottom)));
         let up = decades(self.y.ticks()).map(|(at, _)| self.up(at)).map(|y| line((self.left, y), (self.right, y)));
         across.chain(up).fold(group("grid"), Group::add)
     }
@@ -143,9 +144,11 @@ impl Panel {
     /// A vertical line at an error.
     fn threshold(&self, error: f64, label: &str) -> Group {
         let (x, _) = self.place((error, 1.0));
-        group("threshold")
-            .add(line((x, self.top), (x, self.bottom)).set("class", "frame"))
-            .add(text(label, (x - 4.0, self.bottom - 12.0), Anchor::End))
+        group("threshold").add(line((x, self.top), (x, self.bottom)).set("class", "frame")).add(text(
+            label,
+            (x - 4.0, self.bottom - 12.0),
+            Anchor::End,
+        ))
     }
 
     /// The common front below every method's dots and line. Errors below the reference's own error are shown at that error.

@@ -165,15 +165,7 @@ impl Panel<'_> {
         self.areas(named, times, sides, color, "layer", 1.0)
     }
 
-    fn areas(
-        &self,
-        named: Named,
-        times: &[f64],
-        sides: [&[f64]; 2],
-        color: Color,
-        class: &str,
-        opacity: f64,
-    ) -> Group {
+    fn areas(&self, named: Named, times: &[f64], sides: [&[f64]; 2], color: Color, class: &str, opacity: f64) -> Group {
         let pieces = runs([times, sides[0], sides[1]]).into_iter().filter(|rows| rows.len() > 1);
         pieces.fold(Hue::Color(color).paint(series(named), "series"), |group, rows| {
             let outline = self.outline(times, sides, rows) + "z";
@@ -269,13 +261,13 @@ impl Panel<'_> {
         (across, self.bottom - up * (self.bottom - self.top))
     }
 
-    /// The scales, for what shows the figure; `si` is what one of the output's unit is in SI.
-    pub fn data(&self, si: f64) -> PanelData {
+    /// The scales, for what shows the figure.
+    pub fn data(&self) -> PanelData {
         let seconds = self.x.unit.factor;
         PanelData {
             id: self.id.clone(),
             unit: self.y.unit.text.clone(),
-            si: si * self.y.unit.factor,
+            si: self.y.unit.factor,
             x: ScaleData {
                 min: self.x.min * seconds,
                 max: self.x.max * seconds,

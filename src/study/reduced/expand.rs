@@ -43,5 +43,8 @@ pub fn shown(description: &Description, (mut bounds, mut summary): (Bounds, Summ
         summary.errors = ErrorSummary::of(&bounds);
         summary.contributions = ContributionSummary::of(&bounds);
     }
+    for output in &mut bounds.outputs {
+        output.display = description.display.get(&output.name).cloned();
+    }
     (bounds, summary)
 }
