@@ -46,5 +46,8 @@ pub fn shown(description: &Description, (mut bounds, mut summary): (Bounds, Summ
     for output in &mut bounds.outputs {
         output.display = description.display.get(&output.name).cloned();
     }
+    for error in &mut summary.errors {
+        error.display = description.display.get(&error.output).cloned();
+    }
     (bounds, summary)
 }
