@@ -17,7 +17,10 @@ pub mod elements {
 }
 
 pub mod export {
-    pub use crate::export::{bounds_csv, effects_page, snapshot_table, write_cost};
+    pub use crate::export::{
+        Caption, Swept, SweptBounds, TradeAxis, TradeMark, bounds_csv, effects_page, snapshot_table, sweep_svg,
+        trade_svg, write_cost,
+    };
 }
 
 pub mod methods {

@@ -16,11 +16,15 @@ fn errors(errors: &[ErrorSummary]) -> String {
         ("error", Align::Right),
         ("of the surrogate", Align::Right),
         ("of the steps", Align::Right),
+        ("unit", Align::Left),
     ]);
     for error in errors.iter().take(MOST) {
-        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
+        let shown = |value: f64| error.display.as_ref().map_or(value, |display| display.of_si(value));
+        let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{:.2e}", shown(value)) };
         let name = format!("{}.{}", error.output, error.method);
-        table.row([name, number(error.width), number(error.error), number(error.surrogate), number(error.time)]);
+        let unit = error.display.as_ref().map_or(&error.unit, |display| &display.text).clone();
+        let [width, total, surrogate, time] = [error.width, error.error, error.surrogate, error.time].map(number);
+        table.row([name, width, total, surrogate, time, unit]);
     }
     match errors.len() {
         0 => String::new(),
@@ -224,6 +228,7 @@ mod tests {
             errors: vec![ErrorSummary {
                 output: "x3".into(),
                 unit: "m".into(),
+                display: None,
                 method: "scan".into(),
                 width: 0.2,
                 error: 2e-3,
@@ -249,8 +254,8 @@ mod tests {
           nominal            1     2000               4013    0.004
           scan             900  1800000            3611700        –
 
-          bounds   largest width    error  of the surrogate  of the steps
-          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3
+          bounds   largest width    error  of the surrogate  of the steps  unit
+          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3  m
 
           scan: passed a singular configuration 12 times
           results/slider_crank: bounds.csv, x3.svg

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use crate::grammar::display_unit::DisplayUnit;
 use crate::results::Bounds;
 
 /// A column of `bounds.csv`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 struct Column {
     /// Its heading.
     column: String,
@@ -13,6 +14,9 @@ struct Column {
     quantity: &'static str,
     /// SI unit; empty where dimensionless or unknown.
     unit: String,
+    /// The unit in which plots and tables show it, where the model names one: `value / si` is in this unit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    display: Option<DisplayUnit>,
     #[serde(skip_serializing_if = "Option::is_none")]
     output: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -20,21 +24,22 @@ struct Column {
 }
 
 /// The columns of `bounds.csv`, left to right, as a JSON array with an object for each: `column`, `quantity`, `unit` and, where they have
-/// one, `output` and `method`.
+/// one, `display` (the unit in which people see it, and what one of that is in SI), `output` and `method`.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
 pub fn columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json::Error> {
     let whole = |column: &str, quantity, unit: &str| {
         let (column, unit) = (column.to_owned(), unit.to_owned());
-        Column { column, quantity, unit, output: None, method: None }
+        Column { column, quantity, unit, display: None, output: None, method: None }
     };
     let mut columns = vec![whole("t", "time", "s")];
     for output in &bounds.outputs {
         let of_output = |quantity, method: Option<&'static str>| {
             let between = method.map_or(String::new(), |method| format!("{method}."));
             let column = format!("{}.{between}{quantity}", output.name);
-            Column { output: Some(output.name.clone()), method, ..whole(&column, quantity, &output.unit) }
+            let (name, display) = (Some(output.name.clone()), output.display.clone());
+            Column { output: name, method, display, ..whole(&column, quantity, &output.unit) }
         };
         columns.push(of_output("nominal", None));
         for band in &output.bands {
@@ -63,8 +68,13 @@ mod tests {
     fn columns_are_those_of_the_table() {
         let error = BandError { total: vec![0.0], unresolved: vec![false], ..BandError::default() };
         let band = Band { method: Method::Scan, lower: vec![0.0], upper: vec![1.0], error };
-        let output =
-            |name: &str, bands| OutputBounds { name: name.into(), unit: "m".into(), nominal: vec![0.5], bands };
+        let output = |name: &str, bands| OutputBounds {
+            name: name.into(),
+            unit: "m".into(),
+            display: None,
+            nominal: vec![0.5],
+            bands,
+        };
         let whole = Bounds { times: vec![0.0], outputs: vec![output("x", vec![band])], ..Bounds::default() };
         let part = Bounds { covered: vec![0.5], outputs: vec![output("y", vec![])], ..whole.clone() };
         for bounds in [whole, part] {

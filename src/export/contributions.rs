@@ -9,6 +9,7 @@ use super::figure::data::{self, FigureData, SeriesData, extremes};
 use super::figure::document::{document, finished, group, heading, metadata, shortened, text_width};
 use super::figure::legend::{Entry, ROW, Sign};
 use super::figure::panel::{Named, Panel};
+use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
 use crate::results::{Bounds, Contribution};
 
@@ -57,7 +58,7 @@ struct Layer {
     group: String,
     label: String,
     color: Color,
-    /// Per cent.
+    /// Of the variance, 0 to 1.
     share: Vec<f64>,
 }
 
@@ -76,7 +77,7 @@ pub fn contributions_svg(
     let width = layers.iter().map(|layer| text_width(&layer.label)).fold(0.0, f64::max);
     let right = (SIZE.0 - 50.0 - width).max(0.5 * SIZE.0);
     let time = Axis::fit(times.iter().copied(), "s", 9, 0.0, 0.0);
-    let percent = Axis::fit([0.0, 100.0].into_iter(), "%", 5, 0.0, 0.0);
+    let percent = Axis::fit([0.0, 1.0].into_iter(), BaseUnit { text: "%", si: 0.01 }, 5, 0.0, 0.0);
     let id = format!("{}-shares", caption.prefix);
     let panel = Panel { id, left: LEFT, right, top: TOP, bottom: SIZE.1 - BOTTOM, x: &time, y: &percent };
 
@@ -85,7 +86,7 @@ pub fn contributions_svg(
     let mut below = vec![0.0; times.len()];
     for (place, layer) in layers.iter().enumerate() {
         let above: Vec<f64> =
-            below.iter().zip(&layer.share).map(|(below, share)| (below + share).clamp(0.0, 100.0)).collect();
+            below.iter().zip(&layer.share).map(|(below, share)| (below + share).clamp(0.0, 1.0)).collect();
         let id = format!("{}-{}", panel.id, layer.group);
         let named = Named { id: &id, group: &layer.group, title: &layer.label };
         drawn.push(panel.layer(named, times, [&below, &above], layer.color));
@@ -98,7 +99,7 @@ pub fn contributions_svg(
         legend = legend.add(Entry { group, label, sign: Sign::Area(Hue::Color(layer.color)) }.drawn(at));
         below = above;
     }
-    let panels = vec![panel.data(0.01)];
+    let panels = vec![panel.data()];
     let (model, output, unit) = (caption.model.to_owned(), name.to_owned(), "%".to_owned());
     let data = FigureData { model, output, unit, time: data::times(times), panels, series };
     let title = format!("{}: tolerances that matter for {}", shortened(caption.model, 60), shortened(name, 60));
@@ -119,7 +120,7 @@ fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
     ranked.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
     let is_known = |row: usize| contributions.iter().any(|contribution| contribution.main[row] > 0.0);
     let sum = |of: &[&Contribution]| -> Vec<f64> {
-        let share = |row: usize| of.iter().map(|contribution| 100.0 * contribution.main[row]).sum();
+        let share = |row: usize| of.iter().map(|contribution| contribution.main[row]).sum();
         (0..rows).map(|row| if is_known(row) { share(row) } else { f64::NAN }).collect()
     };
     let own = if ranked.len() > MOST + 1 { MOST } else { ranked.len() };
@@ -132,7 +133,7 @@ fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
         let label = format!("{} others", ranked.len() - own);
         layers.push(Layer { group: "others".to_owned(), label, color: OTHERS, share: sum(&ranked[own..]) });
     }
-    let share = sum(&ranked).iter().map(|share| 100.0 - share.clamp(0.0, 100.0)).collect();
+    let share = sum(&ranked).iter().map(|share| 1.0 - share.clamp(0.0, 1.0)).collect();
     layers.push(Layer { group: "together".to_owned(), label: "together".to_owned(), color: TOGETHER, share });
     layers
 }
@@ -154,7 +155,8 @@ mod tests {
 
     #[test]
     fn a_column_for_each_share() {
-        let output = OutputBounds { name: "x3".into(), unit: "m".into(), nominal: vec![0.0; 3], bands: vec![] };
+        let output =
+            OutputBounds { name: "x3".into(), unit: "m".into(), display: None, nominal: vec![0.0; 3], bands: vec![] };
         let bounds = Bounds {
             times: vec![0.0, 0.5, 1.0],
             outputs: vec![output],
@@ -175,15 +177,14 @@ mod tests {
             (0..9).map(|place| contribution(&format!("p{place}"), 0.1)).chain([contribution("l1", 0.05)]).collect();
         let caption = Caption { model: "crank", prefix: "c" };
         let svg = contributions_svg(caption, &[0.0, 0.5, 1.0], "x3", &shares).unwrap();
-        for text in ["p0", "4 others", "together", "t [s]", "100", "share of the variance [%]"] {
-            assert!(svg.contains(&format!(">{text}<")), "{text}");
-        }
         assert!(!svg.contains("NaN"));
         let document = roxmltree::Document::parse(&svg).unwrap();
-        let height = |text: &str| -> f64 {
-            let found = document.descendants().find(|node| node.has_tag_name("text") && node.text() == Some(text));
-            found.unwrap().attribute("y").unwrap().parse().unwrap()
-        };
+        let texts = || document.descendants().filter(|node| node.has_tag_name("text"));
+        let find = |text: &str| texts().find(|node| node.text().map(str::trim) == Some(text));
+        for text in ["p0", "4 others", "together", "t [s]", "100", "share of the variance [%]"] {
+            assert!(find(text).is_some(), "{text}");
+        }
+        let height = |text: &str| -> f64 { find(text).unwrap().attribute("y").unwrap().parse().unwrap() };
         assert!(height("together") < height("4 others") && height("4 others") < height("p1"), "as the stack");
         assert!(height("p1") < height("p0"));
         assert!(contributions_svg(caption, &[], "x3", &[]).is_ok());

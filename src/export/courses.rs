@@ -11,8 +11,10 @@ use super::figure::data::{FigureData, SeriesData, extremes, times};
 use super::figure::document::{document, finished, heading, metadata, shortened};
 use super::figure::legend::{Entry, Legend, Sign};
 use super::figure::panel::{Named, Panel, Style, label_width};
+use super::figure::prefix::BaseUnit;
 use super::figure::style::Hue;
 use super::figure::view::{deviation, in_view};
+use super::limits::{Limit, near};
 use crate::results::Band;
 
 /// Size on the page with one row of legend, px.
@@ -51,15 +53,26 @@ pub(super) struct CourseBand<'a> {
     pub style: Style,
 }
 
+/// What a figure's courses are over: the time, or a parameter.
+#[derive(Clone, Copy)]
+pub(super) struct Across<'a> {
+    pub name: &'a str,
+    pub unit: BaseUnit<'a>,
+}
+
 /// What a figure shows.
+#[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     /// The output's name.
     pub name: &'a str,
-    /// Its unit, as models write it.
-    pub unit: &'a str,
+    /// The unit that it is shown in.
+    pub unit: BaseUnit<'a>,
+    pub across: Across<'a>,
     /// What moves by less is a constant.
     pub noise: f64,
     pub courses: &'a [Course<'a>],
+    /// What requirements say of the output.
+    pub limits: &'a [Limit],
 }
 
 /// The figure of an output as an SVG document. The same data give the same bytes.
@@ -106,9 +119,15 @@ impl<'a> Figure<'a> {
                 entries.push(Entry { group: of.group.clone(), label, sign: Sign::Band(of.style.clone()) });
             }
         }
+        for (limit, is_near) in shown.limits.iter().zip(near(shown.limits, &values).collect::<Vec<_>>()) {
+            entries.push(limit.entry(is_near));
+            if is_near {
+                values.push(limit.value);
+            }
+        }
         let size = values.iter().filter(|x| x.is_finite()).fold(0.0, |size: f64, x| size.max(x.abs()));
         let all_times = shown.courses.iter().flat_map(|course| course.times);
-        let time = Axis::fit(all_times.copied(), "s", 9, 0.0, 0.0);
+        let time = Axis::fit(all_times.copied(), shown.across.unit, 9, 0.0, 0.0);
         let value = Axis::fit(values.into_iter(), shown.unit, 6, 0.04, shown.noise);
         let noise = shown.noise.max(ROUNDING * size);
         let deviation = Axis::fit(below.into_iter(), shown.unit, 4, 0.06, noise);
@@ -118,7 +137,7 @@ impl<'a> Figure<'a> {
     }
 
     fn drawn(&self) -> Result<Document, serde_json::Error> {
-        let Shown { name, courses, .. } = *self.shown;
+        let Shown { name, courses, across, .. } = *self.shown;
         let (top, height) = (TOP + self.legend.more(), SIZE.1 + self.legend.more());
         let free = height - top - BOTTOM;
         let alone = courses.iter().all(|course| course.bands.is_empty());
@@ -135,15 +154,20 @@ impl<'a> Figure<'a> {
             .add(heading(&title, (self.left, 15.0)))
             .add(self.legend.drawn((self.left, 38.0)));
         let bands = courses.iter().map(|course| course.bands.iter().map(|of| of.band).collect::<Vec<_>>());
-        let drawn = self.series(&value, bands, |course| course.nominal.to_vec());
+        let limits = || self.shown.limits.iter();
+        let mut drawn = self.series(&value, bands, |course| course.nominal.to_vec());
+        drawn.extend(limits().map(|limit| limit.drawn(&value)));
         figure = figure.add(value.framed(name, &self.value.title(&shortened(name, 28)), drawn));
         if alone {
-            return Ok(figure.add(value.time_axis("t")));
+            return Ok(figure.add(value.time_axis(across.name)));
         }
         let bands = self.deviations.iter().map(|bands| bands.iter().collect::<Vec<_>>());
-        let drawn = self.series(&below, bands, zero);
+        let mut drawn = self.series(&below, bands, zero);
+        for course in courses {
+            drawn.extend(limits().map(|limit| limit.drawn_below(&below, course.times, course.nominal)));
+        }
         let title = "bound − nominal";
-        Ok(figure.add(below.framed(title, &self.deviation.title(title), drawn)).add(below.time_axis("t")))
+        Ok(figure.add(below.framed(title, &self.deviation.title(title), drawn)).add(below.time_axis(across.name)))
     }
 
     /// All that is drawn in a panel: errors below, then bands, then the course.
@@ -203,12 +227,19 @@ impl<'a> Figure<'a> {
                 }
             }
         }
+        for course in courses {
+            let still = vec![0.0; course.times.len()];
+            series.extend(self.shown.limits.iter().map(|limit| limit.data(value, course.times, &still)));
+            let below = below.iter();
+            let limits = below.flat_map(|below| self.shown.limits.iter().map(|limit| (*below, limit)));
+            series.extend(limits.map(|(below, limit)| limit.data(below, course.times, course.nominal)));
+        }
         FigureData {
             model: self.caption.model.to_owned(),
             output: name.to_owned(),
             unit: self.value.unit.text.clone(),
             time: times(shared),
-            panels: [Some(value), below].into_iter().flatten().map(|panel| panel.data(1.0)).collect(),
+            panels: [Some(value), below].into_iter().flatten().map(Panel::data).collect(),
             series,
         }
     }

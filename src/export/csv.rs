@@ -94,6 +94,7 @@ mod tests {
                 OutputBounds {
                     name: "x3".into(),
                     unit: "m".into(),
+                    display: None,
                     nominal: vec![0.71, f64::NAN],
                     bands: vec![
                         band(Method::Chebyshev, 0.7, 0.72, [1e-3, 0.5], [false, true]),
@@ -103,6 +104,7 @@ mod tests {
                 OutputBounds {
                     name: "a,\"b\"".into(),
                     unit: String::new(),
+                    display: None,
                     nominal: vec![1e-300, -2.0],
                     bands: vec![],
                 },

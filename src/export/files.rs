@@ -10,7 +10,8 @@ use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{SCHEMA, SUMMARY, owned};
 use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
-use crate::results::{Bounds, PeakSummary, Provenance, Summary};
+use crate::grammar::display_unit::DisplayUnit;
+use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
 
 /// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
 /// `dir`, which is created if it does not exist.
@@ -37,7 +38,8 @@ pub fn write_results(
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
     for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
         let caption = Caption { model: &summary.model, prefix: "figure" };
-        let svg = plot_svg(caption, &bounds.times, output, noise(bounds, output))?;
+        let noise = noise(bounds, output);
+        let svg = plot_svg(caption, &bounds.times, output, noise, &summary.requirements)?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
         if let Some(contributions) = contributions {
             let svg = contributions_svg(caption, &bounds.times, &output.name, contributions)?;
@@ -45,7 +47,12 @@ pub fn write_results(
         }
     }
     let names = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
-    let outputs = bounds.outputs.iter().map(|output| Named { name: &output.name, unit: &output.unit }).collect();
+    let named = |output: &'_ OutputBounds| Named {
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        display: output.display.clone(),
+    };
+    let outputs = bounds.outputs.iter().map(named).collect();
     let peaks = PeakSummary::of(bounds);
     let written = Written { schema: SCHEMA, summary, provenance, outputs, peaks, interrupted, files: names };
     let mut json = serde_json::to_vec_pretty(&written)?;
@@ -64,7 +71,7 @@ struct Written<'s> {
     #[serde(flatten)]
     provenance: &'s Provenance,
     /// In the model's order, with SI units.
-    outputs: Vec<Named<'s>>,
+    outputs: Vec<Named>,
     /// Of every band, in the output's unit.
     peaks: Vec<PeakSummary>,
     /// Whether the run was interrupted before it was done.
@@ -76,9 +83,12 @@ struct Written<'s> {
 
 /// An output's name and SI unit; empty where dimensionless or unknown.
 #[derive(Serialize)]
-struct Named<'s> {
-    name: &'s str,
-    unit: &'s str,
+struct Named {
+    name: String,
+    unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    display: Option<DisplayUnit>,
 }
 
 /// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
@@ -125,11 +135,15 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::results::OutputBounds;
 
     fn results() -> (Bounds, Summary) {
-        let output =
-            |name: &str| OutputBounds { name: name.into(), unit: "m".into(), nominal: vec![1.0, 2.0], bands: vec![] };
+        let output = |name: &str| OutputBounds {
+            name: name.into(),
+            unit: "m".into(),
+            display: None,
+            nominal: vec![1.0, 2.0],
+            bands: vec![],
+        };
         let bounds = Bounds {
             times: vec![0.0, 1.0],
             outputs: vec![output("x3"), output("a/b"), output("A b")],

@@ -1,8 +1,9 @@
 //! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
 
-use super::courses::{Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
+use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue, PALETTE};
 use super::plot::noise;
 use crate::results::{Band, Bounds, OutputBounds, foremost};
@@ -51,12 +52,14 @@ pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Resu
             Course { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
         })
         .collect();
-    let unit = found.first().map_or("", |(_, _, output, _)| output.unit.as_str());
+    let unit = found.first().map_or(BaseUnit::from(""), |(_, _, output, _)| BaseUnit::of(output));
     let noise = found.iter().map(|(_, scene, output, _)| noise(scene.bounds, output)).fold(0.0, f64::max);
-    courses_svg(caption, &Shown { name, unit, noise, courses: &courses })
+    let across = Across { name: "t", unit: BaseUnit::from("s") };
+    courses_svg(caption, &Shown { name, unit, across, noise, courses: &courses, limits: &[] })
 }
 
-fn style(place: usize, label: String) -> Style {
+/// The edges of one of several bands.
+pub(super) fn style(place: usize, label: String) -> Style {
     let dashes = DASHES[place % DASHES.len()];
     let dashes = (!dashes.is_empty()).then(|| dashes.to_vec());
     // Beyond the palette colours are darker; so are the lines' widths.
@@ -87,7 +90,8 @@ mod tests {
             error: BandError { total: vec![0.0; 101], unresolved: vec![false; 101], ..BandError::default() },
         };
         let bands = methods.iter().map(band).collect();
-        let output = OutputBounds { name: "x3".into(), unit: "m".into(), nominal: nominal.clone(), bands };
+        let output =
+            OutputBounds { name: "x3".into(), unit: "m".into(), display: None, nominal: nominal.clone(), bands };
         Bounds { times, outputs: vec![output], ..Bounds::default() }
     }
 

@@ -1,11 +1,13 @@
 //! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
-use super::courses::{Course, CourseBand, Shown, courses_svg};
+use super::courses::{Across, Course, CourseBand, Shown, courses_svg};
 use super::figure::Caption;
 use super::figure::panel::Style;
+use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
+use super::limits::limits;
 use crate::methods::{About, Method};
-use crate::results::{Bounds, OutputBounds};
+use crate::results::{Bounds, OutputBounds, RequirementSummary};
 
 /// Motion that is smaller than this, relative to the largest output of the same unit, is rounding noise.
 const ROUNDING: f64 = 1e-12;
@@ -18,7 +20,8 @@ fn style(method: Method) -> Style {
     Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }
 
-/// The plot of one output as an SVG document. The same data give the same bytes. `noise` is as [`noise`] has it.
+/// The plot of one output as an SVG document, with the constant limits that requirements set for it. The same data give the same
+/// bytes. `noise` is as [`noise`] has it.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -27,13 +30,24 @@ pub fn plot_svg(
     times: &[f64],
     output: &OutputBounds,
     noise: f64,
+    requirements: &[RequirementSummary],
 ) -> Result<String, serde_json::Error> {
+    let limits = limits(requirements, &output.name);
+    courses_svg(caption, &Shown { limits: &limits, ..shown(output, noise, &[course(times, output)]) })
+}
+
+/// An output with all its bands.
+pub(super) fn course<'a>(times: &'a [f64], output: &'a OutputBounds) -> Course<'a> {
     let bands = output.bands.iter();
     let bands = bands.map(|band| CourseBand { group: band.method.name().to_owned(), band, style: style(band.method) });
-    let bands = bands.collect();
-    let (group, nominal) = ("nominal".to_owned(), &output.nominal);
-    let course = Course { group, label: "Nominal", hue: Hue::Ink, width: 1.2, times, nominal, bands };
-    courses_svg(caption, &Shown { name: &output.name, unit: &output.unit, noise, courses: &[course] })
+    let (group, nominal) = ("nominal".to_owned(), &output.nominal[..]);
+    Course { group, label: "Nominal", hue: Hue::Ink, width: 1.2, times, nominal, bands: bands.collect() }
+}
+
+/// Courses of an output over time.
+pub(super) fn shown<'a>(output: &'a OutputBounds, noise: f64, courses: &'a [Course<'a>]) -> Shown<'a> {
+    let across = Across { name: "t", unit: BaseUnit::from("s") };
+    Shown { name: &output.name, unit: BaseUnit::of(output), across, noise, courses, limits: &[] }
 }
 
 /// What is a constant of an output, for it moves by no more: rounding beside the largest of all outputs of its unit.
@@ -49,7 +63,7 @@ mod tests {
 
     use super::*;
     use crate::numerics::BandError;
-    use crate::results::Band;
+    use crate::results::{Band, LimitLine, Verdict};
 
     fn error(rows: usize, error: f64) -> BandError {
         BandError { total: vec![error; rows], unresolved: vec![false; rows], ..BandError::default() }
@@ -68,13 +82,20 @@ mod tests {
             error: error(n, 1e-4),
         };
         let bands = vec![band(Method::Chebyshev, 1.0), band(Method::Taylor, 1.0), band(Method::Scan, 0.99)];
-        (times.clone(), OutputBounds { name: "x3".into(), unit: "m".into(), nominal, bands })
+        (times.clone(), OutputBounds { name: "x3".into(), unit: "m".into(), display: None, nominal, bands })
+    }
+
+    /// All that is written in a figure.
+    fn texts(svg: &str) -> Vec<String> {
+        let document = roxmltree::Document::parse(svg).unwrap();
+        let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+        texts.filter_map(|node| node.text()).map(|text| text.trim().to_owned()).collect()
     }
 
     /// The plot, and its scales and data.
     fn plot(times: &[f64], output: &OutputBounds) -> (String, serde_json::Value) {
         let caption = Caption { model: "crank", prefix: "p" };
-        let svg = plot_svg(caption, times, output, 0.0).unwrap();
+        let svg = plot_svg(caption, times, output, 0.0, &[]).unwrap();
         let document = roxmltree::Document::parse(&svg).unwrap();
         assert_eq!(document.root_element().attribute("class"), Some("mbint-figure"));
         let find = |name: &'static str| document.descendants().filter(move |node| node.has_tag_name(name));
@@ -91,9 +112,9 @@ mod tests {
         let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
         assert!(ids.iter().all(|id| id.starts_with("p-")) && BTreeSet::from_iter(&ids).len() == ids.len(), "{ids:?}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        let numbers =
-            find("path").filter_map(|path| path.attribute("d")).flat_map(|data| data.split(['M', 'l', 'z', ' ']));
-        assert!(numbers.into_iter().all(|number| number.len() < 20), "a point far off the page");
+        let data_of = find("path").filter_map(|path| path.attribute("d"));
+        let mut numbers = data_of.flat_map(|data| data.split(['M', 'l', 'z', ' ', '-']));
+        assert!(numbers.all(|number| number.len() < 8), "a point far off the page");
         (svg, data)
     }
 
@@ -103,7 +124,7 @@ mod tests {
         let (svg, data) = plot(&times, &output);
         for text in ["crank: x3", "x3 [m]", "t [s]", "bound − nominal [mm]", "Nominal", "Chebyshev", "Taylor", "Scan"]
         {
-            assert!(svg.contains(&format!(">{text}<")), "{text}");
+            assert!(texts(&svg).iter().any(|found| found == text), "{text}");
         }
         assert_eq!(svg, plot(&times, &output).0, "the same data, the same bytes");
         assert_eq!((data["output"].as_str(), data["unit"].as_str()), (Some("x3"), Some("m")));
@@ -157,7 +178,8 @@ mod tests {
             let mut flat = Band { method: Method::Scan, lower, upper, error: error(101, value) };
             flat.error.unresolved[3..].fill(true);
             let nominal = vec![value; 101];
-            let constant = OutputBounds { name: "<c & d>".into(), unit: String::new(), nominal, bands: vec![flat] };
+            let constant =
+                OutputBounds { name: "<c & d>".into(), unit: String::new(), display: None, nominal, bands: vec![flat] };
             plot(&times, &constant);
             let alone = OutputBounds { bands: vec![], ..constant };
             plot(&times, &alone);
@@ -194,6 +216,35 @@ mod tests {
     }
 
     #[test]
+    fn limits_are_drawn_where_they_hold() {
+        let (times, output) = sample(201);
+        let line = |value, is_upper| LimitLine { output: "x3".into(), value, is_upper, from: 0.5, to: 1.5 };
+        let requirement = RequirementSummary {
+            name: "clears".into(),
+            text: "x3 >= 0.4 m".into(),
+            unit: "m".into(),
+            verdict: Verdict::Holds,
+            certified: false,
+            margin: 0.01,
+            percent: None,
+            error: 0.0,
+            surrogate: 0.0,
+            time: 0.0,
+            method: "scan".into(),
+            nearest: None,
+            decides: None,
+            limits: vec![line(0.4, false), line(9.0, true), LimitLine { output: "y".into(), ..line(0.5, true) }],
+        };
+        let caption = Caption { model: "crank", prefix: "p" };
+        let svg = plot_svg(caption, &times, &output, 0.0, &[requirement]).unwrap();
+        assert_eq!(svg.matches("class=\"forbidden\"").count(), 2, "of its own output");
+        assert!(texts(&svg).contains(&"clears: x3 >= 0.4 m".to_owned()));
+        assert!(svg.contains("(beyond the plot)"), "9 m is far away");
+        let data = svg.split_once("<metadata>").unwrap().1;
+        assert!(data.contains("\"kind\":\"limit\""));
+    }
+
+    #[test]
     fn rounding_beside_others_of_the_unit_is_a_constant() {
         let (times, mut output) = sample(101);
         let noise = OutputBounds {
@@ -205,9 +256,10 @@ mod tests {
         output.nominal.iter_mut().for_each(|x| *x *= 1e3);
         let bounds = Bounds { times: times.clone(), outputs: vec![output, noise.clone()], ..Bounds::default() };
         let threshold = super::noise(&bounds, &noise);
-        let svg = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, threshold).unwrap();
-        assert!(svg.contains(">constant<") && svg.contains(">0.5<"), "an axis about zero");
-        let alone = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, 0.0).unwrap();
-        assert!(!alone.contains(">constant<"));
+        let svg = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, threshold, &[]).unwrap();
+        assert!(texts(&svg).contains(&"constant".to_owned()), "{:?}", texts(&svg));
+        assert!(texts(&svg).contains(&"0.5".to_owned()), "an axis about zero");
+        let alone = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, 0.0, &[]).unwrap();
+        assert!(!texts(&alone).contains(&"constant".to_owned()));
     }
 }

@@ -118,7 +118,7 @@ mod tests {
     use crate::results::{Band, Bounds, Method};
 
     fn output(name: &str, nominal: &[f64], bands: Vec<Band>) -> OutputBounds {
-        OutputBounds { name: name.into(), unit: "m".into(), nominal: nominal.to_vec(), bands }
+        OutputBounds { name: name.into(), unit: "m".into(), display: None, nominal: nominal.to_vec(), bands }
     }
 
     fn scan(rows: usize) -> Band {

@@ -3,6 +3,7 @@
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
 pub(crate) mod dimension;
+pub(crate) mod display_unit;
 mod element;
 pub(crate) mod formulas;
 mod kinds;

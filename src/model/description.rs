@@ -8,10 +8,13 @@ mod robot;
 mod simulation;
 mod start;
 
+use std::collections::BTreeMap;
+
 use symdiff::Formula;
 
 use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
+use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use analysis::Analysis;
@@ -60,6 +63,8 @@ pub struct Description {
     pub reduced: Vec<ReducedOutput>,
     /// What is required of outputs.
     pub requirements: Vec<Requirement>,
+    /// Units in which outputs and reduced outputs are shown, by their names; the others in SI.
+    pub display: BTreeMap<String, DisplayUnit>,
     /// How time is stepped.
     pub simulation: Simulation,
     /// Which bounds are asked for.
@@ -173,6 +178,7 @@ impl Description {
             outputs: Vec::new(),
             reduced: Vec::new(),
             requirements: Vec::new(),
+            display: BTreeMap::new(),
             simulation: Simulation {
                 duration: 1.0,
                 stepping: Stepping::Fixed(1e-3),

@@ -14,6 +14,7 @@ mod analysis;
 mod beams;
 mod bodies;
 mod bounds;
+mod display;
 mod effects;
 mod joints;
 mod load;

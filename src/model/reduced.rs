@@ -3,7 +3,7 @@
 use symdiff::{Binary, Formula, Unary};
 
 use super::description::{ReducedKind, ReducedOutput};
-use super::file;
+use super::{display, file};
 use crate::grammar::dimension::Kind;
 use crate::grammar::names::Context;
 use crate::grammar::quantity::Dimension;
@@ -49,7 +49,7 @@ pub(super) struct Source {
 
 /// Whether an entry of `outputs:` is a reduced output.
 pub fn is_one(entry: &Entry) -> bool {
-    matches!(entry.value.value, Value::Mapping(_))
+    !display::is_formula(entry)
 }
 
 /// Reads a reduced output.
@@ -89,6 +89,9 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         let message = format!("two outputs are called `{name}`: one is a part of a vector");
         reader.error(entry.key_span.clone(), message, "give one of them another name".to_owned());
         return;
+    }
+    if let Some(node) = fields.get("unit") {
+        display::read(reader, node, &name, dimension);
     }
     reader.model.reduced.push(ReducedOutput {
         name,

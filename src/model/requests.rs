@@ -1,7 +1,7 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
-use super::{file, reduced};
+use super::{display, file, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
@@ -133,7 +133,9 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 /// Reads `outputs:`.
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     let (mappings, formulas): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| reduced::is_one(entry));
-    for entry in formulas {
+    for (entry, unit) in formulas.into_iter().filter_map(|entry| display::formula(reader, entry)).collect::<Vec<_>>() {
+        let entry = &entry;
+        let known = reader.model.outputs.len();
         reader.name_of_output(entry);
         match parts(reader, entry) {
             Some(parts) => {
@@ -146,6 +148,10 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
                     add(reader, entry, output);
                 }
             }
+        }
+        for place in known..reader.model.outputs.len() {
+            let Output { name, dimension, .. } = reader.model.outputs[place].clone();
+            unit.iter().for_each(|unit| display::read(reader, unit, &name, dimension));
         }
     }
     // These may be of outputs that stand behind them.

@@ -1,5 +1,6 @@
 //! What a run yields: bounds of every output over time.
 
+use crate::grammar::display_unit::DisplayUnit;
 use crate::methods::Method;
 use crate::numerics::BandError;
 
@@ -36,6 +37,8 @@ pub struct OutputBounds {
     pub name: String,
     /// SI unit, empty where dimensionless or unknown.
     pub unit: String,
+    /// The unit in which people see it, where the model names one; the numbers here are in SI.
+    pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.
     pub nominal: Vec<f64>,
     /// In the order of [`Method`].

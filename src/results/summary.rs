@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::{Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
+use crate::grammar::display_unit::DisplayUnit;
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
@@ -152,6 +153,9 @@ pub struct ErrorSummary {
     pub output: String,
     /// Its SI unit, in which the numbers are; empty where dimensionless or unknown.
     pub unit: String,
+    /// The unit in which people see them, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// Name of the method.
     pub method: String,
     /// Largest width of the band.
@@ -240,6 +244,7 @@ impl ErrorSummary {
         let of_band = |output: &OutputBounds, band: &Band| ErrorSummary {
             output: output.name.clone(),
             unit: output.unit.clone(),
+            display: output.display.clone(),
             method: band.method.name().to_owned(),
             width: band.upper.iter().zip(&band.lower).map(|(upper, lower)| upper - lower).fold(0.0, f64::max),
             error: band.error.largest(),

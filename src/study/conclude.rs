@@ -33,6 +33,7 @@ impl Study<'_> {
         let outputs = study.simulator.system.outputs.iter().enumerate().map(|(place, output)| OutputBounds {
             name: output.name.clone(),
             unit: output.unit.clone(),
+            display: None,
             nominal: results.nominal.result.bands[place][..rows].iter().map(|range| range.lower).collect(),
             bands: bands(study, &results, place, rows),
         });

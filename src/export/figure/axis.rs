@@ -1,11 +1,11 @@
 //! A linear axis: a unit that makes its numbers short, ticks at 1, 2 or 5 times a power of ten, labels of equal precision.
 
-use super::prefix::ScaleUnit;
+use super::prefix::{BaseUnit, ScaleUnit};
 
 /// A range that is smaller than this, relative to its size, is rounding noise.
 const ROUNDING: f64 = 1e-12;
 
-/// A linear axis. Data in the output's unit is divided by the unit's factor before it is drawn.
+/// A linear axis. Data in SI is divided by the unit's factor before it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What its numbers are in.
@@ -21,9 +21,15 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis for `values` in a unit with about `ticks` ticks; `padding` is the part of the range that stays free at each
+    /// The axis for `values` in SI, shown in a unit, with about `ticks` ticks; `padding` is the part of the range that stays free at each
     /// end. Whatever is not finite is passed over. What moves by less than `noise` is a constant.
-    pub fn fit(values: impl Iterator<Item = f64>, unit: &str, ticks: usize, padding: f64, noise: f64) -> Self {
+    pub fn fit<'a>(
+        values: impl Iterator<Item = f64>,
+        unit: impl Into<BaseUnit<'a>>,
+        ticks: usize,
+        padding: f64,
+        noise: f64,
+    ) -> Self {
         let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
         for x in values.filter(|x| x.is_finite()) {
             min = min.min(x);
@@ -121,6 +127,20 @@ mod tests {
         let large = Axis::fit([0.0, 25_000.0].into_iter(), "", 5, 0.0, 0.0);
         assert_eq!(large.title("F"), "F [10³]");
         assert_eq!(labels(&large), ["0", "5", "10", "15", "20", "25"]);
+    }
+
+    #[test]
+    fn a_unit_that_is_asked_for_is_kept() {
+        let degrees = BaseUnit { text: "deg", si: std::f64::consts::PI / 180.0 };
+        let axis = Axis::fit([0.0, std::f64::consts::PI].into_iter(), degrees, 4, 0.0, 0.0);
+        assert_eq!(
+            (axis.title("angle"), labels(&axis)),
+            ("angle [deg]".into(), ["0", "50", "100", "150"].map(String::from).into())
+        );
+        assert!((axis.place(0.5 * std::f64::consts::PI) - 0.5).abs() < 1e-15);
+        let millimetres = BaseUnit { text: "mm", si: 1e-3 };
+        assert_eq!(Axis::fit([0.0, 0.15].into_iter(), millimetres, 4, 0.0, 0.0).title("x"), "x [mm]");
+        assert_eq!(Axis::fit([0.0, 4e-6].into_iter(), millimetres, 4, 0.0, 0.0).title("x"), "x [µm]");
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub enum Sign {
     Band(Style),
     /// A filled square.
     Area(Hue),
+    /// A limit.
+    Limit,
 }
 
 /// Entries in rows of a width, px.
@@ -103,6 +105,7 @@ impl Entry {
                 };
                 Hue::Color(style.color).paint(key, "key").add(sign)
             }
+            Sign::Limit => key.set("class", "key").add(line((x, y), (x + SIGN, y)).set("class", "limit")),
             Sign::Area(hue) => {
                 hue.paint(key, "key").add(Path::new().set("class", "area").set("d", rectangle(6.5, x + SIGN)))
             }

@@ -261,13 +261,13 @@ impl Panel<'_> {
         (across, self.bottom - up * (self.bottom - self.top))
     }
 
-    /// The scales, for what shows the figure; `si` is what one of the output's unit is in SI.
-    pub fn data(&self, si: f64) -> PanelData {
+    /// The scales, for what shows the figure.
+    pub fn data(&self) -> PanelData {
         let seconds = self.x.unit.factor;
         PanelData {
             id: self.id.clone(),
             unit: self.y.unit.text.clone(),
-            si: si * self.y.unit.factor,
+            si: self.y.unit.factor,
             x: ScaleData {
                 min: self.x.min * seconds,
                 max: self.x.max * seconds,

@@ -1,7 +1,12 @@
 //! Units as a scale shows them: with the prefix that makes its numbers short (kN, µm), or a power of ten where there is no such prefix.
 
+use crate::results::OutputBounds;
+
 /// Sizes that read well without a prefix.
 const PLAIN: std::ops::Range<f64> = 0.1..1e4;
+
+/// A number that is too long: prefixes of areas and volumes are far apart.
+const LONG: f64 = 1e5;
 
 /// Powers of a thousand that a scale may take out; beyond them the power itself would under- or overflow.
 const EXPONENTS: std::ops::RangeInclusive<i32> = -306..=306;
@@ -25,18 +30,49 @@ const PREFIXED: [(&str, i32); 10] = [
     ("rad", 0),
 ];
 
+/// The unit that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseUnit<'a> {
+    /// As models write it: `N*m`.
+    pub text: &'a str,
+    /// What one of it is in SI.
+    pub si: f64,
+}
+
+impl<'a> From<&'a str> for BaseUnit<'a> {
+    /// An SI unit.
+    fn from(text: &'a str) -> Self {
+        Self { text, si: 1.0 }
+    }
+}
+
+impl<'a> BaseUnit<'a> {
+    /// Of an output: what the model asks for, or SI.
+    pub fn of(output: &'a OutputBounds) -> Self {
+        let si = Self::from(output.unit.as_str());
+        output.display.as_ref().map_or(si, |display| Self { text: &display.text, si: display.si() })
+    }
+}
+
 /// A unit as a scale shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScaleUnit {
     /// As in print: `kN·m`, `10³ rad/s`; empty for a number.
     pub text: String,
-    /// What one of it is in the unit that was given.
+    /// What one of it is in SI.
     pub factor: f64,
 }
 
 impl ScaleUnit {
-    /// For values up to `size` in `unit`, written as in models (`N*m`).
-    pub fn of(unit: &str, size: f64) -> Self {
+    /// For values up to `size` in SI.
+    pub fn of<'a>(unit: impl Into<BaseUnit<'a>>, size: f64) -> Self {
+        let BaseUnit { text, si } = unit.into();
+        let scaled = Self::prefixed(text, size / si);
+        Self { factor: scaled.factor * si, ..scaled }
+    }
+
+    /// For values up to `size` in `unit`; the factor is of this unit.
+    fn prefixed(unit: &str, size: f64) -> Self {
         if size == 0.0 || !size.is_finite() || PLAIN.contains(&size) {
             return Self { text: pretty_unit(unit), factor: 1.0 };
         }
@@ -44,7 +80,8 @@ impl ScaleUnit {
         // A prefix of m² counts twice.
         let step = 3 * power;
         let exponent = step * (symdiff::math::log10(size) / f64::from(step)).floor() as i32;
-        if let Some(symbol) = prefixed(first, exponent / power) {
+        let is_short = size / 10f64.powi(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end())) < LONG;
+        if let Some(symbol) = prefixed(first, exponent / power).filter(|_| is_short) {
             return Self { text: pretty_unit(&format!("{symbol}{rest}")), factor: 10f64.powi(exponent) };
         }
         let thousands = (symdiff::math::log10(size) / 3.0).floor() as i32;
@@ -128,7 +165,8 @@ mod tests {
             ("kg*m^2", 2e-3, "g·m²", 1e-3),
             ("kg", 2e4, "10³ kg", 1e3),
             ("m^2", 2e-5, "mm²", 1e-6),
-            ("m^3", 2e-5, "10⁻⁶ m³", 1e-6),
+            ("m^3", 2e-5, "mm³", 1e-9),
+            ("m^3", 2e-4, "10⁻⁶ m³", 1e-6),
             ("m^3", 2e-8, "mm³", 1e-9),
             ("rad/s", 2e4, "10³ rad/s", 1e3),
             ("rad", 2e-4, "µrad", 1e-6),
@@ -141,7 +179,7 @@ mod tests {
             ("rpm", 2e4, "10³ rpm", 1e3),
             ("N*s/m", 0.0, "N·s/m", 1.0),
         ] {
-            let found = ScaleUnit::of(unit, size);
+            let found = ScaleUnit::prefixed(unit, size);
             assert_eq!(found.text, text, "{unit} {size}");
             assert!((found.factor / factor - 1.0).abs() < 1e-12, "{unit} {size}: {}", found.factor);
         }

@@ -119,7 +119,8 @@ pub(super) mod tests {
         let error = BandError { total: vec![error; rows], unresolved: vec![false; rows], ..BandError::default() };
         let [lower, upper] = [-0.5, 0.5].map(|side| nominal.iter().map(|value| value + side * width).collect());
         let bands = vec![Band { method: Method::Scan, lower, upper, error }];
-        let output = OutputBounds { name: "x".into(), unit: "m".into(), nominal: nominal.to_vec(), bands };
+        let output =
+            OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: nominal.to_vec(), bands };
         Bounds { times: (0..rows).map(|row| 0.1 * row as f64).collect(), outputs: vec![output], ..Bounds::default() }
     }
 

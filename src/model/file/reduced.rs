@@ -10,6 +10,7 @@ schema_only! {
     #[schemars(untagged, inline)]
     pub enum OutputFile {
         Formula(Number),
+        Shown(Box<OutputFormula>),
         Reduced(Box<Reduced>),
     }
 
@@ -29,6 +30,14 @@ schema_only! {
 }
 
 grammar! {
+    /// A formula, of every time, and how it is shown.
+    OutputFormula is "an output" {
+        /// What is observed.
+        formula: Number,
+        /// In which unit plots, reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
+        unit: Option<String>,
+    }
+
     /// One number a motion. Exactly one of the first keys says which.
     Reduced is "a reduced output" {
         /// The greatest value less the smallest of this formula.
@@ -75,6 +84,8 @@ grammar! {
         band: Option<Number>,
         /// What the ordinate of `straightness` is held against.
         line: Option<Number>,
+        /// In which unit reports and tables show it, e.g. `mm`. Numbers in files stay in SI.
+        unit: Option<String>,
     }
 
     /// Limits of an output at all times, or of a reduced output.

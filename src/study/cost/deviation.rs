@@ -114,7 +114,7 @@ mod tests {
     fn output(lower: &[f64], upper: &[f64]) -> OutputBounds {
         let band =
             Band { method: Method::Scan, lower: lower.to_vec(), upper: upper.to_vec(), error: BandError::default() };
-        OutputBounds { name: "x".into(), unit: "m".into(), nominal: vec![0.5; 3], bands: vec![band] }
+        OutputBounds { name: "x".into(), unit: "m".into(), display: None, nominal: vec![0.5; 3], bands: vec![band] }
     }
 
     #[test]

@@ -117,7 +117,13 @@ mod tests {
             let curve = |value: f64| vec![value + 0.1 * h * h, 2.0 * value - 3.0 * h * h];
             let band =
                 Band { method: Method::Chebyshev, lower: curve(1.0), upper: curve(2.0), error: BandError::default() };
-            let output = OutputBounds { name: "x".into(), unit: String::new(), nominal: curve(1.5), bands: vec![band] };
+            let output = OutputBounds {
+                name: "x".into(),
+                unit: String::new(),
+                display: None,
+                nominal: curve(1.5),
+                bands: vec![band],
+            };
             Bounds { times: vec![0.0, 1.0], outputs: vec![output], ..Bounds::default() }
         };
         let limit = &extrapolated(&at(0.5), &at(1.0))[0];

@@ -43,5 +43,11 @@ pub fn shown(description: &Description, (mut bounds, mut summary): (Bounds, Summ
         summary.errors = ErrorSummary::of(&bounds);
         summary.contributions = ContributionSummary::of(&bounds);
     }
+    for output in &mut bounds.outputs {
+        output.display = description.display.get(&output.name).cloned();
+    }
+    for error in &mut summary.errors {
+        error.display = description.display.get(&error.output).cloned();
+    }
     (bounds, summary)
 }

@@ -1,0 +1,61 @@
+//! Units in which results are shown.
+
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+
+use super::quantity::Dimension;
+use super::unit::Unit;
+
+/// A unit in which an output is shown; its numbers stay in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisplayUnit {
+    /// As the model writes it: `mm`, `rpm`, `kN*m`.
+    pub text: String,
+    unit: Unit,
+}
+
+impl DisplayUnit {
+    /// A unit with its text.
+    pub fn new(text: &str, unit: Unit) -> Self {
+        Self { text: text.trim().to_owned(), unit }
+    }
+
+    /// What it measures.
+    pub fn dimension(&self) -> Dimension {
+        self.unit.dimension
+    }
+
+    /// What one of it is in SI.
+    pub fn si(&self) -> f64 {
+        self.unit.to_si(1.0)
+    }
+
+    /// A value in SI, in this unit.
+    pub fn of_si(&self, value: f64) -> f64 {
+        self.unit.from_si(value)
+    }
+}
+
+impl Serialize for DisplayUnit {
+    /// `{ "unit": "mm", "si": 0.001 }`.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fields = serializer.serialize_struct("DisplayUnit", 2)?;
+        fields.serialize_field("unit", &self.text)?;
+        fields.serialize_field("si", &self.si())?;
+        fields.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_converted_both_ways() {
+        let display = |text: &str| DisplayUnit::new(text, Unit::parse(text).unwrap());
+        let unit = display(" mm ");
+        assert_eq!((unit.text.as_str(), unit.si(), unit.of_si(0.15)), ("mm", 1e-3, 150.0));
+        assert!((display("rpm").of_si(std::f64::consts::PI) - 30.0).abs() < 1e-13);
+        assert_eq!(serde_json::to_string(&unit).unwrap(), r#"{"unit":"mm","si":0.001}"#);
+    }
+}
