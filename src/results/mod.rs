@@ -7,6 +7,7 @@ mod drawing;
 mod effect_cost;
 mod explanation;
 mod merge;
+mod motion;
 mod peaks;
 mod provenance;
 mod summary;
@@ -21,6 +22,7 @@ pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
+pub use motion::{Motion, MotionPolynomials, MovingSample, Poses};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use summary::{

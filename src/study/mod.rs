@@ -4,7 +4,7 @@
 //! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing` and `motion` show the mechanism, `internal` keeps a
 //! panic to what panicked.
 
 mod conclude;
@@ -19,6 +19,7 @@ mod explain;
 mod feasible;
 mod formulation;
 mod internal;
+mod motion;
 mod outcome;
 mod price;
 mod single;
@@ -42,6 +43,7 @@ pub use effect_costs::language_costs;
 pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
+pub use motion::{MotionOptions, motion};
 pub use price::Price;
 
 /// How to run.

@@ -1,0 +1,28 @@
+//! `mbint report`, and what `mbint run` adds for a report.
+
+use super::args::ReportArgs;
+use super::console::Console;
+use super::job::Job;
+use super::{Failure, Status};
+use crate::export::{ReportParts, write_report};
+use crate::study::{self, MotionOptions};
+
+/// Numbers of two bytes that the motions of a report come to, about: with base64 it keeps below 2 MB beside its plots.
+const SIZE: usize = 300_000;
+
+pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status, Failure> {
+    let file = write_report(&args.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    console.print(&format!("{}\n", file.display()))?;
+    Ok(Status::Done)
+}
+
+/// What a report shows of a job beside its results. A motion that cannot be simulated is told on the page.
+pub(super) fn parts(job: &Job, threads: Option<usize>) -> ReportParts {
+    let options = MotionOptions { threads, size: SIZE / job.share.max(1) };
+    let motion = study::caught("the report's motion", || study::motion(&job.model, options));
+    let motion = match motion {
+        Ok(found) => found.map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
+    };
+    ReportParts { description: job.model.description.clone(), texts: job.texts.to_vec(), motion, page: job.page }
+}
