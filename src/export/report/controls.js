@@ -42,7 +42,7 @@ export function player(clock) {
   clock.listen(update);
   update();
   return element('div', { class: 'player' }, [
-    button('⏮', 'To the start (Home)', () => clock.step(-1)),
+    button('«', 'To the start (Home)', () => clock.step(-1)),
     button('‹', 'A step back (←)', () => clock.step(-0.005)),
     play,
     button('›', 'A step on (→)', () => clock.step(0.005)),
@@ -70,7 +70,10 @@ export function options(view) {
       view.set({ colorBy: axis });
       tell(axis);
     });
-    holder.append(element('div', { class: 'row' }, [element('label', {}, [box, `${movie.samples.length} samples`]), colors, scale]));
+    const factors = [1, 2, 5, 10, 20, 50, 100];
+    const exaggerate = choice('Deviations', factors.map((factor) => `× ${factor}`), (place) => view.set({ exaggeration: factors[place] }));
+    exaggerate.id = 'exaggerate';
+    holder.append(element('div', { class: 'row' }, [element('label', {}, [box, `${movie.samples.length} samples`]), colors, scale, exaggerate]));
   }
   const names = ['nothing', ...mechanism.named.map(({ name }) => name)];
   const swept = choice('Swept by', names, (place) => view.set({ swept: place - 1 }));

@@ -21,6 +21,8 @@ export class Movie {
     this.lines = this.bodies.length / this.times.length;
     /** Differences from the nominal motion. @type {Moving[]} */
     this.samples = data.samples.map((sample) => ({ values: sample.values, bodies: unpack(sample.bodies), points: floats(sample.points) }));
+    /** How many times differences from the nominal motion are shown. */
+    this.exaggeration = 1;
     const found = data.polynomials;
     this.polynomials = found && { degrees: found.degrees, error: found.error, bodies: unpack(found.bodies), points: floats(found.points) };
   }
@@ -43,10 +45,10 @@ export class Movie {
   }
 
   /** @param {number} time @param {(place: number) => number} difference from the nominal motion */
-  between_frames(time, difference) {
+  interpolated(time, difference) {
     const [frame, share] = this.frame(time);
     const next = Math.min(frame + 1, this.times.length - 1);
-    const at = (/** @type {number} */ place) => this.bodies[place] + difference(place);
+    const at = (/** @type {number} */ place) => this.bodies[place] + this.exaggeration * difference(place);
     const pose = new Float64Array(this.lines);
     for (let line = 0; line < this.lines; line++) {
       const value = at(frame * this.lines + line);
@@ -57,9 +59,9 @@ export class Movie {
 
   /** The motion of a sample, the nominal one where it has no number. @param {number} time @param {number} [sample] @returns {Instant} */
   at(time, sample) {
-    if (sample === undefined) return { pose: this.between_frames(time, () => 0), points: this.points };
+    if (sample === undefined) return { pose: this.interpolated(time, () => 0), points: this.points };
     const { bodies, points } = this.samples[sample];
-    return { pose: this.between_frames(time, (place) => bodies[place]), points: this.points.map((value, place) => value + points[place]) };
+    return { pose: this.interpolated(time, (place) => bodies[place]), points: this.points.map((value, place) => value + this.exaggeration * points[place]) };
   }
 
   /** Products of Chebyshev polynomials, term by term. @param {number[]} xi */
@@ -82,7 +84,7 @@ export class Movie {
       return value;
     };
     const point = sum(this.polynomials.points);
-    return { pose: this.between_frames(time, sum(this.polynomials.bodies)), points: this.points.map((value, place) => value + point(place)) };
+    return { pose: this.interpolated(time, sum(this.polynomials.bodies)), points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
   }
 
   /** Where a body is, the ground being 0. @param {Float64Array} pose @param {number} body @returns {{p: number[], q: number[]}} */

@@ -10,7 +10,7 @@ import { norm, times } from './vectors.js';
 
 /** @typedef {import('./motion.js').Movie} Movie */
 /** @typedef {import('./clock.js').Clock} Clock */
-/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null}} Choices */
+/** @typedef {{ghosts?: boolean, colorBy?: number, swept?: number, xi?: number[] | null, exaggeration?: number}} Choices */
 
 /** From the least to the greatest value, apart for the colour-blind too. */
 const [LOW, MIDDLE, HIGH] = [[0.05, 0.36, 0.78], [0.72, 0.72, 0.72], [0.88, 0.45, 0]];
@@ -42,7 +42,8 @@ export class View {
     this.drawings = 0;
     this.label = element('div', { class: 'tip', hidden: '' });
     this.bar = element('div', { class: 'bar' });
-    holder.append(canvas, this.label, this.bar);
+    this.exaggerated = element('div', { class: 'exaggerated' });
+    holder.append(canvas, this.label, this.bar, this.exaggerated);
     this.dark = matchMedia('(prefers-color-scheme: dark)');
     this.dark.addEventListener('change', () => this.changed());
     new ResizeObserver(() => this.changed()).observe(canvas);
@@ -52,9 +53,11 @@ export class View {
 
   /** @param {Choices} choices */
   set(choices) {
-    Object.assign(this, choices);
-    if (choices.swept !== undefined) {
-      const chosen = this.mechanism.named[choices.swept];
+    const { exaggeration, ...own } = choices;
+    Object.assign(this, own);
+    if (exaggeration) this.movie.exaggeration = exaggeration;
+    if (exaggeration || choices.swept !== undefined) {
+      const chosen = this.mechanism.named[this.swept];
       this.region = chosen ? sweptRegion(this.mechanism, chosen.anchor, [0.8, 0.35, 0.6]) : [];
     }
     this.changed();
@@ -109,6 +112,7 @@ export class View {
     const round = ([5, 2].find((nice) => nice * power <= wanted) || 1) * power;
     this.bar.style.width = `${round / metres}px`;
     this.bar.textContent = length(round);
+    this.exaggerated.textContent = this.movie.exaggeration > 1 ? `deviations shown × ${this.movie.exaggeration}` : '';
   }
 
   listen() {
