@@ -231,6 +231,8 @@ mod tests {
             }],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,

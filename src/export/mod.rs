@@ -1,10 +1,9 @@
 //! Bounds → files: CSV, summary and plots.
 
-mod axis;
-mod canvas;
 mod columns;
 mod contributions;
 mod cost;
+mod courses;
 mod csv;
 mod drawing;
 mod error;
@@ -13,15 +12,12 @@ mod files;
 mod folder;
 mod overlay;
 mod owned;
-mod panel;
 mod plot;
-mod polyline;
 mod reference;
 mod report;
 mod scenes;
 mod snapshot;
 mod stems;
-mod view;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;
@@ -33,7 +29,7 @@ pub use files::write_results;
 pub use folder::{prepare_folder, write_pages};
 pub use overlay::SceneBounds;
 pub use owned::holds_complete_results;
-pub use plot::plot_svg;
+pub use plot::{noise, plot_svg};
 pub use reference::effects as effects_page;
 pub use report::{ReportParts, write_report};
 pub use scenes::write_scenes;

@@ -2,6 +2,7 @@
 
 mod body;
 mod index;
+mod reduced;
 mod robot;
 mod simulation;
 mod start;
@@ -14,6 +15,7 @@ use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
+pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, Simulation, Stepping};
 pub use start::StartValue;
@@ -48,6 +50,10 @@ pub struct Description {
     pub guess: Vec<StartValue>,
     /// What is observed.
     pub outputs: Vec<Output>,
+    /// What is observed as one number a motion.
+    pub reduced: Vec<ReducedOutput>,
+    /// What is required of outputs.
+    pub requirements: Vec<Requirement>,
     /// How time is stepped.
     pub simulation: Simulation,
     /// Which bounds are asked for.
@@ -157,6 +163,8 @@ impl Description {
             initial: Vec::new(),
             guess: Vec::new(),
             outputs: Vec::new(),
+            reduced: Vec::new(),
+            requirements: Vec::new(),
             simulation: Simulation {
                 duration: 1.0,
                 stepping: Stepping::Fixed(1e-3),

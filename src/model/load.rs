@@ -9,7 +9,7 @@ use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
-use super::{bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
+use super::{bodies, bounds, effects, joints, parameters, requests, requirements, space, tables, teeth};
 use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
@@ -221,6 +221,7 @@ fn describe(
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
     let output_entries = section(&mut reader, fields.get("outputs"), "outputs");
+    let requirement_entries = section(&mut reader, fields.get("requirements"), "requirements");
     let initial_entries = section(&mut reader, fields.get("initial"), "start values");
     let guess_entries = section(&mut reader, fields.get("guess"), "start values");
 
@@ -250,6 +251,7 @@ fn describe(
     if let Some(node) = reader.required(&fields, "simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
+    requirements::read(&mut reader, requirement_entries);
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }

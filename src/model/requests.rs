@@ -1,7 +1,7 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
-use super::file;
+use super::{file, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
@@ -132,7 +132,8 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 
 /// Reads `outputs:`.
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
-    for entry in entries {
+    let (mappings, formulas): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| reduced::is_one(entry));
+    for entry in formulas {
         reader.name_of_output(entry);
         match parts(reader, entry) {
             Some(parts) => {
@@ -146,6 +147,11 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
                 }
             }
         }
+    }
+    // These may be of outputs that stand behind them.
+    for entry in mappings {
+        reader.name_of_output(entry);
+        reduced::read(reader, entry);
     }
 }
 

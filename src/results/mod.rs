@@ -10,6 +10,8 @@ mod merge;
 mod motion;
 mod peaks;
 mod provenance;
+mod reduced;
+mod requirement;
 mod summary;
 
 pub use crate::methods::Method;
@@ -25,6 +27,8 @@ pub use merge::Piece;
 pub use motion::{Motion, MotionPolynomials, MovingSample, Poses};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
+pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
+pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,

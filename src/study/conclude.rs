@@ -59,7 +59,7 @@ impl Study<'_> {
 }
 
 /// Every parameter's contribution to every output's spread, from a method that knows it.
-fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
+pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
     let known = |(_, outcome): &&(Method, Outcome)| outcome.result.sensitivities.iter().flatten().any(Option::is_some);
     let Some((_, outcome)) = results.methods.iter().find(known) else { return Vec::new() };
     let of_parameter = |rows_of_output: &[Option<Sensitivity>], place: usize| {
@@ -81,7 +81,7 @@ fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contr
 }
 
 /// An output's band by every method, with its error.
-fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
+pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
     let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
     let corrections = validation.corrections(output, rows);
@@ -211,9 +211,12 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
                 method: format!("{} with halved steps", method.name()),
                 ..outcome.summary
             }))
+            .chain(results.found.summary)
             .collect(),
         errors: ErrorSummary::of(bounds),
         contributions: ContributionSummary::of(bounds),
+        reduced: results.found.reduced,
+        requirements: results.found.requirements,
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),

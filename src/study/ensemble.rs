@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::reduced::{Store, steps_of};
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
@@ -55,6 +56,8 @@ pub(super) struct Motions<'a> {
     tolerance: Option<Controller>,
     progress: &'a Progress<'a>,
     interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Where outputs are reduced to one number: keeps what samples are reduced to.
+    store: Option<&'a Store>,
     /// Simulations that are over: at the end, or where they stopped.
     over: AtomicUsize,
     /// Made when something is enclosed.
@@ -72,7 +75,22 @@ impl<'a> Motions<'a> {
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
         let over = AtomicUsize::new(0);
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier: OnceLock::new() }
+        let certifier = OnceLock::new();
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, store: None, over, certifier }
+    }
+
+    /// The same, which also reduces outputs to one number.
+    pub fn keeping(self, store: Option<&'a Store>) -> Self {
+        Self { store, ..self }
+    }
+
+    /// Samples at their start.
+    fn start(&self, samples: &[Sample]) -> Result<EnsembleRun<'a>, SimulationError> {
+        let run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        Ok(match self.store {
+            Some(store) => run.reducing(&store.plan.channels),
+            None => run,
+        })
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -89,7 +107,7 @@ impl<'a> Motions<'a> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
         let sample = std::slice::from_ref(&self.domain.nominal);
-        let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
+        let mut run = self.start(sample)?.watching();
         let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
         let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
@@ -127,6 +145,9 @@ impl<'a> Motions<'a> {
             reduce(rows.clone(), &values);
             self.progress.advance(samples.len() * rows.len());
             next = rows.end;
+        }
+        if let Some(store) = self.store.filter(|_| next == self.schedule.rows) {
+            store.keep(steps_of(self.schedule), samples, &run.reduced());
         }
         if next == self.schedule.rows || !goes_on(&stop) {
             self.over.fetch_add(samples.len(), Ordering::Relaxed);
@@ -205,7 +226,7 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        let mut run = self.start(samples)?;
         Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 

@@ -22,6 +22,7 @@ mod internal;
 mod motion;
 mod outcome;
 mod price;
+mod reduced;
 mod single;
 mod step_search;
 mod steps;
@@ -112,7 +113,8 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| subsystems::run(description, &options))
+    let model = reduced::expanded(description);
+    pool.install(|| subsystems::run(&model, &options)).map(|found| reduced::shown(description, found))
 }
 
 /// A compiled model: of what `run` simulates, all in one.

@@ -1,6 +1,7 @@
 //! What a subsystem's methods found, before it becomes bounds.
 
 use super::internal::InternalError;
+use super::reduced::Found;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
@@ -30,6 +31,8 @@ pub(super) struct Results {
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.
     pub internal: Vec<InternalError>,
+    /// What is one number a motion.
+    pub found: Found,
 }
 
 impl Results {

@@ -1,8 +1,11 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
+use std::sync::OnceLock;
+
 use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
+use super::reduced::{Found, Store};
 use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::methods::{
@@ -25,7 +28,9 @@ pub(super) struct Study<'a> {
     /// Functions of the time in the equations of motion, where there are any.
     pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
-    certify_time: bool,
+    pub(super) certify_time: bool,
+    /// Where outputs are reduced to one number: what is accumulated for that, and what samples were reduced to.
+    pub(super) store: OnceLock<Store>,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
@@ -65,7 +70,8 @@ impl<'a> Study<'a> {
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
         let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
-        Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, interrupted })
+        let store = OnceLock::new();
+        Ok(Self { description, simulator, domain, request, time_functions, certify_time, store, progress, interrupted })
     }
 
     /// The same over a part of the box.
@@ -73,7 +79,8 @@ impl<'a> Study<'a> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        Study { domain: part.clone(), request, progress, simulator, time_functions, ..*self }
+        let store = OnceLock::new();
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store, ..*self }
     }
 
     /// Rows of output that are asked for.
@@ -88,7 +95,8 @@ impl<'a> Study<'a> {
         tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
-        Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
+        let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted);
+        motions.keeping(self.store.get())
     }
 
     /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
@@ -142,6 +150,7 @@ impl<'a> Study<'a> {
         schedule: &Schedule,
         mut tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
+        self.plan_reduction(schedule, tolerance)?;
         if self.domain.dimension() == 0 {
             return self.deterministic(schedule, tolerance);
         }
@@ -182,7 +191,23 @@ impl<'a> Study<'a> {
         }
         drop(motions);
         let damped = self.damped_modes(&schedule);
-        Ok(Results { schedule, unresolved_from, damped, nominal, singular, validation, methods, halved, internal })
+        let found = Found::default();
+        let mut results = Results {
+            schedule,
+            unresolved_from,
+            damped,
+            nominal,
+            singular,
+            validation,
+            methods,
+            halved,
+            internal,
+            found,
+        };
+        if !(self.interrupted)() {
+            results.found = self.reduced(&results, tolerance, &progress)?;
+        }
+        Ok(results)
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
@@ -289,6 +314,7 @@ impl<'a> Study<'a> {
             methods: Vec::new(),
             halved: Vec::new(),
             internal: vec![error],
+            found: Found::default(),
         };
         Ok(self.conclude(results, None))
     }

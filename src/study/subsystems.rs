@@ -100,7 +100,9 @@ fn as_far_as_joints_go<T>(
 /// # Errors
 /// As for any run.
 pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
+    // What is one number a motion may be of all of it.
+    let is_whole = !description.reduced.is_empty() || !description.requirements.is_empty();
+    let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);
     let count = prepared.len();

@@ -34,8 +34,10 @@ grammar! {
         initial: Option<IndexMap<String, StartFile>>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
-        /// What is observed: names with formulas, e.g. `x3: slider.x`.
-        outputs: Option<IndexMap<String, Number>>,
+        /// What is observed: names with formulas, e.g. `x3: slider.x`, or what of a motion is one number, e.g. `stroke: { range: slider.x }`.
+        outputs: Option<IndexMap<String, OutputFile>>,
+        /// What is required of outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
+        requirements: Option<IndexMap<String, RequirementFile>>,
         /// How long, and in which steps.
         simulation: Simulation,
         /// Which bounds to compute; without this, Chebyshev of order 5.
@@ -69,7 +71,9 @@ grammar! {
         /// Instead of the model's of the same name, or on top.
         guess: Option<IndexMap<String, StartFile>>,
         /// Instead of the model's of the same name, or on top.
-        outputs: Option<IndexMap<String, Number>>,
+        outputs: Option<IndexMap<String, OutputFile>>,
+        /// Instead of the model's of the same name, or on top.
+        requirements: Option<IndexMap<String, RequirementFile>>,
         /// Keys that are not as in the model.
         simulation: Option<SceneSimulation>,
         /// Instead of the model's.

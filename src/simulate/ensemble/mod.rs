@@ -2,9 +2,11 @@
 
 mod jets;
 mod lane_steps;
+mod reduction;
 mod row_accelerations;
 mod run;
 mod switch_extents;
 
 pub use jets::JetRun;
+pub use reduction::{Accumulation, Channel};
 pub use run::{EnsembleRun, Observed, Stop};
