@@ -51,6 +51,8 @@ pub(super) struct Job {
     pub files: Vec<ModelFile>,
     /// Their names and texts.
     pub texts: Rc<[(String, String)]>,
+    /// The folder of the model's file.
+    pub beside: PathBuf,
     /// Jobs that share a report.
     pub share: usize,
     /// Whether the report is beside the results, and not that of all scenes.

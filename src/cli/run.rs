@@ -113,13 +113,15 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
         // A single requested scene is run like a model.
         let alone = request.scenes.len() == 1;
         let share = if alone { 1 } else { scenes.len() };
+        let beside = path.parent().map(PathBuf::from).unwrap_or_default();
         let mut jobs = scenes.into_iter().map(|(scene, mut model)| {
             if request.certify {
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
+            let (files, texts, beside) = (files.clone(), texts.clone(), beside.clone());
             let page = alone || scene.is_none();
-            (scene, Job { model, folder, files: files.clone(), texts: texts.clone(), share, page })
+            (scene, Job { model, folder, files, texts, beside, share, page })
         });
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {

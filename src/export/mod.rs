@@ -31,7 +31,7 @@ pub use overlay::SceneBounds;
 pub use owned::holds_complete_results;
 pub use plot::{noise, plot_svg};
 pub use reference::effects as effects_page;
-pub use report::{ReportParts, write_report};
+pub use report::{ReportParts, stl_corners, write_report};
 pub use scenes::write_scenes;
 pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_snapshot};
 pub use stems::file_stem;

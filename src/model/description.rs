@@ -16,7 +16,7 @@ use crate::methods::BoundsRequest;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
-pub use robot::{RobotTree, TreeJoint, TreeLink};
+pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
 pub use simulation::{Formulation, Simulation, Stepping};
 pub use start::StartValue;
 

@@ -24,7 +24,7 @@ pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 pub use effect_cost::{EffectCost, StepInstructions};
 pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 pub use merge::Piece;
-pub use motion::{Motion, MotionPolynomials, MovingSample, Poses};
+pub use motion::{Motion, MotionPolynomials, MovingSample, MovingVisual, Poses};
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};

@@ -1,5 +1,7 @@
 //! How the bodies of a mechanism move: at the nominal parameters, at samples of the box, and as polynomials in the parameters.
 
+use serde::Serialize;
+
 use super::{Drawing, ParameterSummary};
 
 /// A mechanism's motion at times that were chosen from the rows of a simulation.
@@ -10,6 +12,8 @@ use super::{Drawing, ParameterSummary};
 pub struct Motion {
     /// The mechanism at its nominal start.
     pub drawing: Drawing,
+    /// What bodies of a robot look like.
+    pub visuals: Vec<MovingVisual>,
     /// Times of the poses, s.
     pub times: Vec<f64>,
     /// Number of simulated rows that the times were chosen from.
@@ -63,4 +67,25 @@ pub struct MotionPolynomials {
     /// How far a point of a body is from its simulated place, m: at most, over all times and samples that the polynomials were not made
     /// from.
     pub error: f64,
+}
+
+/// A solid that moves with a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct MovingVisual {
+    /// Its body, by index; 0 is the ground.
+    pub body: usize,
+    /// Where its middle is in the body's frame, m.
+    pub position: [f64; 3],
+    /// How it is turned there: Euler parameters.
+    pub orientation: [f64; 4],
+    /// `box`, `cylinder` (about z), `sphere` or `mesh`.
+    pub shape: &'static str,
+    /// The box' sides; radius and length; radius; factors of the mesh; m.
+    pub size: Vec<f64>,
+    /// Red, green and blue from 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<[f64; 3]>,
+    /// The file of a mesh, as the robot's file names it.
+    #[serde(skip)]
+    pub file: Option<String>,
 }

@@ -39,7 +39,7 @@ export class Mechanism {
     const size = norm(minus(this.extent[1], this.extent[0])) || 1;
     /** Half the thickness of bars, m. */
     this.thickness = 0.011 * size;
-    this.visuals = (movie.drawing.visuals || []).map((visual, number) => ({ ...visual, mesh: visual.vertices ? `mesh${number}` : visual.shape }));
+    this.visuals = movie.visuals.map((visual, number) => ({ ...visual, mesh: visual.vertices ? `mesh${number}` : visual.shape }));
   }
 
   /** Meshes of the model's own. */

@@ -7,6 +7,7 @@ mod motion;
 mod packing;
 mod page;
 mod script;
+mod stl;
 mod tables;
 
 pub(super) use folder::page_of_folders;
@@ -14,3 +15,4 @@ pub use folder::write_report;
 pub use motion::ReportParts;
 pub(super) use motion::{MOTION, motion_json};
 pub(super) use page::{PageFigure, PageScene, page};
+pub use stl::stl_corners;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::packing::{Packed, floats};
 use crate::export::drawing::drawing_svg;
-use crate::results::{Drawing, Motion, MotionPolynomials, ParameterSummary, Poses};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingVisual, ParameterSummary, Poses};
 
 /// Its name.
 pub(in crate::export) const MOTION: &str = "motion.json";
@@ -18,6 +18,8 @@ pub struct ReportParts {
     pub texts: Vec<(String, String)>,
     /// The motion, or why there is none.
     pub motion: Result<Motion, String>,
+    /// Corners of the triangles of each visual of the motion that is a mesh whose file could be read.
+    pub meshes: Vec<Option<Vec<f32>>>,
     /// Whether `report.html` is written beside the other files; scenes have one together.
     pub page: bool,
 }
@@ -46,6 +48,7 @@ struct PackedMotion<'m> {
     drawing: &'m Drawing,
     /// The mechanism at its start, for readers without scripts.
     picture: String,
+    visuals: Vec<PackedVisual<'m>>,
     times: String,
     rows: usize,
     between: f64,
@@ -56,6 +59,15 @@ struct PackedMotion<'m> {
     stopped: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     polynomials: Option<PackedPolynomials<'m>>,
+}
+
+/// A solid, with the corners of its triangles where it is a mesh.
+#[derive(Serialize)]
+struct PackedVisual<'m> {
+    #[serde(flatten)]
+    visual: &'m MovingVisual,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertices: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -87,7 +99,7 @@ pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<
     let written = Written {
         description: parts.description.as_deref(),
         model: parts.texts.iter().map(|(name, text)| Text { name, text }).collect(),
-        motion: parts.motion.as_ref().ok().map(packed),
+        motion: parts.motion.as_ref().ok().map(|motion| packed(motion, &parts.meshes)),
         absent: parts.motion.as_ref().err().map(String::as_str),
     };
     let mut json = serde_json::to_vec(&written)?;
@@ -95,7 +107,7 @@ pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<
     Ok(json)
 }
 
-fn packed(motion: &Motion) -> PackedMotion<'_> {
+fn packed<'m>(motion: &'m Motion, meshes: &[Option<Vec<f32>>]) -> PackedMotion<'m> {
     let Motion { nominal, .. } = motion;
     let lines = nominal.bodies.len() / motion.times.len().max(1);
     let beside = |values: &[f64], nominal: &[f64]| -> Vec<f64> {
@@ -106,7 +118,11 @@ fn packed(motion: &Motion) -> PackedMotion<'_> {
         bodies: Packed::new(&beside(&poses.bodies, &nominal.bodies), lines),
         points: floats(&beside(&poses.points, &nominal.points)),
     };
+    let corners = |mesh: &Vec<f32>| floats(&mesh.iter().copied().map(f64::from).collect::<Vec<f64>>());
+    // A mesh whose file is not there has no shape.
+    let visuals = motion.visuals.iter().zip(meshes).filter(|(visual, mesh)| visual.file.is_none() || mesh.is_some());
     PackedMotion {
+        visuals: visuals.map(|(visual, mesh)| PackedVisual { visual, vertices: mesh.as_ref().map(corners) }).collect(),
         drawing: &motion.drawing,
         picture: drawing_svg(&motion.drawing),
         times: floats(&motion.times),

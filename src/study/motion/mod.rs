@@ -5,14 +5,17 @@
 
 mod samples;
 mod thinning;
+mod visuals;
 
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::drawing;
 use super::{RunError, formulation};
 use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, Sample, SparseWork, SurrogateWork};
-use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, ParameterSummary, Poses};
-use crate::simulate::{Controller, EnsembleRun, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, MovingVisual, ParameterSummary, Poses};
+use crate::simulate::{
+    Assembled, Controller, EnsembleRun, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
+};
 use samples::Samples;
 use thinning::Thinning;
 
@@ -162,8 +165,17 @@ impl Posed {
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
             polynomials,
+            visuals: self.visuals(description),
             drawing,
         })
+    }
+
+    fn visuals(&self, description: &Description) -> Vec<MovingVisual> {
+        let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = self.simulator.clone();
+        let assembled = Assembled { system, start, nominal, mobility, undetermined, shared };
+        let outputs = 0..assembled.system.outputs.len();
+        let values = Values(assembled.outputs_at_start(outputs, &self.domain.nominal));
+        visuals::visuals(description, &self.bodies, &values)
     }
 
     /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for angles, m.
