@@ -22,6 +22,7 @@ mod scenes;
 mod show;
 mod snapshot;
 mod status;
+mod structure;
 mod table;
 mod tree;
 

@@ -7,14 +7,16 @@ mod samples;
 mod thinning;
 mod visuals;
 
+use rayon::prelude::*;
+
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::drawing;
 use super::{RunError, formulation};
-use crate::model::{Description, Stepping};
+use crate::model::{Analysis, Description, Stepping};
 use crate::numerics::{ParameterBox, Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, MovingVisual, ParameterSummary, Poses};
 use crate::simulate::{
-    Assembled, Controller, EnsembleRun, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
+    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
 };
 use samples::Samples;
 use thinning::Thinning;
@@ -71,6 +73,8 @@ pub(super) struct Posed {
 struct Recorded {
     rows: Vec<f64>,
     points: Vec<f64>,
+    /// All that was asked, in the first row.
+    at_start: Vec<f64>,
     stopped: Option<usize>,
 }
 
@@ -165,16 +169,13 @@ impl Posed {
             stopped: wanted.len() - 1 - nodes.len() - samples.len(),
             samples,
             polynomials,
-            visuals: self.visuals(description),
+            visuals: self.visuals(description, &recorded[0].at_start),
             drawing,
         })
     }
 
-    fn visuals(&self, description: &Description) -> Vec<MovingVisual> {
-        let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = self.simulator.clone();
-        let assembled = Assembled { system, start, nominal, mobility, undetermined, shared };
-        let outputs = 0..assembled.system.outputs.len();
-        let values = Values(assembled.outputs_at_start(outputs, &self.domain.nominal));
+    fn visuals(&self, description: &Description, at_start: &[f64]) -> Vec<MovingVisual> {
+        let values = Values(at_start.to_vec());
         visuals::visuals(description, &self.bodies, &values)
     }
 
@@ -203,14 +204,28 @@ impl Posed {
         let can = self.simulator.can_assemble(wanted);
         let running: Vec<usize> = (0..wanted.len()).filter(|&sample| sample == 0 || can[sample]).collect();
         let samples: Vec<Sample> = running.iter().map(|&sample| wanted[sample].clone()).collect();
-        let (schedule, controller) = self.schedule(description, &samples)?;
-        let lines = self.per_body() * (self.bodies.len() - 1);
-        let every = (schedule.rows * lines * samples.len()).div_ceil(MOST_NUMBERS).max(1);
         let mut recorded = vec![Recorded { stopped: Some(0), ..Recorded::default() }; wanted.len()];
         running.iter().for_each(|&sample| recorded[sample].stopped = None);
+        let times = match description.analysis.is_without_steps() {
+            true => self.visit(description, drawing, (&running, &samples), &mut recorded)?,
+            false => self.follow(description, drawing, (&running, &samples), &mut recorded)?,
+        };
+        Ok((times, recorded))
+    }
+
+    /// By time steps.
+    fn follow(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        (running, samples): (&[usize], &[Sample]),
+        recorded: &mut [Recorded],
+    ) -> Result<Vec<f64>, RunError> {
+        let (schedule, controller) = self.schedule(description, samples)?;
+        let every = self.every(schedule.rows, samples.len());
         let mut times = Vec::new();
-        let mut run = EnsembleRun::start(&self.simulator, &samples, schedule.first_step())?;
-        let outputs = self.simulator.program.outputs.len();
+        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        let outputs = self.simulator.system.outputs.len();
         let mut values = Vec::new();
         let mut next = 0;
         while next < schedule.rows && recorded[0].stopped.is_none() {
@@ -225,16 +240,61 @@ impl Posed {
                 }
                 times.push(schedule.time(row));
                 for (place, &sample) in running.iter().enumerate() {
-                    let own = Values((0..outputs).map(|output| of_row[output * samples.len() + place]).collect());
-                    self.pose(&own, &mut recorded[sample].rows);
-                    if row == 0 {
-                        recorded[sample].points = self.points(&own, drawing);
-                    }
+                    let own = (0..outputs).map(|output| of_row[output * samples.len() + place]).collect();
+                    self.keep(Values(own), row == 0, drawing, &mut recorded[sample]);
                 }
             }
             next = block.end;
         }
-        Ok((times, recorded))
+        Ok(times)
+    }
+
+    /// Configuration by configuration.
+    fn visit(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        (running, samples): (&[usize], &[Sample]),
+        recorded: &mut [Recorded],
+    ) -> Result<Vec<f64>, RunError> {
+        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
+        let rows =
+            if description.analysis == Analysis::Kinematics { Schedule::rows_of(duration, output_step) } else { 1 };
+        let every = self.every(rows, samples.len());
+        let times: Vec<f64> =
+            (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
+        let outputs = self.simulator.system.outputs.len();
+        let found: Vec<_> = samples.par_iter().map(|sample| self.simulator.visit(sample, &times)).collect();
+        for (&sample, visit) in running.iter().zip(found) {
+            let visit = match visit {
+                Err(error) if sample == 0 => return Err(error.into()),
+                Err(_) => {
+                    recorded[sample].stopped = Some(0);
+                    continue;
+                }
+                Ok(visit) => visit,
+            };
+            recorded[sample].stopped = visit.stop.map(|stop| stop.row);
+            for (row, values) in visit.values.chunks_exact(outputs).enumerate() {
+                self.keep(Values(values.to_vec()), row == 0, drawing, &mut recorded[sample]);
+            }
+        }
+        let reached = recorded[0].stopped.unwrap_or(times.len());
+        Ok(times[..reached.min(times.len())].to_vec())
+    }
+
+    /// How many rows one stands for that is looked at.
+    fn every(&self, rows: usize, samples: usize) -> usize {
+        let lines = self.per_body() * (self.bodies.len() - 1);
+        (rows * lines * samples).div_ceil(MOST_NUMBERS).max(1)
+    }
+
+    fn keep(&self, values: Values, is_first: bool, drawing: &Drawing, into: &mut Recorded) {
+        self.pose(&values, &mut into.rows);
+        if is_first {
+            into.points = self.points(&values, drawing);
+            into.at_start = values.0;
+        }
     }
 
     /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
@@ -246,7 +306,10 @@ impl Posed {
         let simulation = &description.simulation;
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         let (schedule, controller) = match simulation.stepping {
-            Stepping::Fixed(step) => (Schedule::fixed(duration, step, output_step), None),
+            Stepping::Fixed(step) => {
+                let integration = Integration::of_levels(simulation.extrapolation.unwrap_or(1));
+                (Schedule::fixed(duration, step, output_step).taken(integration), None)
+            }
             Stepping::Tolerance(tolerance) => {
                 let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
                 let found = schedule_for_tolerance(&self.simulator, controlling, duration, output_step, tolerance)?;
