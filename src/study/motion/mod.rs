@@ -346,3 +346,48 @@ impl Posed {
         self.bodies.iter().zip(&drawing.bodies).flat_map(of_body).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::Tapes;
+    use crate::model;
+
+    fn four_bar() -> Description {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models/four_bar.yaml");
+        model::load(&path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+    }
+
+    #[test]
+    fn poses_come_through_the_same_tapes() {
+        let description = four_bar();
+        let whole = formulation::compiled(&description).unwrap().program;
+        let posed = Posed::compile(&description).unwrap().simulator.program;
+        let steps = |program: &crate::compile::Program| {
+            [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
+                .map(|tape| tape.len())
+        };
+        assert_eq!(steps(&posed), steps(&whole));
+        assert_ne!(posed.observe().len(), whole.observe().len());
+    }
+
+    #[test]
+    fn polynomials_meet_samples_that_they_were_not_made_from() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 300_000 }).unwrap();
+        let polynomials = motion.polynomials.as_ref().unwrap();
+        assert_eq!((motion.samples.len(), motion.stopped, polynomials.degrees.len()), (12, 0, 30));
+        // Tolerances are half a percent: what a polynomial of degree four leaves is far below a micrometre.
+        assert!(polynomials.error < 1e-7, "{}", polynomials.error);
+        assert!(motion.between < 1e-3, "{}", motion.between);
+        let several = super::motion(&four_bar(), MotionOptions { threads: Some(2), size: 300_000 }).unwrap();
+        assert_eq!(several.nominal.bodies, motion.nominal.bodies);
+        assert_eq!(several.polynomials.unwrap().bodies, polynomials.bodies);
+    }
+
+    #[test]
+    fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 1 }).unwrap();
+        assert_eq!((motion.times.len(), motion.rows), (FEWEST, 201));
+        assert!(motion.between > 1e-3, "{}", motion.between);
+    }
+}
