@@ -100,7 +100,7 @@ function sliders(view) {
       const { lower, upper, unit, nominal: known } = parameters[axis];
       const now = lower + (0.5 + 0.5 * xi[axis]) * (upper - lower);
       slider.value = String(xi[axis]);
-      const percent = known === 0 ? '' : ` (${now >= known ? '+' : '−'}${digits(Math.abs((100 * (now - known)) / known))} %)`;
+      const percent = known === 0 || now === known ? '' : ` (${now >= known ? '+' : '−'}${digits(Math.abs((100 * (now - known)) / known))} %)`;
       value.textContent = `${digits(now)} ${unit}${percent}`;
       slider.setAttribute('aria-valuetext', value.textContent);
     };
@@ -125,13 +125,14 @@ function sliders(view) {
     updates.forEach((each) => each());
     act();
   });
-  const error = polynomials ? `by polynomials, within ${length(polynomials.error)} of the samples` : '';
+  const error = polynomials ? `by polynomials, at most ${length(polynomials.error)} from the simulated samples` : '';
   holder.append(element('div', { class: 'row' }, [reset, element('small', {}, [error])]));
   return holder;
 }
 
 /** A length for people. @param {number} metres */
 export function length(metres) {
-  const [unit, factor] = metres < 1e-3 ? ['µm', 1e6] : metres < 1 ? ['mm', 1e3] : ['m', 1];
+  if (metres < 1e-9) return 'under 1 nm';
+  const [unit, factor] = metres < 1e-6 ? ['nm', 1e9] : metres < 1e-3 ? ['µm', 1e6] : metres < 1 ? ['mm', 1e3] : ['m', 1];
   return `${digits(metres * Number(factor))} ${unit}`;
 }

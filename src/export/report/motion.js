@@ -11,7 +11,7 @@ export class Movie {
   /** @param {PackedMotion} data */
   constructor(data) {
     this.drawing = data.drawing;
-    this.visuals = data.visuals;
+    this.visuals = data.visuals || [];
     this.parameters = data.parameters;
     this.perBody = data.per_body;
     this.between = data.between;

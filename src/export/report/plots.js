@@ -166,21 +166,34 @@ export class Plot {
     });
     const told = this.hovered === null ? time : this.hovered;
     if (this.time) this.time.textContent = `t = ${digits(told)} s`;
-    this.entries?.forEach(({ series, value }) => (value.textContent = series.map((one) => this.valueOf(one, told)).filter((text) => text).join(', ')));
+    this.entries?.forEach(({ series, value }) => (value.textContent = this.valueOf(series, told)));
   }
 
-  /** @param {Series} series @param {number} time */
-  valueOf(series, time) {
-    const times = series.time || this.data.time;
+  /** The extremes of a series in the row nearest to a time. @param {Series | undefined} series @param {number} time */
+  extremes(series, time) {
+    const times = series?.time || this.data.time;
     let place = times.findIndex((at) => at >= time);
     if (place < 0) place = times.length - 1;
     if (place > 0 && time - times[place - 1] < times[place] - time) place--;
-    const [lower, upper] = [series.lower[place], series.upper[place]];
-    if (lower === null || lower === undefined || upper === null || upper === undefined) return '';
-    const panel = this.data.panels.find(({ id }) => id === series.panel);
+    const [lower, upper] = [series?.lower[place], series?.upper[place]];
+    return typeof lower === 'number' && typeof upper === 'number' ? [lower, upper] : null;
+  }
+
+  /** What the first panel shows of series that belong together: a value, or bounds and their error. @param {Series[]} group @param {number} time */
+  valueOf(group, time) {
+    const [first] = group;
+    const found = this.extremes(first, time);
+    if (!found) return '–';
+    const panel = this.data.panels.find(({ id }) => id === first.panel);
     const unit = panel?.unit ?? this.data.unit;
-    const values = series.kind === 'nominal' || lower === upper ? digits(upper) : series.kind === 'error' ? `± ${digits(upper)}` : `${digits(lower)} … ${digits(upper)}`;
-    return unit ? `${values} ${unit}` : values;
+    const [lower, upper] = found;
+    const with_unit = (/** @type {string} */ text) => (unit ? `${text} ${unit}` : text);
+    // Without a nominal course, shares are stacked: what counts is their thickness.
+    if (!this.data.series.some(({ kind }) => kind === 'nominal')) return with_unit(digits(upper - lower));
+    if (first.kind === 'nominal' || lower === upper) return with_unit(digits(upper));
+    const error = this.extremes(group.find(({ kind, panel: where }) => kind === 'error' && where === first.panel), time);
+    const beyond = error ? Math.max(error[1] - upper, lower - error[0]) : 0;
+    return with_unit(`${digits(lower)} … ${digits(upper)}${beyond > 0 ? ` ± ${digits(beyond)}` : ''}`);
   }
 
   /** Shows a part of the run: the courses are stretched, and have times of their own below. */

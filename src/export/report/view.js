@@ -94,8 +94,8 @@ export class View {
       });
     }
     if (this.xi) {
-      const color = dark ? [1, 1, 1] : [0, 0, 0];
-      items.push(...mechanism.solids(movie.anywhere(clock.time, this.xi), { color, alpha: 0.4, shift: -20, symbols: false }, dark));
+      const color = dark ? [1, 0.85, 1] : [0.42, 0.12, 0.5];
+      items.push(...mechanism.solids(movie.anywhere(clock.time, this.xi), { color, alpha: 0.38, shift: -20, symbols: false }, dark));
     }
     const background = dark ? [0.071, 0.078, 0.09] : [0.975, 0.98, 0.985];
     const [, , eye] = this.camera.axes();
