@@ -26,8 +26,10 @@ export function player(clock) {
   play.id = 'play';
   const scrub = /** @type {HTMLInputElement} */ (element('input', { type: 'range', id: 'scrub', min: '0', max: String(clock.duration), step: 'any', value: '0', 'aria-label': 'Time' }));
   scrub.addEventListener('input', () => {
+    const wanted = Number(scrub.value);
+    // What listens to the pause puts the slider back.
     clock.pause();
-    clock.seek(Number(scrub.value));
+    clock.seek(wanted);
   });
   const time = element('output', { class: 'time' });
   const speeds = [0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4];
@@ -100,7 +102,7 @@ function sliders(view) {
       const { lower, upper, unit, nominal: known } = parameters[axis];
       const now = lower + (0.5 + 0.5 * xi[axis]) * (upper - lower);
       slider.value = String(xi[axis]);
-      const percent = known === 0 || now === known ? '' : ` (${now >= known ? '+' : '−'}${digits(Math.abs((100 * (now - known)) / known))} %)`;
+      const percent = known === 0 || Math.abs(now - known) < 1e-9 * (upper - lower) ? '' : ` (${now >= known ? '+' : '−'}${digits(Math.abs((100 * (now - known)) / known))} %)`;
       value.textContent = `${digits(now)} ${unit}${percent}`;
       slider.setAttribute('aria-valuetext', value.textContent);
     };
