@@ -226,12 +226,13 @@ test('hostile names are text', async () => {
   await frames(page, 3);
   const summary = JSON.parse(readFileSync(join(reports, 'hostile', 'summary.json'), 'utf8'));
   assert.equal(await page.locator('h1').textContent(), summary.model);
-  assert.ok((await page.title()).startsWith(summary.model.trim()));
+  assert.equal(await page.title(), `${summary.model} – mbint`);
   assert.match(await page.locator('.description').textContent(), /<\/style><\/title><script>/);
   const buttons = await page.locator('.switch button').allTextContents();
   summary.outputs.forEach(({ name }) => assert.ok(buttons.includes(name), name));
   const parameters = await page.locator('.parameters tbody th').allTextContents();
   assert.ok(parameters.some((name) => name.length >= 300 && name.endsWith('_end')), String(parameters.map((name) => name.length)));
+  assert.match(await page.locator('.model code').first().textContent(), /<\/script><\/code><\/pre><script>alert\(3\)/);
   assert.equal(await page.locator('img:not(.still img)').count(), 0);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the window');
   assert.deepEqual(wrong, []);
