@@ -65,7 +65,7 @@ impl StudyResult {
     /// # Errors
     /// [`Error::Write`]: the folder or a file cannot be written.
     pub fn write(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
-        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, &Provenance::default(), false)?)
+        Ok(export::write_results(folder.as_ref(), &self.bounds, &self.summary, &Provenance::default(), false, None)?)
     }
 
     /// The data behind the outputs.

@@ -29,6 +29,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
+    /// Make report.html again from a folder of results.
+    Report(ReportArgs),
     /// Draw the assembled mechanism at its start, and print where its bodies and points are.
     Show(ShowArgs),
     /// Compare error and computing time of methods, orders and step sizes.
@@ -99,6 +101,10 @@ pub(super) struct RunArgs {
     #[arg(short, long)]
     pub yes: bool,
 
+    /// Write no report.html, nor what it shows moving.
+    #[arg(long)]
+    pub no_report: bool,
+
     /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
     #[arg(long)]
     pub overwrite: bool,
@@ -111,7 +117,14 @@ const RUN_HELP: &str = "\
 Writes bounds.csv (columns: t; NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
 output; the unreliable bounds of the row), summary.json, and a plot NAME.svg of each output.
 Each scene of a model has a folder of its own; next to them are scenes.csv and a plot of each
-output with all scenes.";
+output with all scenes. report.html shows all of it, and the mechanism moving.";
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArgs {
+    /// Folder of a model's results, or of its scenes'.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
 
 #[derive(Debug, Args)]
 #[command(after_help = COST_HELP)]

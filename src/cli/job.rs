@@ -1,12 +1,13 @@
 //! One job of `mbint run`: a model or a scene, its run, its files and what is reported of it.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use super::args::RunArgs;
 use super::console::Console;
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
-use super::{Failure, Status, interrupt};
+use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
 use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
@@ -21,6 +22,8 @@ pub(super) struct Request {
     pub certify: bool,
     pub output: Option<PathBuf>,
     pub quiet: bool,
+    /// Whether a report is written.
+    pub report: bool,
     timings: bool,
     overwrite: bool,
     settings: Settings,
@@ -46,6 +49,14 @@ pub(super) struct Job {
     pub folder: PathBuf,
     /// The files that the model was read from.
     pub files: Vec<ModelFile>,
+    /// Their names and texts.
+    pub texts: Rc<[(String, String)]>,
+    /// The folder of the model's file.
+    pub beside: PathBuf,
+    /// Jobs that share a report.
+    pub share: usize,
+    /// Whether the report is beside the results, and not that of all scenes.
+    pub page: bool,
 }
 
 /// Outcome of a run.
@@ -74,6 +85,7 @@ impl Request {
             certify: args.certify,
             output: args.output,
             quiet: args.quiet,
+            report: !args.no_report,
             timings: args.timings,
             overwrite: args.overwrite,
             settings: Settings {
@@ -146,7 +158,9 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         false => job.folder.clone(),
     };
     let provenance = Provenance { model_files: job.files.clone(), request: Some(request.asked()) };
-    let files = write_results(&folder, &bounds, &written, &provenance, interrupted).map_err(|error| failed(&error))?;
+    let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
+    let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
+    let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
     let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
     Ok(Done { status, bounds, summary, files, folder })

@@ -1,6 +1,7 @@
 //! Models read from their files; the errors of all files are reported at once.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use sha2::{Digest, Sha256};
 
@@ -29,6 +30,8 @@ pub(super) struct Model {
     pub all: Vec<String>,
     /// The files that it was read from.
     pub files: Vec<ModelFile>,
+    /// Names and texts of these.
+    pub texts: Rc<[(String, String)]>,
 }
 
 /// Reads all models and chooses their scenes: those of these names, or all. If any model has errors, the errors of all models
@@ -55,12 +58,12 @@ pub(super) fn load_all(
         }
     }
     let chosen = |(path, reading): (&PathBuf, Reading)| {
-        let files = files(&reading);
+        let (files, texts) = files(&reading);
         let all = reading.scenes.iter().map(|scene| scene.name.clone()).collect();
         let name = reading.description.as_ref().map_or_else(String::new, |description| description.name.clone());
         let scenes =
             reading.chosen(scenes).map_err(|error| Failure::Wrong(format!("{}: {error}", model::shown(path))))?;
-        Ok(Model { path: path.clone(), name, scenes, all, files })
+        Ok(Model { path: path.clone(), name, scenes, all, files, texts: texts.into() })
     };
     let readings = readings.into_iter().map(|(path, reading)| Some((path, reading?)));
     let Some(readings) = readings.collect::<Option<Vec<_>>>() else { return Ok(None) };
@@ -96,20 +99,25 @@ pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
     }
 }
 
-/// The files that were read, the model first, with hashes of their bytes.
-fn files(reading: &Reading) -> Vec<ModelFile> {
+/// The files that were read, the model first, with hashes of their bytes; and their texts.
+fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
     let mut files: Vec<ModelFile> = Vec::new();
+    let mut texts: Vec<(String, String)> = Vec::new();
     for source in reading.diagnostics.sources.all().iter().filter(|source| source.name != "--set") {
         let name = Path::new(&source.name).file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
         let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
-        let file = ModelFile { name, sha256 };
+        let file = ModelFile { name: name.clone(), sha256 };
         // A robot alone stands behind the text of the model that is made of it.
         match files.iter_mut().find(|known| known.name == file.name) {
             Some(known) => *known = file,
             None => files.push(file),
         }
+        match texts.iter_mut().find(|known| known.0 == name) {
+            Some(known) => known.1.clone_from(&source.text),
+            None => texts.push((name, source.text.clone())),
+        }
     }
-    files
+    (files, texts)
 }
 
 /// Reads a file and reports its errors and warnings; `None` if it has errors.

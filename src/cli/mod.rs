@@ -16,6 +16,7 @@ mod methods;
 mod new;
 mod overview;
 mod progress;
+mod report;
 mod run;
 mod scenes;
 mod show;
@@ -90,6 +91,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),
         Command::Explain(args) => explain::explain(&args, console),
+        Command::Report(args) => report::report(&args, console),
         Command::Show(args) => show::show(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),

@@ -97,7 +97,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes, all, files } in models {
+    for load::Model { path, name, scenes, all, files, texts } in models {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -110,15 +110,19 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             Some(folder) => folder.clone(),
             None => results_of(&name),
         };
+        // A single requested scene is run like a model.
+        let alone = request.scenes.len() == 1;
+        let share = if alone { 1 } else { scenes.len() };
+        let beside = path.parent().map(PathBuf::from).unwrap_or_default();
         let mut jobs = scenes.into_iter().map(|(scene, mut model)| {
             if request.certify {
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
-            (scene, Job { model, folder, files: files.clone() })
+            let (files, texts, beside) = (files.clone(), texts.clone(), beside.clone());
+            let page = alone || scene.is_none();
+            (scene, Job { model, folder, files, texts, beside, share, page })
         });
-        // A single requested scene is run like a model.
-        let alone = request.scenes.len() == 1;
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {
             Some((scene, job)) if alone || scene.is_none() => {

@@ -64,8 +64,11 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        let files =
-            if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &self.model, &self.all, &found) };
+        let files = if found.is_empty() {
+            Ok(Vec::new())
+        } else {
+            write_scenes(&self.folder, &self.model, &self.all, &found, request.report)
+        };
         let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;

@@ -12,6 +12,9 @@ pub enum ExportError {
     /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    /// A file of results cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read { path: PathBuf, source: io::Error },
     /// The table cannot be written as CSV.
     #[error("cannot write the table of bounds: {0}")]
     Csv(#[from] csv::Error),

@@ -1,6 +1,5 @@
 //! The files of a run's results.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -8,13 +7,15 @@ use serde::Serialize;
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
-use crate::export::owned::{SCHEMA, SUMMARY, owned};
+use crate::export::owned::{PAGE, SCHEMA, SUMMARY, owned};
+use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
+use crate::export::stems::unique_stems;
 use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
 
-/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
-/// `dir`, which is created if it does not exist.
+/// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, what a report needs where
+/// there is to be one, and `summary.json` into `dir`, which is created if it does not exist.
 ///
 /// The files appear when all are written, `summary.json` last: where it exists, the others do. It lists them, and files that the summary
 /// of an older run lists and this run does not write are removed. Returns the files written, in that order.
@@ -27,6 +28,7 @@ pub fn write_results(
     summary: &Summary,
     provenance: &Provenance,
     interrupted: bool,
+    report: Option<&ReportParts>,
 ) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     files.add("bounds.csv", &bounds_csv(bounds)?)?;
@@ -34,6 +36,7 @@ pub fn write_results(
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
     }
+    let mut figures = Vec::with_capacity(bounds.outputs.len());
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
     for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
@@ -41,12 +44,19 @@ pub fn write_results(
         let noise = noise(bounds, output);
         let svg = plot_svg(caption, &bounds.times, output, noise, &summary.requirements)?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
+        let mut plots = vec![svg];
         if let Some(contributions) = contributions {
             let svg = contributions_svg(caption, &bounds.times, &output.name, contributions)?;
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
+            plots.push(svg);
         }
+        figures.push(PageFigure { output: output.name.clone(), plots });
     }
-    let names = files.names().into_iter().chain([SUMMARY.to_owned()]).collect();
+    let motion = report.map(motion_json).transpose()?;
+    motion.iter().try_for_each(|motion| files.add(MOTION, motion))?;
+    let has_page = report.is_some_and(|report| report.page);
+    let names =
+        files.names().into_iter().chain(has_page.then(|| PAGE.to_owned())).chain([SUMMARY.to_owned()]).collect();
     let named = |output: &'_ OutputBounds| Named {
         name: output.name.clone(),
         unit: output.unit.clone(),
@@ -57,6 +67,13 @@ pub fn write_results(
     let written = Written { schema: SCHEMA, summary, provenance, outputs, peaks, interrupted, files: names };
     let mut json = serde_json::to_vec_pretty(&written)?;
     json.push(b'\n');
+    if let Some(motion) = motion.filter(|_| has_page) {
+        // Read as `mbint report` reads them, so that it writes the same page.
+        let (summary, motion) = (serde_json::from_slice(&json)?, serde_json::from_slice(&motion)?);
+        let name = written.summary.model.clone();
+        let text = page(&name.clone(), &[PageScene { name, summary, motion, figures }]);
+        files.add(PAGE, text.as_bytes())?;
+    }
     files.add(SUMMARY, &json)?;
     files.without(owned(dir));
     files.put_in_place()
@@ -89,45 +106,6 @@ struct Named {
     /// The unit in which people see it, where the model names one.
     #[serde(skip_serializing_if = "Option::is_none")]
     display: Option<DisplayUnit>,
-}
-
-/// `name` as a file name without extension that is valid on every system: letters, digits, `_`, `-` and `.` stay, the rest
-/// becomes `_`.
-pub fn file_stem(name: &str) -> String {
-    /// Names of devices on Windows, whatever their extension.
-    const RESERVED: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
-    /// Bytes; file systems take 255, with the extension and a number.
-    const LONGEST: usize = 120;
-
-    let keep = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
-    let mut stem: String = name.chars().map(keep).collect();
-    while stem.len() > LONGEST {
-        stem.pop();
-    }
-    // No hidden files, no `..`, and no trailing dot, which Windows drops.
-    let trimmed = stem.trim_end_matches('.').len();
-    stem.truncate(trimmed);
-    let device = stem.split('.').next().unwrap_or("").trim_end_matches(|c: char| c.is_ascii_digit());
-    if stem.is_empty() || stem.starts_with('.') || RESERVED.iter().any(|name| device.eq_ignore_ascii_case(name)) {
-        stem.insert(0, '_');
-    }
-    stem
-}
-
-/// [`file_stem`]s, made unique (also where upper and lower case are one) by `-2`, `-3`, … on the later ones.
-pub(super) fn unique_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut taken = HashSet::new();
-    let mut unique = |name: &str| {
-        let stem = file_stem(name);
-        let mut candidate = stem.clone();
-        let mut number = 1;
-        while !taken.insert(candidate.to_lowercase()) {
-            number += 1;
-            candidate = format!("{stem}-{number}");
-        }
-        candidate
-    };
-    names.map(&mut unique).collect()
 }
 
 #[cfg(test)]
@@ -192,7 +170,7 @@ mod tests {
         let place = dir.path().join("results/crank");
         let (bounds, summary) = results();
         for _ in 0..2 {
-            let written = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap();
+            let written = write_results(&place, &bounds, &summary, &Provenance::default(), false, None).unwrap();
             let written: Vec<_> = written.iter().map(|path| path.strip_prefix(&place).unwrap()).collect();
             assert_eq!(
                 written,
@@ -210,7 +188,7 @@ mod tests {
         let place = dir.path().join("taken");
         fs::write(&place, "mine").unwrap();
         let (bounds, summary) = results();
-        let error = write_results(&place, &bounds, &summary, &Provenance::default(), false).unwrap_err();
+        let error = write_results(&place, &bounds, &summary, &Provenance::default(), false, None).unwrap_err();
         assert!(matches!(&error, ExportError::Folder { path, .. } if *path == place), "{error}");
         assert!(
             error.to_string().starts_with(&format!("cannot write into the folder {}: ", place.display())),
@@ -225,7 +203,7 @@ mod tests {
         // A folder stands where a file should.
         fs::create_dir(dir.path().join("x3.svg")).unwrap();
         let (bounds, summary) = results();
-        let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
+        let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false, None).unwrap_err();
         let path = dir.path().join("x3.svg");
         assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
         assert!(!error.to_string().contains(".mbint-"), "{error}");
@@ -241,32 +219,10 @@ mod tests {
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o555)).unwrap();
         // The superuser may write anywhere: nothing to see then.
         if fs::write(dir.path().join("probe"), "").is_err() {
-            let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false).unwrap_err();
+            let error = write_results(dir.path(), &bounds, &summary, &Provenance::default(), false, None).unwrap_err();
             let path = dir.path().display().to_string();
             assert!(error.to_string().starts_with(&format!("cannot write into the folder {path}: perm")), "{error}");
         }
         fs::set_permissions(dir.path(), fs::Permissions::from_mode(0o755)).unwrap();
-    }
-
-    #[test]
-    fn names_become_safe_and_unique_file_names() {
-        for (name, stem) in [
-            ("x3", "x3"),
-            ("crank.angle", "crank.angle"),
-            ("../../etc/passwd", "_.._.._etc_passwd"),
-            ("..", "_"),
-            ("", "_"),
-            (".hidden", "_.hidden"),
-            ("a b\n<c>:\"d\"|?*\\", "a_b__c___d_____"),
-            ("NUL", "_NUL"),
-            ("com1.x", "_com1.x"),
-            ("command", "command"),
-            ("θ₁", "θ₁"),
-        ] {
-            assert_eq!(file_stem(name), stem, "{name:?}");
-        }
-        assert!(file_stem(&"ä".repeat(500)).len() <= 121);
-        let unique = unique_stems(["a b", "a/b", "A_B", "a_b-2", "c"].into_iter());
-        assert_eq!(unique, ["a_b", "a_b-2", "A_B-3", "a_b-2-2", "c"]);
     }
 }

@@ -8,6 +8,9 @@ use serde::Deserialize;
 /// The summary's file.
 pub(super) const SUMMARY: &str = "summary.json";
 
+/// The report's file: of whatever run, it is made of the other files.
+pub(super) const PAGE: &str = "report.html";
+
 /// The file that lists the scenes.
 pub(super) const SCENES: &str = "scenes.json";
 
@@ -41,7 +44,10 @@ pub fn holds_complete_results(dir: &Path) -> bool {
 
 /// Names of all files in a folder that older runs wrote, be it of a model or of its scenes.
 pub(super) fn owned(dir: &Path) -> Vec<String> {
-    [SUMMARY, SCENES].into_iter().flat_map(|file| Earlier::of(dir, file).files).collect()
+    let listed: Vec<String> = [SUMMARY, SCENES].into_iter().flat_map(|file| Earlier::of(dir, file).files).collect();
+    // A report may have been made after its run.
+    let page = (!listed.is_empty()).then(|| PAGE.to_owned());
+    listed.into_iter().chain(page).collect()
 }
 
 /// Folders of the scenes that an older run had.

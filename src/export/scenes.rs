@@ -8,10 +8,11 @@ use serde::Serialize;
 use super::csv::number;
 use super::error::ExportError;
 use super::figure::Caption;
-use super::files::{file_stem, unique_stems};
 use super::folder::AtomicFiles;
 use super::overlay::{SceneBounds, overlay_svg};
-use super::owned::{SCENES, SCHEMA, owned, remove_scene, scene_folders};
+use super::owned::{PAGE, SCENES, SCHEMA, owned, remove_scene, scene_folders};
+use super::report::page_of_folders;
+use super::stems::{file_stem, unique_stems};
 use crate::results::OutputBounds;
 
 /// All scenes' bounds in one table as CSV, in long form: a row for each scene, output, method and time.
@@ -50,7 +51,7 @@ pub fn scenes_csv(scenes: &[SceneBounds]) -> Result<Vec<u8>, csv::Error> {
 
 /// Writes an SVG of each output that more than one of the scenes has, `scenes.csv`, and `scenes.json`, which lists them, into `dir`.
 /// Files of an older run that this one does not write are removed, and so are results of scenes that are not among `all` that the model has.
-/// Returns the files written.
+/// With `report`, one page shows all scenes whose results are there. Returns the files written.
 ///
 /// # Errors
 /// As [`write_results`](super::write_results).
@@ -59,6 +60,7 @@ pub fn write_scenes(
     model: &str,
     all: &[String],
     scenes: &[SceneBounds],
+    report: bool,
 ) -> Result<Vec<PathBuf>, ExportError> {
     let mut files = AtomicFiles::in_folder(dir)?;
     let shared = shared(scenes);
@@ -75,8 +77,11 @@ pub fn write_scenes(
         schema: SCHEMA,
         model,
         scenes: all.into_iter().filter(|folder| written.contains(folder) || kept.contains(folder)).collect(),
-        files: files.names().into_iter().chain([SCENES.to_owned()]).collect(),
+        files: files.names().into_iter().chain(report.then(|| PAGE.to_owned())).chain([SCENES.to_owned()]).collect(),
     };
+    if report {
+        files.add(PAGE, page_of_folders(dir, model, &listed.scenes)?.as_bytes())?;
+    }
     let mut json = serde_json::to_vec_pretty(&listed)?;
     json.push(b'\n');
     files.add(SCENES, &json)?;
@@ -165,7 +170,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let place = dir.path().join("door");
         let all = ["one", "two"].map(str::to_owned);
-        let written = write_scenes(&place, "door", &all, &scenes).unwrap();
+        let written = write_scenes(&place, "door", &all, &scenes, false).unwrap();
         assert_eq!(written, ["x.svg", "scenes.csv", "scenes.json"].map(|name| place.join(name)));
     }
 }

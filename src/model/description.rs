@@ -21,7 +21,7 @@ pub use analysis::Analysis;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
-pub use robot::{RobotTree, TreeJoint, TreeLink};
+pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 

@@ -4,8 +4,8 @@
 //! methods on the [`Ensemble`](crate::methods::Ensemble) of its motions (`ensemble`), block by block of output rows, so that memory does not
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
-//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
-//! panic to what panicked, `kept` keeps surrogates for whoever evaluates them after the run.
+//! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing`
+//! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `kept` keeps surrogates for whoever evaluates them after the run.
 
 mod conclude;
 mod controlled;
@@ -20,6 +20,7 @@ mod feasible;
 mod formulation;
 mod internal;
 mod kept;
+mod motion;
 mod outcome;
 mod price;
 mod reduced;
@@ -47,6 +48,7 @@ pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
+pub use motion::{MotionOptions, motion};
 pub use price::Price;
 pub use structure::structure;
 

@@ -12,6 +12,7 @@ mod everyday;
 mod faults;
 mod place;
 mod readme;
+mod report;
 mod rooms;
 mod scenes;
 mod schema;

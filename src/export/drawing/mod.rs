@@ -61,7 +61,7 @@ pub fn write_drawing(dir: &Path, drawing: &Drawing) -> Result<PathBuf, ExportErr
 }
 
 /// A document.
-fn drawing_svg(drawing: &Drawing) -> String {
+pub(super) fn drawing_svg(drawing: &Drawing) -> String {
     let (projections, largest, columns): (&[Projection], Px, usize) =
         if drawing.spatial { (&SPACE, Px::new(460.0, 400.0), 2) } else { (&PLANE, Px::new(900.0, 700.0), 1) };
     let places = places(drawing);

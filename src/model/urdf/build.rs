@@ -117,7 +117,8 @@ fn tree(source: &Source, built: &Built) -> RobotTree {
         });
         let (name, place) = (robot.links[link].name.clone(), built.frames[link]);
         let mass = robot.links[link].inertial.as_ref().map(|inertial| inertial.mass.value);
-        TreeLink { name, depth: depth[link], mass, place, joint }
+        let visuals = robot.links[link].visuals.clone();
+        TreeLink { name, depth: depth[link], mass, place, joint, visuals }
     });
     RobotTree { name: robot.name.clone(), links: links.collect() }
 }

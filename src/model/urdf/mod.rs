@@ -20,6 +20,7 @@ mod start;
 mod tests;
 mod tree;
 mod uncertain;
+mod visual;
 mod xml;
 
 use std::collections::HashSet;

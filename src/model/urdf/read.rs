@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 use urdf_rs::JointType;
 
 use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
+use super::visual::Visuals;
 use super::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
 use super::{check, tree};
 use crate::grammar::names;
@@ -91,13 +92,15 @@ impl Reader<'_> {
         let mut robot = Robot { name: values.name.clone(), ..Robot::default() };
         let mut taken = HashSet::new();
         let mut links = HashMap::new();
+        let visuals = Visuals::of(root);
         for (element, link) in children(root, "link").zip(&values.links) {
             let Some(name) = self.name(element, "link", &link.name, &mut taken) else { continue };
             if links.insert(link.name.as_str(), robot.links.len()).is_some() {
                 self.error(self.places.tag(element), format!("a second link is called `{}`", clip(&link.name)), None);
             }
             let inertial = child(element, "inertial").and_then(|found| self.inertial(found, &link.inertial, &name));
-            robot.links.push(Link { name, span: self.places.tag(element), inertial });
+            let visuals = visuals.link(element);
+            robot.links.push(Link { name, span: self.places.tag(element), inertial, visuals });
         }
         if robot.links.is_empty() {
             self.error(self.places.tag(root), "a robot needs at least one link", None);

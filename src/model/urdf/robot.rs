@@ -1,5 +1,6 @@
 //! What a URDF says, typed: links, joints, and every number with its place and the name it has as a parameter.
 
+use crate::model::description::Visual;
 use crate::syntax::source::Span;
 
 /// A number of the file.
@@ -37,6 +38,7 @@ pub struct Link {
     pub name: String,
     pub span: Span,
     pub inertial: Option<Inertial>,
+    pub visuals: Vec<Visual>,
 }
 
 /// In the order of [`WORDS`](Kind::WORDS).

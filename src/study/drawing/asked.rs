@@ -8,14 +8,14 @@ use crate::model::{Body, Description, Output};
 
 /// Outputs that are asked.
 #[derive(Default)]
-pub(super) struct Asked(pub Vec<Output>);
+pub(in crate::study) struct Asked(pub Vec<Output>);
 
 /// Three of them.
-pub(super) type AskedVector = [usize; 3];
+pub(in crate::study) type AskedVector = [usize; 3];
 
 /// The orientation of a frame against another.
 #[derive(Clone, Copy)]
-pub(super) enum AskedRotation {
+pub(in crate::study) enum AskedRotation {
     None,
     /// About z.
     Angle(usize),
@@ -25,7 +25,7 @@ pub(super) enum AskedRotation {
 }
 
 /// A body's frame, its centre of mass and its points, in the frame.
-pub(super) struct AskedBody {
+pub(in crate::study) struct AskedBody {
     position: Option<AskedVector>,
     rotation: AskedRotation,
     pub center_of_mass: Option<AskedVector>,
@@ -35,7 +35,7 @@ pub(super) struct AskedBody {
 
 /// A frame in another.
 #[derive(Clone, Copy)]
-pub(super) struct Frame {
+pub(in crate::study) struct Frame {
     pub position: Vector3<f64>,
     pub rotation: UnitQuaternion<f64>,
 }
@@ -109,7 +109,7 @@ impl Asked {
 }
 
 /// Values of what was asked.
-pub(super) struct Values(pub Vec<f64>);
+pub(in crate::study) struct Values(pub Vec<f64>);
 
 impl Values {
     pub fn vector(&self, asked: AskedVector) -> Vector3<f64> {

@@ -2,7 +2,7 @@
 //!
 //! What a drawing needs is asked as outputs of the model, so that it comes through the same equations as all else.
 
-mod asked;
+pub(super) mod asked;
 
 use std::collections::BTreeSet;
 

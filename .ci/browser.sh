@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Reports in a browser: their scripts' types, then tests in Chromium. `.ci/browser.sh pictures` makes the book's pictures of
+# reports again instead. Needs node and npm; Chromium and two packages of npm are installed where they are missing.
+# MBINT is the program (target/debug/mbint, built here, by default), CHROMIUM the browser.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+install() {
+    command -v node >/dev/null && command -v npm >/dev/null || { apt-get update && apt-get install -y --no-install-recommends nodejs npm; } || return 1
+    [ -n "${CHROMIUM:-}" ] || command -v chromium >/dev/null || { apt-get update && apt-get install -y --no-install-recommends chromium fonts-dejavu-core; } || return 1
+    (cd tests/browser && npm ci --no-audit --no-fund --silent)
+}
+if ! install; then
+    [ "${CI:-}" != true ] || { echo "error: node, Chromium or packages of npm could not be installed" >&2; exit 1; }
+    echo "note: node, Chromium or packages of npm could not be installed; reports are not opened in a browser"
+    exit 0
+fi
+: "${CHROMIUM:=$(command -v chromium)}"
+export CHROMIUM
+
+tests/browser/node_modules/.bin/tsc -p src/export/report
+if [ -z "${MBINT:-}" ]; then
+    cargo build --locked
+    MBINT=target/debug/mbint
+fi
+REPORTS=$(mktemp -d)
+export REPORTS
+trap 'rm -rf "$REPORTS"' EXIT
+for model in four_bar six_axis_arm door; do
+    "$MBINT" run "models/$model.yaml" --quiet --output "$REPORTS/$model" 2>/dev/null || [ $? -eq 3 ]
+done
+if [ "${1:-}" = pictures ]; then
+    PICTURES=docs/images node tests/browser/pictures.mjs
+    exit 0
+fi
+"$MBINT" run tests/browser/hostile.yaml --quiet --output "$REPORTS/hostile"
+node --test --test-reporter=spec tests/browser/

@@ -1,0 +1,47 @@
+// @ts-check
+// What the page brings along: types of its JSON, and packed numbers.
+
+/**
+ * @typedef {{name: string, position: number[]}} DrawnPoint
+ * @typedef {{name: string, position: number[], angle?: number, orientation?: number[], center_of_mass?: number[], guide?: number[], points: DrawnPoint[]}} DrawnBody
+ * @typedef {{name: string, kind: string, glyph: string, ends: number[][], bodies: number[], axis?: number[]}} DrawnElement
+ * @typedef {{body: number, position: number[], orientation: number[], shape: string, size: number[], color?: number[], vertices?: string}} Visual
+ * @typedef {{model: string, spatial: boolean, bodies: DrawnBody[], elements: DrawnElement[], gravity: number[] | null}} Drawing
+ * @typedef {{name: string, unit: string, nominal: number, lower: number, upper: number}} Parameter
+ * @typedef {{scales: number[], data: string}} Packed
+ * @typedef {{values: number[], bodies: Packed, points: string}} PackedSample
+ * @typedef {{degrees: number[], bodies: Packed, points: string, error: number}} PackedPolynomials
+ * @typedef {{drawing: Drawing, visuals: Visual[], times: string, rows: number, between: number, per_body: number, parameters: Parameter[], nominal: {bodies: string, points: string}, samples: PackedSample[], stopped: number, polynomials?: PackedPolynomials}} PackedMotion
+ * @typedef {{name: string, duration: number, outputs: string[], motion: PackedMotion | null}} Scene
+ */
+
+/** @param {string} text @returns {ArrayBuffer} */
+const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+
+/** 32-bit floats. @param {string} text */
+export const floats = (text) => new Float32Array(bytes(text));
+
+/** Whole numbers times scales that repeat. @param {Packed} packed */
+export function unpack(packed) {
+  const whole = new Int16Array(bytes(packed.data));
+  const places = packed.scales.length;
+  return Float32Array.from(whole, (value, place) => value * packed.scales[place % places]);
+}
+
+/** @returns {Scene[]} */
+export const readData = () => JSON.parse(document.getElementById('mbint-data')?.textContent || '[]');
+
+/** A number of four digits. @param {number} value */
+export function digits(value) {
+  if (value === 0 || !Number.isFinite(value)) return value === 0 ? '0' : '–';
+  const size = Math.abs(value);
+  return size >= 1e-3 && size < 1e5 ? String(Number(value.toPrecision(4))) : value.toExponential(2).replace('e', '·10^');
+}
+
+/** An element with attributes and children. @param {string} tag @param {Record<string, string>} [attributes] @param {(Node | string)[]} [children] @returns {HTMLElement} */
+export function element(tag, attributes = {}, children = []) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}

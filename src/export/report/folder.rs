@@ -1,0 +1,72 @@
+//! A report of results that are in a folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::motion::MOTION;
+use super::page::{PageFigure, PageScene, page};
+use super::tables::{list, text};
+use crate::export::error::ExportError;
+use crate::export::folder::AtomicFiles;
+use crate::export::owned::{PAGE, SCENES, SUMMARY, scene_folders};
+use crate::export::stems::unique_stems;
+
+/// Writes `report.html` again from the results in a folder: of a model, or of its scenes. Returns its path.
+///
+/// # Errors
+/// Where the folder has no results, or cannot be written into.
+pub fn write_report(dir: &Path) -> Result<PathBuf, ExportError> {
+    let text = match dir.join(SCENES).is_file() {
+        true => {
+            let listed = read_json(&dir.join(SCENES))?;
+            page_of_folders(dir, text(&listed, "model"), &scene_folders(dir))?
+        }
+        false => {
+            let scene = scene_of_folder(dir)?;
+            page(&scene.name.clone(), &[scene])
+        }
+    };
+    let mut files = AtomicFiles::in_folder(dir)?;
+    files.add(PAGE, text.as_bytes())?;
+    files.put_in_place()?;
+    Ok(dir.join(PAGE))
+}
+
+/// The page of scenes whose results are in folders of a folder.
+///
+/// # Errors
+/// Where one of them cannot be read.
+pub(in crate::export) fn page_of_folders(dir: &Path, model: &str, folders: &[String]) -> Result<String, ExportError> {
+    let scenes = folders.iter().map(|folder| scene_of_folder(&dir.join(folder))).collect::<Result<Vec<_>, _>>()?;
+    let scenes: Vec<PageScene> = scenes
+        .into_iter()
+        .map(|scene| PageScene { name: scene.name.rsplit('/').next().unwrap_or_default().to_owned(), ..scene })
+        .collect();
+    Ok(page(model, &scenes))
+}
+
+/// What a page shows of the results in a folder.
+///
+/// # Errors
+/// Where one of the files cannot be read.
+pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, ExportError> {
+    let summary = read_json(&dir.join(SUMMARY))?;
+    // Without it, what it says is not on the page.
+    let motion = read_json(&dir.join(MOTION)).unwrap_or(Value::Null);
+    let names = list(&summary, "outputs").iter().map(|output| text(output, "name"));
+    let svg = |name: String| fs::read_to_string(dir.join(name)).ok();
+    let figures = names.clone().zip(unique_stems(names)).map(|(output, stem)| {
+        let plots = [format!("{stem}.svg"), format!("{stem}.contributions.svg")];
+        PageFigure { output: output.to_owned(), plots: plots.into_iter().filter_map(svg).collect() }
+    });
+    let figures = figures.collect();
+    Ok(PageScene { name: text(&summary, "model").to_owned(), figures, motion, summary })
+}
+
+fn read_json(path: &Path) -> Result<Value, ExportError> {
+    let read = |source| ExportError::Read { path: path.to_owned(), source };
+    let bytes = fs::read(path).map_err(read)?;
+    serde_json::from_slice(&bytes).map_err(|error| read(std::io::Error::other(error)))
+}

@@ -1,0 +1,90 @@
+//! Text of others in a page: names, messages and models, which may hold anything.
+
+use data_encoding::BASE64;
+use serde_json::Value;
+
+/// Text between tags, or in an attribute with double quotes.
+pub(super) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\'' => safe += "&#39;",
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// JSON inside a script element, which nothing in it can end.
+pub(super) fn script_json(value: &Value) -> String {
+    // Only in strings do these occur; what a browser reads there is the same.
+    let json = value.to_string();
+    json.replace('<', "\\u003c").replace('>', "\\u003e").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// An SVG document as an element of a page: without its declaration, its identifiers apart from those of other figures.
+pub(super) fn inline_svg(document: &str, prefix: &str) -> String {
+    let start = document.find("<svg").unwrap_or(0);
+    let mut text = document[start..].trim_end().to_owned();
+    for (from, to) in [
+        (" id=\"", format!(" id=\"{prefix}")),
+        ("url(#", format!("url(#{prefix}")),
+        ("href=\"#", format!("href=\"#{prefix}")),
+        ("labelledby=\"", format!("labelledby=\"{prefix}")),
+    ] {
+        text = text.replace(from, &to);
+    }
+    text
+}
+
+/// An SVG document as the address of a picture.
+pub(super) fn image(document: &str) -> String {
+    format!("data:image/svg+xml;base64,{}", BASE64.encode(document.as_bytes()))
+}
+
+/// A number for people.
+pub(super) fn number(value: &Value) -> String {
+    let Some(value) = value.as_f64() else { return "unknown".to_owned() };
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        let digits = format!("{value:.5}");
+        let short = format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string();
+        return if short.len() < digits.len() + 4 { short } else { digits };
+    }
+    let text = format!("{value:.4e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    format!("{mantissa}·10<sup>{exponent}</sup>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_ends_a_script_or_an_attribute() {
+        let hostile = "</script><img src=x onerror=\"alert('1')\">&\u{2028}";
+        let text = escaped(hostile);
+        assert!(!text.contains(['<', '>', '"', '\'']), "{text}");
+        let json = script_json(&Value::String(hostile.to_owned()));
+        assert!(!json.contains(['<', '>', '\u{2028}']), "{json}");
+        assert_eq!(serde_json::from_str::<String>(&json).unwrap(), hostile);
+    }
+
+    #[test]
+    fn identifiers_of_figures_are_apart() {
+        let svg = "<?xml version=\"1.0\"?>\n<svg><clipPath id=\"a\"/><g clip-path=\"url(#a)\"/></svg>\n";
+        assert_eq!(inline_svg(svg, "s1-"), "<svg><clipPath id=\"s1-a\"/><g clip-path=\"url(#s1-a)\"/></svg>");
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let shown = |value: f64| number(&Value::from(value));
+        assert_eq!([shown(0.15), shown(0.0), shown(1234.5)], ["0.15", "0", "1234.5"]);
+        assert_eq!(shown(1.25e-7), "1.25·10<sup>-7</sup>");
+        assert_eq!(number(&Value::Null), "unknown");
+    }
+}

@@ -1,0 +1,103 @@
+// @ts-check
+import { floats, unpack } from './data.js';
+import { normalised } from './vectors.js';
+// Where bodies are at any time: nominally, at samples, and by polynomials anywhere in the box.
+
+/** @typedef {import('./data.js').PackedMotion} PackedMotion */
+/** @typedef {{values: number[], bodies: Float32Array, points: Float32Array}} Moving */
+/** @typedef {{pose: Float64Array, points: Float32Array}} Instant */
+
+export class Movie {
+  /** @param {PackedMotion} data */
+  constructor(data) {
+    this.drawing = data.drawing;
+    this.visuals = data.visuals || [];
+    this.parameters = data.parameters;
+    this.perBody = data.per_body;
+    this.between = data.between;
+    this.rows = data.rows;
+    this.times = floats(data.times);
+    this.bodies = floats(data.nominal.bodies);
+    this.points = floats(data.nominal.points);
+    this.lines = this.bodies.length / this.times.length;
+    /** Differences from the nominal motion. @type {Moving[]} */
+    this.samples = data.samples.map((sample) => ({ values: sample.values, bodies: unpack(sample.bodies), points: floats(sample.points) }));
+    /** How many times differences from the nominal motion are shown. */
+    this.exaggeration = 1;
+    const found = data.polynomials;
+    this.polynomials = found && { degrees: found.degrees, error: found.error, bodies: unpack(found.bodies), points: floats(found.points) };
+  }
+
+  get duration() {
+    return this.times[this.times.length - 1];
+  }
+
+  /** The pose before a time, and the share of the way to the next. @param {number} time @returns {[number, number]} */
+  frame(time) {
+    let [low, high] = [0, this.times.length - 1];
+    if (high === 0 || time <= this.times[0]) return [0, 0];
+    if (time >= this.times[high]) return [high - 1, 1];
+    while (high - low > 1) {
+      const middle = (low + high) >> 1;
+      if (this.times[middle] <= time) low = middle;
+      else high = middle;
+    }
+    return [low, (time - this.times[low]) / (this.times[high] - this.times[low])];
+  }
+
+  /** @param {number} time @param {(place: number) => number} difference from the nominal motion */
+  interpolated(time, difference) {
+    const [frame, share] = this.frame(time);
+    const next = Math.min(frame + 1, this.times.length - 1);
+    const at = (/** @type {number} */ place) => this.bodies[place] + this.exaggeration * difference(place);
+    const pose = new Float64Array(this.lines);
+    for (let line = 0; line < this.lines; line++) {
+      const value = at(frame * this.lines + line);
+      pose[line] = share === 0 ? value : value + share * (at(next * this.lines + line) - value);
+    }
+    return pose;
+  }
+
+  /** The motion of a sample, the nominal one where it has no number. @param {number} time @param {number} [sample] @returns {Instant} */
+  at(time, sample) {
+    if (sample === undefined) return { pose: this.interpolated(time, () => 0), points: this.points };
+    const { bodies, points } = this.samples[sample];
+    return { pose: this.interpolated(time, (place) => bodies[place]), points: this.points.map((value, place) => value + this.exaggeration * points[place]) };
+  }
+
+  /** Products of Chebyshev polynomials, term by term. @param {number[]} xi */
+  terms(xi) {
+    const degrees = this.polynomials ? this.polynomials.degrees : [];
+    const made = [];
+    for (let term = 0; term < degrees.length; term += xi.length) {
+      made.push(xi.reduce((value, x, axis) => value * Math.cos(degrees[term + axis] * Math.acos(Math.max(-1, Math.min(1, x)))), 1));
+    }
+    return made;
+  }
+
+  /** The motion anywhere in the box. @param {number} time @param {number[]} xi in [−1, 1] @returns {Instant} */
+  anywhere(time, xi) {
+    if (!this.polynomials) return this.at(time);
+    const terms = this.terms(xi);
+    const sum = (/** @type {Float32Array} */ all) => (/** @type {number} */ place) => {
+      let value = 0;
+      for (let term = 0; term < terms.length; term++) value += terms[term] * all[place * terms.length + term];
+      return value;
+    };
+    const point = sum(this.polynomials.points);
+    return { pose: this.interpolated(time, sum(this.polynomials.bodies)), points: this.points.map((value, place) => value + this.exaggeration * point(place)) };
+  }
+
+  /** Where a body is, the ground being 0. @param {Float64Array} pose @param {number} body @returns {{p: number[], q: number[]}} */
+  place(pose, body) {
+    if (body === 0) return { p: [0, 0, 0], q: [1, 0, 0, 0] };
+    const own = pose.subarray((body - 1) * this.perBody, body * this.perBody);
+    if (this.perBody === 3) return { p: [own[0], own[1], 0], q: [Math.cos(own[2] / 2), 0, 0, Math.sin(own[2] / 2)] };
+    return { p: [own[0], own[1], own[2]], q: normalised([...own.subarray(3)]) };
+  }
+
+  /** ξ of a sample's parameters. @param {number[]} values */
+  xi(values) {
+    return this.parameters.map(({ lower, upper }, axis) => (upper > lower ? (2 * values[axis] - lower - upper) / (upper - lower) : 0));
+  }
+}

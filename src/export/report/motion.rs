@@ -1,0 +1,144 @@
+//! `motion.json`: what a report shows that no other file of a run has. The mechanism, its motion and the model's text.
+
+use serde::Serialize;
+
+use super::packing::{Packed, floats};
+use crate::export::drawing::drawing_svg;
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingVisual, ParameterSummary, Poses};
+
+/// Its name.
+pub(in crate::export) const MOTION: &str = "motion.json";
+
+/// What a report is made of beside the other files of a run.
+#[derive(Debug)]
+pub struct ReportParts {
+    /// What the model says of itself.
+    pub description: Option<String>,
+    /// The files that the model was read from: names and texts.
+    pub texts: Vec<(String, String)>,
+    /// The motion, or why there is none.
+    pub motion: Result<Motion, String>,
+    /// Corners of the triangles of each visual of the motion that is a mesh whose file could be read.
+    pub meshes: Vec<Option<Vec<f32>>>,
+    /// Whether `report.html` is written beside the other files; scenes have one together.
+    pub page: bool,
+}
+
+#[derive(Serialize)]
+struct Written<'m> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    description: Option<&'m str>,
+    model: Vec<Text<'m>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    motion: Option<PackedMotion<'m>>,
+    /// Why there is no motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    absent: Option<&'m str>,
+}
+
+#[derive(Serialize)]
+struct Text<'m> {
+    name: &'m str,
+    text: &'m str,
+}
+
+/// As [`Motion`]; arrays of numbers are packed, and those of samples are differences from the nominal ones.
+#[derive(Serialize)]
+struct PackedMotion<'m> {
+    drawing: &'m Drawing,
+    /// The mechanism at its start, for readers without scripts.
+    picture: String,
+    visuals: Vec<PackedVisual<'m>>,
+    times: String,
+    rows: usize,
+    between: f64,
+    per_body: usize,
+    parameters: &'m [ParameterSummary],
+    nominal: PackedNominal,
+    samples: Vec<PackedSample<'m>>,
+    stopped: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    polynomials: Option<PackedPolynomials<'m>>,
+}
+
+/// A solid, with the corners of its triangles where it is a mesh.
+#[derive(Serialize)]
+struct PackedVisual<'m> {
+    #[serde(flatten)]
+    visual: &'m MovingVisual,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    vertices: Option<String>,
+}
+
+#[derive(Serialize)]
+struct PackedNominal {
+    bodies: String,
+    points: String,
+}
+
+#[derive(Serialize)]
+struct PackedSample<'m> {
+    values: &'m [f64],
+    bodies: Packed,
+    points: String,
+}
+
+#[derive(Serialize)]
+struct PackedPolynomials<'m> {
+    degrees: &'m [u8],
+    bodies: Packed,
+    points: String,
+    error: f64,
+}
+
+/// The file.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub(in crate::export) fn motion_json(parts: &ReportParts) -> serde_json::Result<Vec<u8>> {
+    let written = Written {
+        description: parts.description.as_deref(),
+        model: parts.texts.iter().map(|(name, text)| Text { name, text }).collect(),
+        motion: parts.motion.as_ref().ok().map(|motion| packed(motion, &parts.meshes)),
+        absent: parts.motion.as_ref().err().map(String::as_str),
+    };
+    let mut json = serde_json::to_vec(&written)?;
+    json.push(b'\n');
+    Ok(json)
+}
+
+fn packed<'m>(motion: &'m Motion, meshes: &[Option<Vec<f32>>]) -> PackedMotion<'m> {
+    let Motion { nominal, .. } = motion;
+    let lines = nominal.bodies.len() / motion.times.len().max(1);
+    let beside = |values: &[f64], nominal: &[f64]| -> Vec<f64> {
+        values.iter().zip(nominal).map(|(value, nominal)| value - nominal).collect()
+    };
+    let sample = |values, poses: &Poses| PackedSample {
+        values,
+        bodies: Packed::new(&beside(&poses.bodies, &nominal.bodies), lines),
+        points: floats(&beside(&poses.points, &nominal.points)),
+    };
+    let corners = |mesh: &Vec<f32>| floats(&mesh.iter().copied().map(f64::from).collect::<Vec<f64>>());
+    // A mesh whose file is not there has no shape.
+    let visuals = motion.visuals.iter().zip(meshes).filter(|(visual, mesh)| visual.file.is_none() || mesh.is_some());
+    PackedMotion {
+        visuals: visuals.map(|(visual, mesh)| PackedVisual { visual, vertices: mesh.as_ref().map(corners) }).collect(),
+        drawing: &motion.drawing,
+        picture: drawing_svg(&motion.drawing),
+        times: floats(&motion.times),
+        rows: motion.rows,
+        between: motion.between,
+        per_body: motion.per_body,
+        parameters: &motion.parameters,
+        nominal: PackedNominal { bodies: floats(&nominal.bodies), points: floats(&nominal.points) },
+        samples: motion.samples.iter().map(|moving| sample(&moving.values, &moving.poses)).collect(),
+        stopped: motion.stopped,
+        polynomials: motion.polynomials.as_ref().map(|found| polynomials(found, nominal, lines)),
+    }
+}
+
+fn polynomials<'m>(found: &'m MotionPolynomials, nominal: &Poses, lines: usize) -> PackedPolynomials<'m> {
+    let MotionPolynomials { degrees, bodies, points, error } = found;
+    let terms = bodies.len() / nominal.bodies.len().max(1);
+    PackedPolynomials { degrees, bodies: Packed::new(bodies, lines * terms), points: floats(points), error: *error }
+}

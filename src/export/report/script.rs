@@ -1,0 +1,64 @@
+//! The scripts and the style of a report. The scripts are modules while they are written and checked, and one script in a page.
+
+use std::sync::LazyLock;
+
+/// The style.
+pub(super) const STYLE: &str = include_str!("style.css");
+
+/// The modules, each behind those that it imports.
+const MODULES: [&str; 13] = [
+    include_str!("data.js"),
+    include_str!("vectors.js"),
+    include_str!("motion.js"),
+    include_str!("solids.js"),
+    include_str!("renderer.js"),
+    include_str!("camera.js"),
+    include_str!("mechanism.js"),
+    include_str!("clock.js"),
+    include_str!("regions.js"),
+    include_str!("plots.js"),
+    include_str!("controls.js"),
+    include_str!("view.js"),
+    include_str!("main.js"),
+];
+
+/// All modules as one script: what they import from each other is in it.
+pub(super) static SCRIPT: LazyLock<String> = LazyLock::new(|| MODULES.map(plain).concat());
+
+/// A module without imports, and without the word for what it exports. Comments stay out of pages.
+fn plain(module: &str) -> String {
+    let mut text = String::with_capacity(module.len());
+    let mut in_comment = false;
+    for line in module.lines() {
+        let code = line.trim_start();
+        let comment = code.starts_with("//") || code.starts_with("/*") || in_comment;
+        in_comment = (in_comment || code.starts_with("/*")) && !code.ends_with("*/");
+        if comment || code.is_empty() || code.starts_with("import ") {
+            continue;
+        }
+        text += code.strip_prefix("export ").unwrap_or(code);
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modules_become_one_script() {
+        let module = "// A comment.\nimport { a } from './a.js';\n\n/**\n * About b.\n */\nexport const b = a;\n";
+        assert_eq!(plain(module), "const b = a;\n");
+    }
+
+    #[test]
+    fn the_script_is_small_and_cannot_end_early() {
+        assert!(SCRIPT.len() < 64_000, "{}", SCRIPT.len());
+        assert!(!SCRIPT.to_lowercase().contains("</script") && !SCRIPT.contains("<!--"));
+        assert!(
+            !SCRIPT.contains("http:") && !SCRIPT.contains("https:")
+                || SCRIPT.matches("http").count() == SCRIPT.matches("http://www.w3.org/").count()
+        );
+    }
+}

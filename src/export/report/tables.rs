@@ -1,0 +1,228 @@
+//! Sections of a report that are text and tables, from `summary.json` and `motion.json`: they are there without scripts, and in print.
+
+use serde_json::Value;
+
+use super::html::{escaped, number};
+
+/// A text of an object; empty where it has none.
+pub(super) fn text<'v>(object: &'v Value, key: &str) -> &'v str {
+    object[key].as_str().unwrap_or("")
+}
+
+/// The objects of a list; none where there is no list.
+pub(super) fn list<'v>(object: &'v Value, key: &str) -> &'v [Value] {
+    object[key].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn table(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let head: String = headings.iter().map(|heading| format!("<th scope=\"col\">{heading}</th>")).collect();
+    let body: String = rows
+        .map(|cells| {
+            let cells = cells.into_iter().enumerate().map(|(place, cell)| match place {
+                0 => format!("<th scope=\"row\">{cell}</th>"),
+                _ => format!("<td>{cell}</td>"),
+            });
+            format!("<tr>{}</tr>", cells.collect::<String>())
+        })
+        .collect();
+    format!("<div class=\"wide\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>")
+}
+
+fn section(class: &str, heading: &str, content: &str) -> String {
+    format!("<section class=\"{class}\"><h3>{heading}</h3>{content}</section>\n")
+}
+
+fn with_unit(value: &Value, unit: &str) -> String {
+    let number = number(value);
+    if unit.is_empty() { number } else { format!("{number}&#8239;{}", escaped(&unit.replace('*', "·"))) }
+}
+
+/// Requirements with their verdicts; nothing where the model has none.
+pub(super) fn requirements(summary: &Value) -> String {
+    let rows = list(summary, "requirements").iter().map(|requirement| {
+        let verdict = text(requirement, "verdict");
+        // A sign too: colours alone do not tell everybody.
+        let sign = match verdict {
+            "holds" => "✓",
+            "violated" => "✗",
+            _ => "?",
+        };
+        let certified = if requirement["certified"] == Value::Bool(true) { ", proven" } else { "" };
+        let unit = text(requirement, "unit");
+        vec![
+            format!("{}<br><code>{}</code>", escaped(text(requirement, "name")), escaped(text(requirement, "text"))),
+            format!("<span class=\"verdict {}\">{sign} {}{certified}</span>", escaped(verdict), escaped(verdict)),
+            with_unit(&requirement["margin"], unit),
+            with_unit(&requirement["error"], unit),
+            escaped(text(requirement, "decides")),
+        ]
+    });
+    match list(summary, "requirements") {
+        [] => String::new(),
+        _ => section(
+            "requirements",
+            "Requirements",
+            &table(&["requirement", "verdict", "margin", "± error", "what would decide"], rows),
+        ),
+    }
+}
+
+/// Numbers of whole motions; nothing where the model asks for none.
+pub(super) fn reduced(summary: &Value) -> String {
+    let rows = list(summary, "reduced").iter().map(|reduced| {
+        let unit = text(reduced, "unit");
+        let bands = list(reduced, "bands").iter().map(|band| {
+            let [lower, upper] = ["lower", "upper"].map(|side| with_unit(&band[side], unit));
+            let unresolved = if band["unresolved"] == Value::Bool(true) { ", unreliable" } else { "" };
+            format!("{lower} to {upper} ({}{unresolved})", escaped(text(band, "method")))
+        });
+        vec![
+            format!("{}<br><code>{}</code>", escaped(text(reduced, "name")), escaped(text(reduced, "of"))),
+            with_unit(&reduced["nominal"], unit),
+            bands.collect::<Vec<_>>().join("<br>"),
+        ]
+    });
+    match list(summary, "reduced") {
+        [] => String::new(),
+        _ => section("reduced", "Numbers of the motion", &table(&["of", "nominal", "bounds"], rows)),
+    }
+}
+
+/// The uncertain parameters, and what each contributes to each output.
+pub(super) fn parameters(summary: &Value) -> String {
+    let parameters = list(summary, "parameters");
+    if parameters.is_empty() {
+        return section("parameters", "Parameters", "<p>No parameter is uncertain.</p>");
+    }
+    let rows = parameters.iter().map(|parameter| {
+        let unit = text(parameter, "unit");
+        let cells = ["nominal", "lower", "upper"].map(|key| with_unit(&parameter[key], unit));
+        std::iter::once(escaped(text(parameter, "name"))).chain(cells).collect()
+    });
+    section("parameters", "Parameters", &table(&["parameter", "nominal", "least", "greatest"], rows))
+}
+
+/// The largest width and error of each band, and its extremes over the run.
+pub(super) fn bounds(summary: &Value) -> String {
+    let peak = |error: &Value, side: &str| {
+        let same = |peak: &&Value| ["output", "method"].iter().all(|key| peak[key] == error[key]);
+        let peak = list(summary, "peaks").iter().find(same);
+        peak.map_or_else(String::new, |peak| with_unit(&peak[side]["value"], text(error, "unit")))
+    };
+    let rows = list(summary, "errors").iter().map(|error| {
+        let unit = text(error, "unit");
+        let from = error.get("unresolved_from").map(|time| format!("from {} s", number(time)));
+        vec![
+            escaped(text(error, "output")),
+            escaped(text(error, "method")),
+            peak(error, "least"),
+            peak(error, "greatest"),
+            with_unit(&error["width"], unit),
+            with_unit(&error["error"], unit),
+            from.unwrap_or_default(),
+        ]
+    });
+    let headings = ["output", "method", "least", "greatest", "largest width", "largest error", "unreliable"];
+    match list(summary, "errors") {
+        [] => String::new(),
+        _ => section("bounds", "Bounds over the run", &table(&headings, rows)),
+    }
+}
+
+/// What a reader has to know before believing the rest.
+pub(super) fn warnings(summary: &Value, motion: &Value) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if summary["interrupted"] == Value::Bool(true) {
+        warnings.push("The run was interrupted before it was done.".to_owned());
+    }
+    if !text(summary, "failure").is_empty() {
+        warnings.push(format!("The run did not come to its end: {}", text(summary, "failure")));
+    }
+    for error in list(summary, "errors").iter().filter(|error| error.get("unresolved_from").is_some()) {
+        let (output, method) = (text(error, "output"), text(error, "method"));
+        let from = error["unresolved_from"].as_f64().unwrap_or(0.0);
+        warnings.push(format!("Bounds of {output} by {method} are unreliable from {from} s."));
+    }
+    for (key, what) in [
+        ("redundant_constraints", "Redundant constraints, which are left out"),
+        ("undetermined_outputs", "Outputs that equilibrium does not determine"),
+        ("shared_start", "Coordinates that the model leaves open at the start"),
+        ("not_simulated", "Not simulated, since no output depends on it"),
+    ] {
+        let names: Vec<&str> = list(summary, key).iter().filter_map(Value::as_str).collect();
+        if !names.is_empty() {
+            warnings.push(format!("{what}: {}.", names.join(", ")));
+        }
+    }
+    for (key, what) in [
+        ("singular_at_start", "singular configurations at the start"),
+        ("singular_configurations", "singular configurations on the way"),
+        ("damped_mode", "a fast mode that the time steps damp"),
+        ("pieces", "parts of the parameters' box that are left out"),
+    ] {
+        if summary.get(key).is_some_and(|found| found.as_array().is_none_or(|list| !list.is_empty())) {
+            warnings
+                .push(format!("There are {what}: see {key} in summary.json.").replace("There are a ", "There is a "));
+        }
+    }
+    if !text(motion, "absent").is_empty() {
+        warnings.push(format!("The motion is not shown: {}", text(motion, "absent")));
+    }
+    let stopped = motion["motion"]["stopped"].as_u64().unwrap_or(0);
+    if stopped > 0 {
+        warnings.push(format!("{stopped} of the samples that were to be shown moving stop before the end."));
+    }
+    warnings
+}
+
+/// Warnings as a section; nothing where there are none.
+pub(super) fn warning_list(warnings: &[String]) -> String {
+    let items: String = warnings.iter().map(|warning| format!("<li>{}</li>", escaped(warning))).collect();
+    if items.is_empty() { String::new() } else { section("warnings", "Warnings", &format!("<ul>{items}</ul>")) }
+}
+
+/// What was simulated, with which settings, and by which version.
+pub(super) fn settings(summary: &Value) -> String {
+    let number_of = |key: &str| number(&summary[key]);
+    let mut rows = vec![
+        ("mbint", escaped(text(summary, "mbint"))),
+        ("simulated time", format!("{} s", number_of("duration"))),
+        ("coordinates", format!("{} ({})", number_of("coordinates"), escaped(text(summary, "formulation")))),
+        ("constraints", number_of("constraints")),
+        ("degrees of freedom", number_of("degrees_of_freedom")),
+        ("scheme", format!("HHT-I3, α = {}", number_of("alpha"))),
+    ];
+    let request = &summary["request"];
+    let set: Vec<&str> = list(request, "set").iter().filter_map(Value::as_str).collect();
+    if !set.is_empty() {
+        rows.push(("set by the command", escaped(&set.join(", "))));
+    }
+    let files: Vec<String> = list(summary, "model_files")
+        .iter()
+        .map(|file| format!("{} <small>SHA-256 {}</small>", escaped(text(file, "name")), escaped(text(file, "sha256"))))
+        .collect();
+    if !files.is_empty() {
+        rows.push(("model", files.join("<br>")));
+    }
+    let settings = table(&["", ""], rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]));
+    let methods = list(summary, "methods").iter().map(|method| {
+        let numbers = ["simulations", "steps", "newton_iterations"].map(|key| number(&method[key]));
+        std::iter::once(escaped(text(method, "method"))).chain(numbers).collect()
+    });
+    let methods = table(&["method", "simulations", "steps each", "Newton iterations"], methods);
+    section(
+        "settings",
+        "Run",
+        &(settings.replace("<thead><tr><th scope=\"col\"></th><th scope=\"col\"></th></tr></thead>", "") + &methods),
+    )
+}
+
+/// The model's files.
+pub(super) fn model_text(motion: &Value) -> String {
+    let files = list(motion, "model").iter().map(|file| {
+        let (name, text) = (escaped(text(file, "name")), escaped(text(file, "text")));
+        format!("<details><summary>{name}</summary><pre><code>{text}</code></pre></details>")
+    });
+    let files: String = files.collect();
+    if files.is_empty() { String::new() } else { section("model", "Model", &files) }
+}

@@ -1,0 +1,393 @@
+//! The motion of all bodies, for a report: nominal, at samples, and as polynomials in the parameters.
+//!
+//! Poses are outputs of the whole model like any other, asked in place of its own: the same equations and the same steps, and nothing of it is in
+//! the program of a run.
+
+mod samples;
+mod thinning;
+mod visuals;
+
+use rayon::prelude::*;
+
+use super::drawing::asked::{Asked, AskedBody, Values};
+use super::drawing::drawing;
+use super::{RunError, formulation};
+use crate::model::{Analysis, Description, Stepping};
+use crate::numerics::{ParameterBox, Sample, SparseWork, SurrogateWork};
+use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, MovingVisual, ParameterSummary, Poses};
+use crate::simulate::{
+    Controller, EnsembleRun, Integration, Observed, Schedule, Simulator, TimeFunctions, schedule_for_tolerance,
+};
+use samples::Samples;
+use thinning::Thinning;
+
+/// Straight lines between poses are near enough at this share of the model's size.
+const NEAR: f64 = 2e-4;
+
+/// Fewest and most poses.
+const FEWEST: usize = 24;
+const MOST: usize = 600;
+
+/// Numbers that rows and samples may come to in memory; of a longer simulation every second, third … row is looked at.
+const MOST_NUMBERS: usize = 1 << 24;
+
+/// Rows that are simulated at a time.
+const BLOCK: usize = 64;
+
+/// Controlling samples of the steps beside the nominal one.
+const CONTROLLING: usize = 8;
+
+/// How a motion is found.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionOptions {
+    /// Threads; all cores where absent. The motion does not depend on them.
+    pub threads: Option<usize>,
+    /// How many numbers of two bytes all poses may come to, about.
+    pub size: usize,
+}
+
+/// Simulates the motion of all bodies.
+///
+/// # Errors
+/// Where the mechanism cannot be built, assembled or stepped.
+pub fn motion(description: &Description, options: MotionOptions) -> Result<Motion, RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    pool.install(|| {
+        let drawing = drawing(description)?;
+        let mut posed = Posed::compile(description)?;
+        posed.simulate(description, drawing, options.size)
+    })
+}
+
+/// A model that is asked for its bodies' poses in place of its outputs.
+pub(super) struct Posed {
+    pub(super) simulator: Simulator,
+    bodies: Vec<AskedBody>,
+    /// Whether bodies leave the plane.
+    spatial: bool,
+    domain: ParameterBox,
+}
+
+/// The poses of one sample at every row, and its points.
+#[derive(Clone, Default)]
+struct Recorded {
+    rows: Vec<f64>,
+    points: Vec<f64>,
+    /// All that was asked, in the first row.
+    at_start: Vec<f64>,
+    stopped: Option<usize>,
+}
+
+impl Posed {
+    pub(super) fn compile(description: &Description) -> Result<Self, RunError> {
+        let mut asked = Asked::default();
+        let bodies = description.bodies.iter().enumerate();
+        let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
+        let whole = Description { outputs: asked.0, ..description.clone() };
+        let simulator = formulation::compiled(&whole)?;
+        let parameters = &simulator.system.parameters;
+        let domain = ParameterBox {
+            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+        };
+        Ok(Self { simulator, bodies, spatial: description.space.spatial, domain })
+    }
+
+    fn per_body(&self) -> usize {
+        if self.spatial { 7 } else { 3 }
+    }
+
+    fn simulate(&mut self, description: &Description, drawing: Drawing, size: usize) -> Result<Motion, RunError> {
+        let samples = Samples::of(&self.domain);
+        let wanted: Vec<Sample> =
+            [&self.domain.nominal].into_iter().chain(&samples.shown).chain(&samples.nodes).cloned().collect();
+        let (times, recorded) = self.record(description, &drawing, &wanted)?;
+        let rows = times.len();
+        let complete = |sample: &Recorded| sample.stopped.is_none_or(|stopped| stopped >= rows);
+        let shown: Vec<usize> = (1..=samples.shown.len()).filter(|&sample| complete(&recorded[sample])).collect();
+        let nodes = &recorded[1 + samples.shown.len()..];
+        let surrogate = samples.surrogate.as_ref().filter(|_| nodes.iter().all(complete));
+
+        let lines = self.per_body() * (self.bodies.len() - 1);
+        let terms = surrogate.map_or(0, |surrogate| surrogate.basis().len());
+        let most = (size / (lines * (2 + shown.len() + terms)).max(1)).clamp(FEWEST, MOST);
+        let weights = self.weights(&recorded[0].points, &drawing);
+        let looked_at: Vec<&[f64]> = [0].iter().chain(&shown).map(|&sample| recorded[sample].rows.as_slice()).collect();
+        let thinning = Thinning { samples: looked_at, weights: &weights };
+        let (kept, between) = thinning.rows(&times, most, NEAR * self.simulator.system.length);
+
+        let poses = |sample: &Recorded| Poses {
+            bodies: kept.iter().flat_map(|row| &sample.rows[row * lines..][..lines]).copied().collect(),
+            points: sample.points.clone(),
+        };
+        let nominal = poses(&recorded[0]);
+        let samples: Vec<MovingSample> = shown
+            .iter()
+            .map(|&sample| MovingSample { values: wanted[sample].to_vec(), poses: poses(&recorded[sample]) })
+            .collect();
+        let polynomials = surrogate.map(|surrogate| {
+            let nodes: Vec<Poses> = nodes.iter().map(poses).collect();
+            let fit = |line: fn(&Poses) -> &Vec<f64>| {
+                let of_nominal = line(&nominal);
+                let mut values = Vec::with_capacity(of_nominal.len() * nodes.len());
+                for (place, nominal) in of_nominal.iter().enumerate() {
+                    values.extend(nodes.iter().map(|node| line(node)[place] - nominal));
+                }
+                surrogate.coefficients(&values, &mut SurrogateWork::default())
+            };
+            let degrees = (0..terms).flat_map(|term| surrogate.basis().degrees(term)).copied().collect();
+            let (bodies, points) = (fit(|poses| &poses.bodies), fit(|poses| &poses.points));
+            let points_of_box: Vec<Vec<f64>> =
+                samples.iter().map(|sample| self.domain.xi(&sample.values.clone().into())).collect();
+            let mut found = vec![0.0; nominal.bodies.len() * samples.len()];
+            surrogate.basis().values(&points_of_box, &bodies, &mut found, &mut SparseWork::default());
+            let lines = found.chunks_exact(samples.len().max(1)).enumerate();
+            let error = lines.flat_map(|(place, found)| {
+                let weight = weights[place % weights.len()];
+                let simulated = samples.iter().map(move |sample| sample.poses.bodies[place]);
+                let base = nominal.bodies[place];
+                found.iter().zip(simulated).map(move |(found, value)| weight * (found + base - value).abs())
+            });
+            let error = error.fold(0.0, f64::max);
+            MotionPolynomials { degrees, error, bodies, points }
+        });
+        let parameters = self.simulator.system.parameters.iter().map(|parameter| ParameterSummary {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            nominal: parameter.nominal,
+            lower: parameter.lower,
+            upper: parameter.upper,
+        });
+        Ok(Motion {
+            times: kept.iter().map(|&row| times[row]).collect(),
+            rows,
+            between,
+            per_body: self.per_body(),
+            parameters: parameters.collect(),
+            nominal,
+            stopped: wanted.len() - 1 - nodes.len() - samples.len(),
+            samples,
+            polynomials,
+            visuals: self.visuals(description, &recorded[0].at_start),
+            drawing,
+        })
+    }
+
+    fn visuals(&self, description: &Description, at_start: &[f64]) -> Vec<MovingVisual> {
+        let values = Values(at_start.to_vec());
+        visuals::visuals(description, &self.bodies, &values)
+    }
+
+    /// How far a point of a body goes where a coordinate of its pose changes: 1 for positions, the body's reach for angles, m.
+    fn weights(&self, points: &[f64], drawing: &Drawing) -> Vec<f64> {
+        let mut points = points.chunks_exact(3);
+        let reach = drawing.bodies.iter().map(|body| {
+            let own = points.by_ref().take(body.points.len() + usize::from(body.center_of_mass.is_some()));
+            own.map(|point| point.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max)
+        });
+        let reach: Vec<f64> = reach.collect();
+        let of_body = |reach: f64| {
+            let turning = if self.spatial { vec![2.0 * reach; 4] } else { vec![reach] };
+            std::iter::repeat_n(1.0, self.per_body() - turning.len()).chain(turning)
+        };
+        reach[1..].iter().flat_map(|&reach| of_body(reach)).collect()
+    }
+
+    /// Times of the rows that are looked at, and the poses of every sample there. The nominal sample, the first, reaches all of them.
+    fn record(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        wanted: &[Sample],
+    ) -> Result<(Vec<f64>, Vec<Recorded>), RunError> {
+        let can = self.simulator.can_assemble(wanted);
+        let running: Vec<usize> = (0..wanted.len()).filter(|&sample| sample == 0 || can[sample]).collect();
+        let samples: Vec<Sample> = running.iter().map(|&sample| wanted[sample].clone()).collect();
+        let mut recorded = vec![Recorded { stopped: Some(0), ..Recorded::default() }; wanted.len()];
+        running.iter().for_each(|&sample| recorded[sample].stopped = None);
+        let times = match description.analysis.is_without_steps() {
+            true => self.visit(description, drawing, (&running, &samples), &mut recorded)?,
+            false => self.follow(description, drawing, (&running, &samples), &mut recorded)?,
+        };
+        Ok((times, recorded))
+    }
+
+    /// By time steps.
+    fn follow(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        (running, samples): (&[usize], &[Sample]),
+        recorded: &mut [Recorded],
+    ) -> Result<Vec<f64>, RunError> {
+        let (schedule, controller) = self.schedule(description, samples)?;
+        let every = self.every(schedule.rows, samples.len());
+        let mut times = Vec::new();
+        let mut run = EnsembleRun::start(&self.simulator, samples, schedule.first_step())?;
+        let outputs = self.simulator.system.outputs.len();
+        let mut values = Vec::new();
+        let mut next = 0;
+        while next < schedule.rows && recorded[0].stopped.is_none() {
+            let block = next..(next + BLOCK).min(schedule.rows);
+            for stop in run.advance(&schedule, block.clone(), controller, Observed::Outputs, &mut values) {
+                recorded[running[stop.sample]].stopped.get_or_insert(stop.row.div_ceil(every));
+            }
+            let end = recorded[0].stopped.map_or(block.end, |row| block.end.min(row * every));
+            for (row, of_row) in block.clone().zip(values.chunks_exact(outputs * samples.len())) {
+                if row >= end || row % every > 0 {
+                    continue;
+                }
+                times.push(schedule.time(row));
+                for (place, &sample) in running.iter().enumerate() {
+                    let own = (0..outputs).map(|output| of_row[output * samples.len() + place]).collect();
+                    self.keep(Values(own), row == 0, drawing, &mut recorded[sample]);
+                }
+            }
+            next = block.end;
+        }
+        Ok(times)
+    }
+
+    /// Configuration by configuration.
+    fn visit(
+        &self,
+        description: &Description,
+        drawing: &Drawing,
+        (running, samples): (&[usize], &[Sample]),
+        recorded: &mut [Recorded],
+    ) -> Result<Vec<f64>, RunError> {
+        let (duration, output_step) = (description.simulation.duration, description.simulation.output_step);
+        let rows =
+            if description.analysis == Analysis::Kinematics { Schedule::rows_of(duration, output_step) } else { 1 };
+        let every = self.every(rows, samples.len());
+        let times: Vec<f64> =
+            (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
+        let outputs = self.simulator.system.outputs.len();
+        let found: Vec<_> = samples.par_iter().map(|sample| self.simulator.visit(sample, &times)).collect();
+        for (&sample, visit) in running.iter().zip(found) {
+            let visit = match visit {
+                Err(error) if sample == 0 => return Err(error.into()),
+                Err(_) => {
+                    recorded[sample].stopped = Some(0);
+                    continue;
+                }
+                Ok(visit) => visit,
+            };
+            recorded[sample].stopped = visit.stop.map(|stop| stop.row);
+            for (row, values) in visit.values.chunks_exact(outputs).enumerate() {
+                self.keep(Values(values.to_vec()), row == 0, drawing, &mut recorded[sample]);
+            }
+        }
+        let reached = recorded[0].stopped.unwrap_or(times.len());
+        Ok(times[..reached.min(times.len())].to_vec())
+    }
+
+    /// How many rows one stands for that is looked at.
+    fn every(&self, rows: usize, samples: usize) -> usize {
+        let lines = self.per_body() * (self.bodies.len() - 1);
+        (rows * lines * samples).div_ceil(MOST_NUMBERS).max(1)
+    }
+
+    fn keep(&self, values: Values, is_first: bool, drawing: &Drawing, into: &mut Recorded) {
+        self.pose(&values, &mut into.rows);
+        if is_first {
+            into.points = self.points(&values, drawing);
+            into.at_start = values.0;
+        }
+    }
+
+    /// The steps: the model's, or those that its tolerance asks for at the nominal sample and corners of the box.
+    fn schedule(
+        &self,
+        description: &Description,
+        samples: &[Sample],
+    ) -> Result<(Schedule, Option<Controller>), RunError> {
+        let simulation = &description.simulation;
+        let (duration, output_step) = (simulation.duration, simulation.output_step);
+        let (schedule, controller) = match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let integration = Integration::of_levels(simulation.extrapolation.unwrap_or(1));
+                (Schedule::fixed(duration, step, output_step).taken(integration), None)
+            }
+            Stepping::Tolerance(tolerance) => {
+                let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
+                let found = schedule_for_tolerance(&self.simulator, controlling, duration, output_step, tolerance)?;
+                (found.schedule, Some(Controller { tolerance, duration }))
+            }
+        };
+        let functions = TimeFunctions::of(&self.simulator, duration);
+        Ok((functions.map_or_else(|| schedule.clone(), |functions| functions.divided(&schedule).schedule), controller))
+    }
+
+    fn pose(&self, values: &Values, into: &mut Vec<f64>) {
+        for body in &self.bodies[1..] {
+            let frame = values.frame(body);
+            let [x, y, z] = frame.position.into();
+            match values.angle(body).filter(|_| !self.spatial) {
+                Some(angle) => into.extend([x, y, angle]),
+                None => {
+                    let turned = frame.rotation.quaternion();
+                    into.extend([x, y, z, turned.w, turned.i, turned.j, turned.k]);
+                }
+            }
+        }
+    }
+
+    /// Points of all bodies in their frames, as [`Poses`] has them.
+    fn points(&self, values: &Values, drawing: &Drawing) -> Vec<f64> {
+        let of_body = |(asked, drawn): (&AskedBody, &crate::results::DrawnBody)| {
+            let named = asked.points.iter().map(|&(point, _)| values.vector(point).into());
+            let origin = (drawn.points.len() > asked.points.len()).then_some([0.0; 3]);
+            let center = asked.center_of_mass.map_or([0.0; 3], |center| values.vector(center).into());
+            let center = drawn.center_of_mass.map(|_| center);
+            named.chain(origin).chain(center).flatten().collect::<Vec<f64>>()
+        };
+        self.bodies.iter().zip(&drawing.bodies).flat_map(of_body).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::Tapes;
+    use crate::model;
+
+    fn four_bar() -> Description {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("models/four_bar.yaml");
+        model::load(&path, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"))
+    }
+
+    #[test]
+    fn poses_come_through_the_same_tapes() {
+        let description = four_bar();
+        let whole = formulation::compiled(&description).unwrap().program;
+        let posed = Posed::compile(&description).unwrap().simulator.program;
+        let steps = |program: &crate::compile::Program| {
+            [program.step_size(), program.step(), program.factor(), program.correct(), program.advance()]
+                .map(|tape| tape.len())
+        };
+        assert_eq!(steps(&posed), steps(&whole));
+        assert_ne!(posed.observe().len(), whole.observe().len());
+    }
+
+    #[test]
+    fn polynomials_meet_samples_that_they_were_not_made_from() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 300_000 }).unwrap();
+        let polynomials = motion.polynomials.as_ref().unwrap();
+        assert_eq!((motion.samples.len(), motion.stopped, polynomials.degrees.len()), (12, 0, 30));
+        // Tolerances are half a percent: what a polynomial of degree four leaves is far below a micrometre.
+        assert!(polynomials.error < 1e-7, "{}", polynomials.error);
+        assert!(motion.between < 1e-3, "{}", motion.between);
+        let several = super::motion(&four_bar(), MotionOptions { threads: Some(2), size: 300_000 }).unwrap();
+        assert_eq!(several.nominal.bodies, motion.nominal.bodies);
+        assert_eq!(several.polynomials.unwrap().bodies, polynomials.bodies);
+    }
+
+    #[test]
+    fn a_small_size_leaves_few_poses_and_says_how_far_off_they_are() {
+        let motion = motion(&four_bar(), MotionOptions { threads: Some(1), size: 1 }).unwrap();
+        assert_eq!((motion.times.len(), motion.rows), (FEWEST, 201));
+        assert!(motion.between > 1e-3, "{}", motion.between);
+    }
+}

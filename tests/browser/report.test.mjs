@@ -1,0 +1,240 @@
+// Reports in a browser. REPORTS names a folder with results of four_bar, six_axis_arm, door and hostile.yaml.
+import assert from 'node:assert/strict';
+import { readFileSync, statSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { columns, launch, open } from './browser.mjs';
+
+const reports = process.env.REPORTS;
+const report = (name) => join(reports, name, 'report.html');
+let browser;
+
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+const canvas = (page) => page.evaluate(() => document.querySelector('.scene:not(.hidden) canvas').toDataURL());
+const frames = (page, count) =>
+  page.evaluate((count) => new Promise((done) => {
+    const next = () => (count-- > 0 ? requestAnimationFrame(next) : done());
+    next();
+  }), count);
+const seek = async (page, time) => {
+  await page.evaluate((time) => mbint.current().clock.seek(time), time);
+  await frames(page, 3);
+};
+
+test('reports are small, open from the disk, ask for nothing and say nothing wrong', async () => {
+  for (const name of ['four_bar', 'six_axis_arm', 'door']) {
+    assert.ok(statSync(report(name)).size < 2_000_000, `${name}: ${statSync(report(name)).size}`);
+    const { page, wrong, context } = await open(browser, report(name));
+    await frames(page, 3);
+    assert.ok(await page.evaluate(() => mbint.current().view.drawings > 0), name);
+    assert.deepEqual(wrong, [], name);
+    await context.close();
+  }
+});
+
+test('the picture changes while it plays, and stands still when paused', async () => {
+  const { page, wrong, context } = await open(browser, report('four_bar'));
+  await frames(page, 3);
+  const first = await canvas(page);
+  await page.click('#play');
+  await page.waitForFunction(() => mbint.current().clock.time > 0.1);
+  await page.keyboard.press('Space').catch(() => {});
+  await page.evaluate(() => mbint.current().clock.pause());
+  await frames(page, 3);
+  const paused = await canvas(page);
+  assert.notEqual(paused, first);
+  const drawings = await page.evaluate(() => mbint.current().view.drawings);
+  await page.waitForTimeout(400);
+  assert.equal(await canvas(page), paused);
+  assert.equal(await page.evaluate(() => mbint.current().view.drawings), drawings);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('scrubbing moves the cursor of every plot', async () => {
+  const { page, context } = await open(browser, report('four_bar'));
+  const places = () => page.evaluate(() => [...document.querySelectorAll('.cursor')].map((line) => Number(line.getAttribute('x1'))));
+  const at = async (time) => {
+    await page.fill('#scrub', String(time));
+    await page.dispatchEvent('#scrub', 'input');
+    return places();
+  };
+  const [first, last] = [await at(0.5), await at(1.5)];
+  assert.ok(first.length >= 5, String(first.length));
+  assert.ok(first.every((place, number) => last[number] > place + 50), `${first} ${last}`);
+  // The cursor is where the figure's own scale has the time.
+  const scales = await page.evaluate(() => mbint.current().plots.flatMap(({ data }) => data.panels.map(({ x }) => x)));
+  scales.forEach((x, number) => {
+    const px = x.from_px + ((1.5 - x.min) / (x.max - x.min)) * (x.to_px - x.from_px);
+    assert.ok(Math.abs(px - last[number]) < 0.6, `${px} ${last[number]}`);
+  });
+  await context.close();
+});
+
+test('a point is where bounds.csv has it', async () => {
+  const { page, context } = await open(browser, report('four_bar'));
+  const table = columns(join(reports, 'four_bar', 'bounds.csv'));
+  for (const row of [0, 37, 100, 163]) {
+    const place = await page.evaluate((time) => {
+      const { movie, view } = mbint.current();
+      const tracer = view.mechanism.named.find(({ name }) => name === 'coupler.tracer');
+      return view.mechanism.where(movie.at(time), tracer.anchor);
+    }, table.t[row]);
+    for (const [axis, name] of ['tracer_x', 'tracer_y'].entries()) {
+      const truth = table[`${name}.nominal`][row];
+      assert.ok(Math.abs(place[axis] - truth) < 1e-5, `${name} at ${table.t[row]}: ${place[axis]} instead of ${truth}`);
+    }
+  }
+  await context.close();
+});
+
+test('samples and polynomials stay within the bounds, and agree with each other', async () => {
+  const { page, context } = await open(browser, report('four_bar'));
+  const table = columns(join(reports, 'four_bar', 'bounds.csv'));
+  const row = 60;
+  const [samples, ghosts] = await page.evaluate((time) => {
+    const { movie, view } = mbint.current();
+    const tracer = view.mechanism.named.find(({ name }) => name === 'coupler.tracer');
+    const x = (instant) => view.mechanism.where(instant, tracer.anchor)[0];
+    const values = movie.samples.map(({ values }) => movie.xi(values));
+    return [movie.samples.map((_, sample) => x(movie.at(time, sample))), values.map((xi) => x(movie.anywhere(time, xi)))];
+  }, table.t[row]);
+  const [lower, upper] = ['lower', 'upper'].map((side) => table[`tracer_x.chebyshev.${side}`][row]);
+  const slack = 1e-6 + 0.02 * (upper - lower);
+  samples.forEach((x, number) => {
+    assert.ok(x > lower - slack && x < upper + slack, `${lower} ${x} ${upper}`);
+    assert.ok(Math.abs(x - ghosts[number]) < slack, `${x} ${ghosts[number]}`);
+  });
+  // Corners of the box are among them: they reach most of the way to the bounds.
+  assert.ok(Math.max(...samples) - Math.min(...samples) > 0.8 * (upper - lower));
+  await context.close();
+});
+
+test('a slider moves a ghost, a swept region appears, and so does what is hidden', async () => {
+  const { page, wrong, context } = await open(browser, report('four_bar'));
+  await frames(page, 3);
+  let before = await canvas(page);
+  const changes = async (what, act) => {
+    await act();
+    await frames(page, 3);
+    const now = await canvas(page);
+    assert.notEqual(now, before, what);
+    before = now;
+  };
+  await changes('slider', async () => {
+    await page.fill('.parameter', '1');
+    await page.dispatchEvent('.parameter', 'input');
+  });
+  await changes('swept', () => page.selectOption('#swept select', { label: 'coupler.tracer' }));
+  await changes('samples', () => page.click('#ghosts'));
+  const button = page.locator('.readout button').first();
+  await button.click();
+  assert.equal(await button.getAttribute('aria-pressed'), 'false');
+  assert.ok(await page.evaluate(() => document.querySelectorAll('.plot .off').length > 0));
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('values with units stand under the plot, and a stretch of time fills it', async () => {
+  const { page, context } = await open(browser, report('four_bar'));
+  const svg = page.locator('figure:not(.hidden) .plot svg').first();
+  const box = await svg.boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.3 * box.height);
+  assert.match(await page.locator('figure:not(.hidden) .readout .value').first().textContent(), /\d.*(rad|deg|°)/);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.3 * box.height, { steps: 3 });
+  await page.mouse.up();
+  assert.ok(await page.evaluate(() => mbint.current().plots[0].shown.to - mbint.current().plots[0].shown.from < 0.5));
+  assert.ok(await page.locator('.plot svg.zoomed').count() > 0);
+  await context.close();
+});
+
+test('keys play, step and go to the ends', async () => {
+  const { page, context } = await open(browser, report('six_axis_arm'));
+  const time = () => page.evaluate(() => mbint.current().clock.time);
+  await page.keyboard.press('End');
+  const end = await time();
+  await page.keyboard.press('ArrowLeft');
+  assert.ok((await time()) < end);
+  await page.keyboard.press('Home');
+  assert.equal(await time(), 0);
+  await page.keyboard.press('Space');
+  assert.ok(await page.evaluate(() => mbint.current().clock.playing));
+  await page.keyboard.press('Space');
+  const before = await canvas(page);
+  await page.focus('canvas');
+  await page.keyboard.press('ArrowUp');
+  await frames(page, 3);
+  assert.notEqual(await canvas(page), before);
+  await context.close();
+});
+
+test('scenes are a switch away', async () => {
+  const { page, wrong, context } = await open(browser, report('door'));
+  const names = await page.locator('#scenes button').allTextContents();
+  assert.ok(names.length > 3, String(names));
+  for (const name of names) {
+    await page.locator('#scenes button', { hasText: new RegExp(`^${name}$`) }).click();
+    await frames(page, 3);
+    assert.equal(await page.locator('.scene:not(.hidden)').count(), 1);
+    assert.ok(await page.evaluate(() => mbint.current().view.drawings > 0), name);
+  }
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('dark, narrow, and with less motion', async () => {
+  const { page, wrong, context } = await open(browser, report('four_bar'), { colorScheme: 'dark', reducedMotion: 'reduce', viewport: { width: 380, height: 700 } });
+  await frames(page, 3);
+  const paper = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number));
+  assert.ok(Math.max(...paper) < 60, String(paper));
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the window');
+  const drawings = await page.evaluate(() => mbint.current().view.drawings);
+  await page.waitForTimeout(300);
+  assert.equal(await page.evaluate(() => mbint.current().view.drawings), drawings, 'nothing moves by itself');
+  assert.equal(await page.evaluate(() => getComputedStyle(document.querySelector('button')).transitionDuration), '0s');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('without WebGL, without scripts and in print there are pictures', async () => {
+  const plain = await launch(['--disable-gpu', '--disable-3d-apis']);
+  const { page, wrong, context } = await open(plain, report('four_bar'));
+  assert.ok(await page.locator('.still img').isVisible());
+  assert.ok(await page.locator('#scrub').isVisible());
+  assert.deepEqual(wrong.filter((text) => !/webgl/i.test(text)), []);
+  await context.close();
+  await plain.close();
+  const silent = await open(browser, report('door'), { javaScriptEnabled: false });
+  assert.ok(await silent.page.locator('.still img').first().isVisible());
+  assert.equal(await silent.page.locator('.scene:visible').count(), await silent.page.locator('.scene').count());
+  await silent.context.close();
+  const print = await open(browser, report('four_bar'));
+  await print.page.emulateMedia({ media: 'print' });
+  assert.ok(await print.page.locator('.still img').isVisible());
+  assert.ok(!(await print.page.locator('canvas').isVisible()));
+  assert.equal(await print.page.locator('figure:visible').count(), await print.page.locator('figure').count());
+  await print.context.close();
+});
+
+test('hostile names are text', async () => {
+  const { page, wrong, context } = await open(browser, report('hostile'));
+  await frames(page, 3);
+  const summary = JSON.parse(readFileSync(join(reports, 'hostile', 'summary.json'), 'utf8'));
+  assert.equal(await page.locator('h1').textContent(), summary.model);
+  assert.equal(await page.title(), `${summary.model} – mbint`);
+  assert.match(await page.locator('.description').textContent(), /<\/style><\/title><script>/);
+  const buttons = await page.locator('.switch button').allTextContents();
+  summary.outputs.forEach(({ name }) => assert.ok(buttons.includes(name), name));
+  const parameters = await page.locator('.parameters tbody th').allTextContents();
+  assert.ok(parameters.some((name) => name.length >= 300 && name.endsWith('_end')), String(parameters.map((name) => name.length)));
+  assert.match(await page.locator('.model code').first().textContent(), /<\/script><\/code><\/pre><script>alert\(3\)/);
+  assert.equal(await page.locator('img:not(.still img)').count(), 0);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the window');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});

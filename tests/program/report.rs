@@ -1,0 +1,49 @@
+//! `report.html`: what is written, and that it can be made again.
+
+use std::fs;
+
+use crate::place::Place;
+
+#[test]
+fn a_report_is_made_again_to_the_byte() {
+    let place = Place::new();
+    place.model("crank");
+    assert!(place.command("run -q -m scan crank.yaml").status().unwrap().success());
+    let page = place.path().join("results/crank/report.html");
+    let first = fs::read(&page).unwrap();
+    fs::remove_file(&page).unwrap();
+    let done = place.command("report results/crank").output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(fs::read(&page).unwrap() == first, "another page");
+    // On one thread too.
+    assert!(place.command("run -q -m scan -j 1 crank.yaml").status().unwrap().success());
+    assert!(fs::read(&page).unwrap() == first, "another page on one thread");
+}
+
+#[test]
+fn without_a_report_nothing_of_it_is_written_and_the_rest_is_the_same() {
+    let place = Place::new();
+    place.model("crank");
+    let bounds = || fs::read(place.path().join("results/crank/bounds.csv")).unwrap();
+    assert!(place.command("run -q -m scan crank.yaml").status().unwrap().success());
+    let with = bounds();
+    assert!(place.files("results/crank").contains(&"motion.json".to_owned()));
+    assert!(place.command("run -q -m scan --no-report crank.yaml").status().unwrap().success());
+    let files = place.files("results/crank");
+    assert!(!files.iter().any(|name| name == "motion.json" || name == "report.html"), "{files:?}");
+    assert!(bounds() == with, "other bounds");
+    // Plots and tables alone; the next run removes it.
+    assert!(place.command("report results/crank").status().unwrap().success());
+    assert!(place.command("run -q -m scan --no-report crank.yaml").status().unwrap().success());
+    assert!(!place.files("results/crank").contains(&"report.html".to_owned()));
+}
+
+#[test]
+fn a_folder_without_results_is_named() {
+    let place = Place::new();
+    let done = place.command("report nowhere").output().unwrap();
+    assert_eq!(done.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(message.contains("summary.json"), "{message}");
+    assert_eq!(place.files(""), [""; 0]);
+}
