@@ -6,6 +6,7 @@ use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
+use crate::model::Stepping;
 use crate::numerics::{BandError, Sample, time_error, time_error_certified};
 use crate::results::{
     Band, Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds,
@@ -84,7 +85,10 @@ fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contr
 fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
     let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
-    let corrections = validation.corrections(output, rows);
+    // Steps from a tolerance end where the equations switch; fixed ones have that inside them.
+    let fixed = matches!(study.description.simulation.stepping, Stepping::Fixed(_));
+    let switched_from = results.switches.as_ref().filter(|_| fixed).and_then(|(found, _)| found.switched_from);
+    let corrections = validation.corrections(output, rows, switched_from);
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let ranges = &outcome.result.bands[output][..rows];
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
@@ -173,6 +177,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
     let damped_mode = damped_mode(&results, bounds);
+    let unmet_switch = results.unmet_switch_from().map(|row| results.schedule.time(row.saturating_sub(1)));
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -188,6 +193,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
+        unmet_switch,
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         parameters: system
@@ -203,6 +209,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .collect(),
         methods: std::iter::once(results.nominal.summary)
             .chain(results.validation.map(|(_, summary)| summary))
+            .chain(results.switches.map(|(_, summary)| summary))
             .chain(results.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary

@@ -25,6 +25,7 @@ mod single;
 mod step_search;
 mod steps;
 mod subsystems;
+mod switches;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;

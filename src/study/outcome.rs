@@ -1,6 +1,7 @@
 //! What a subsystem's methods found, before it becomes bounds.
 
 use super::internal::InternalError;
+use super::switches::Switches;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
@@ -15,9 +16,10 @@ pub(super) struct Outcome {
 /// What one schedule yields.
 pub(super) struct Results {
     pub schedule: Schedule,
-    /// The first row before which a step does not resolve a function of the time, or some parameter values meet a contact or a kink that
-    /// no sample meets.
+    /// The first row before which a step does not resolve a function of the time.
     pub unresolved_from: Option<usize>,
+    /// What is known of contacts and kinks, where the equations have any.
+    pub switches: Option<Switches>,
     /// Fast modes that the start excites and the steps damp.
     pub damped: Vec<ExcitedMode>,
     pub nominal: Outcome,
@@ -62,10 +64,15 @@ impl Results {
         ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
     }
 
+    /// The first row before which some parameter values meet a contact or a kink that no sample meets.
+    pub fn unmet_switch_from(&self) -> Option<usize> {
+        self.switches.as_ref().and_then(|(found, _)| found.unmet_from)
+    }
+
     /// The first row that cannot be relied on, whatever a method says of it.
     pub fn unreliable_from(&self) -> Option<usize> {
         let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
-        self.unresolved_from.into_iter().chain(beyond).min()
+        self.unresolved_from.into_iter().chain(self.unmet_switch_from()).chain(beyond).min()
     }
 }
 
