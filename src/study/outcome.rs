@@ -1,6 +1,8 @@
 //! What a subsystem's methods found, before it becomes bounds.
 
 use super::internal::InternalError;
+use super::kept::KeptPart;
+use super::reduced::Found;
 use super::switches::Switches;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
@@ -32,6 +34,8 @@ pub(super) struct Results {
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.
     pub internal: Vec<InternalError>,
+    /// What is one number a motion.
+    pub found: Found,
 }
 
 impl Results {
@@ -69,6 +73,11 @@ impl Results {
         self.switches.as_ref().and_then(|(found, _)| found.unmet_from)
     }
 
+    /// The first row before which steps have a switch inside them. Steps from a tolerance end there.
+    pub fn switched_from(&self) -> Option<usize> {
+        self.switches.as_ref().and_then(|(found, _)| found.switched_from)
+    }
+
     /// The first row that cannot be relied on, whatever a method says of it.
     pub fn unreliable_from(&self) -> Option<usize> {
         let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
@@ -82,6 +91,8 @@ pub(super) struct Ran {
     pub summary: Summary,
     /// Rows that every sample of every method has reached.
     pub whole: usize,
+    /// The surrogate, where it is to be kept.
+    pub kept: Option<KeptPart>,
 }
 
 /// How far validation samples of a box came.

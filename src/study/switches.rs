@@ -19,7 +19,7 @@ impl Study<'_> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<Switches>, SimulationError> {
-        if (self.interrupted)() {
+        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
         let begun = Instant::now();
@@ -34,7 +34,10 @@ impl Study<'_> {
                 None
             }
         };
-        Ok(found.map(|found| {
+        Ok(found.map(|mut found| {
+            if tolerance.is_some() {
+                found.switched_from = None;
+            }
             let summary = MethodSummary {
                 method: "switches".to_owned(),
                 simulations: found.simulations,

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use super::{Found, Row};
 use crate::methods::chebyshev::range_search::{RangeSearch, extent};
+use crate::methods::expansion::Moves;
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
 
@@ -13,28 +14,6 @@ const MOST_MOVED: usize = 4;
 /// What moves an end by less than this share of the range's width moves the place of the extreme by so little that it does not matter.
 const FAR: f64 = 0.1;
 
-/// How motions are moved, to see what that does to outputs.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Moves {
-    /// Lines, each by how much.
-    pub by: Vec<(usize, f64)>,
-    /// Coordinates, each along its velocity for so much time, s.
-    pub ahead: Vec<(usize, f64)>,
-}
-
-impl Moves {
-    /// All of these together, each so many times.
-    fn sum<'m>(moves: impl Iterator<Item = (&'m Moves, f64)>) -> Self {
-        let mut sum = Self::default();
-        for (moves, weight) in moves.filter(|(_, weight)| *weight != 0.0) {
-            let scaled = |&(line, amount): &(usize, f64)| (line, weight * amount);
-            sum.by.extend(moves.by.iter().map(scaled));
-            sum.ahead.extend(moves.ahead.iter().map(scaled));
-        }
-        sum
-    }
-}
-
 impl Row<'_> {
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
     /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
@@ -43,7 +22,7 @@ impl Row<'_> {
         range_search: &RangeSearch,
         (points, direct): (&[Vec<f64>], &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() {
             return vec![f64::NAN; extents.len()];
@@ -75,7 +54,7 @@ impl Row<'_> {
         range_search: &RangeSearch,
         (direct, halved): (&ValidationTable, &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; extents.len()];
