@@ -3,17 +3,19 @@
 use super::internal::InternalError;
 use super::kept::KeptPart;
 use super::reduced::Found;
-use super::switches::Switches;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{ExcitedMode, Schedule, SingularPass};
+use crate::simulate::{ExcitedMode, Schedule, SingularPass, SwitchSearch};
 
 /// A method's result and its line in the summary.
 pub(super) struct Outcome {
     pub result: MethodResult,
     pub summary: MethodSummary,
 }
+
+/// What is known of contacts and kinks in the equations, and its line in the summary.
+pub(super) type Switches = (SwitchSearch, MethodSummary);
 
 /// What one schedule yields.
 pub(super) struct Results {

@@ -3,13 +3,11 @@
 use std::time::Instant;
 
 use super::internal::{InternalError, caught};
+use super::outcome::Switches;
 use super::single::Study;
 use crate::methods::Validation;
 use crate::results::MethodSummary;
-use crate::simulate::{Controller, Schedule, SimulationError, SwitchSearch, unmet_switch};
-
-/// What was found, and its line in the summary.
-pub(super) type Switches = (SwitchSearch, MethodSummary);
+use crate::simulate::{Controller, Schedule, SimulationError, unmet_switch};
 
 impl Study<'_> {
     /// Searches the box for them; `None` where the equations have none.
