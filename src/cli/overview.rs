@@ -67,6 +67,14 @@ pub(super) fn unreliable(summary: &Summary) -> Option<String> {
         bands[1..].iter().map(|(time, band)| format!(", of `{band}` from {} s", rounded(*time))).collect();
     let more = if total > MOST { format!(", and {} more", total - MOST) } else { String::new() };
     let help = "raise the order, shorten the step, or set `bounds: { tolerance: … }`";
+    // None of these helps there.
+    let unmet = |time: f64| time <= *from;
+    let help = if summary.unmet_switch.is_some_and(unmet) {
+        "some values meet a contact, a stop or a kink that no sample meets: narrow the intervals until all values meet it or none does, \
+         or divide them where that changes (`--set`)"
+    } else {
+        help
+    };
     Some(format!("bounds of `{first}` are unreliable from {} s{others}{more}: {help}", rounded(*from)))
 }
 
@@ -220,6 +228,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            unmet_switch: None,
             integration: None,
             alpha: -0.1,
             duration: 2.0,

@@ -140,6 +140,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            unmet_switch: None,
             integration: None,
             alpha: -0.1,
             duration: 1.0,

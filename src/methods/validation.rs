@@ -197,8 +197,9 @@ impl Validation {
         Ok(Self { points, direct, halved, odd, simulations, effort, simulated: Simulated::default(), spans })
     }
 
-    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2.
-    pub fn corrections(&self, output: usize, rows: usize) -> Vec<Correction> {
+    /// What the error by halving is to be corrected by in each row, since three steps do not agree at order 2, or since from some row
+    /// on the equations switch inside steps.
+    pub fn corrections(&self, output: usize, rows: usize, switched_from: Option<usize>) -> Vec<Correction> {
         let of_row = |row: usize| {
             let (direct, halved) = (self.direct.at(row, output), self.halved.at(row, output));
             let odd = self.odd.table.at(row, output);
@@ -211,13 +212,13 @@ impl Validation {
             }
             found
         };
-        corrections(&(0..rows).map(of_row).collect::<Vec<Differences>>(), self.odd.ratio)
+        corrections(&(0..rows).map(of_row).collect::<Vec<Differences>>(), self.odd.ratio, switched_from)
     }
 
     /// The time steps' error of an output in each row, as if its range were that of the validation samples.
     pub fn time_error(&self, output: usize, rows: usize) -> Vec<f64> {
         let ranges: Vec<Range> = (0..rows).map(|row| Range::of(&self.direct.at(row, output))).collect();
-        let corrections = self.corrections(output, rows);
+        let corrections = self.corrections(output, rows, None);
         let of_row = |row: usize| {
             let error = time_error(ranges[row], &self.direct.at(row, output), &self.halved.at(row, output));
             corrections[row].of(error)

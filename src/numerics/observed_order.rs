@@ -10,6 +10,9 @@ use super::envelope::envelope;
 /// Order of the scheme. Where steps are not quite short enough, it looks a little lower.
 const SCHEME: f64 = 2.0;
 
+/// Order of a step in which the equations switch.
+const OF_A_SWITCH: f64 = 1.0;
+
 /// Orders below this are not that of the scheme at all.
 const LEAST_ORDER: f64 = 1.5;
 
@@ -50,12 +53,16 @@ impl Correction {
     }
 }
 
-/// Corrections of every row from the differences in all of them; `ratio` is r < 1/2.
-pub fn corrections(rows: &[Differences], ratio: f64) -> Vec<Correction> {
+/// Corrections of every row from the differences in all of them; `ratio` is r < 1/2. From row `switched_from` on, steps have switches of
+/// the equations inside them: where in a step they lie is a matter of chance, so that the order is that of a single such step, 1.
+pub fn corrections(rows: &[Differences], ratio: f64, switched_from: Option<usize>) -> Vec<Correction> {
     let pick = |pick: fn(&Differences) -> f64| envelope(&rows.iter().map(pick).collect::<Vec<f64>>());
     let (halved, finer, all) = (pick(|row| row.halved), pick(|row| row.finer), pick(|row| row.all));
     let of_row = |row: usize| {
-        let order = order(finer[row] / halved[row], ratio);
+        let seen = order(finer[row] / halved[row], ratio);
+        let has_switched = switched_from.is_some_and(|from| row >= from);
+        // `min` passes over NaN.
+        let order = if has_switched { seen.min(OF_A_SWITCH) } else { seen };
         if order.is_nan() || order >= SCHEME {
             return Correction::NONE;
         }
@@ -107,18 +114,25 @@ mod tests {
 
     #[test]
     fn a_lower_order_makes_the_error_larger() {
-        assert_eq!(corrections(&differences(2.0, 0.37), 0.37), [Correction::NONE; 3]);
-        let [first, ..] = corrections(&differences(1.0, 0.37), 0.37)[..] else { unreachable!() };
+        assert_eq!(corrections(&differences(2.0, 0.37), 0.37, None), [Correction::NONE; 3]);
+        let [first, ..] = corrections(&differences(1.0, 0.37), 0.37, None)[..] else { unreachable!() };
         // The error is 1, halving changes 0.5, and 4/3 of that is 2/3.
         assert!((first.of(2.0 / 3.0) - 1.0).abs() < 1e-6, "{first:?}");
         // No convergence at all.
         let wrong_alike = Differences { halved: 1e-6, finer: 0.3, all: 0.3 };
-        assert_eq!(corrections(&[wrong_alike; 2], 0.37)[0].of(1e-6), OF_DIFFERENCES * 0.3);
+        assert_eq!(corrections(&[wrong_alike; 2], 0.37, None)[0].of(1e-6), OF_DIFFERENCES * 0.3);
+    }
+
+    #[test]
+    fn a_switch_inside_a_step_makes_it_first_order() {
+        let found = corrections(&differences(2.0, 0.37), 0.37, Some(1));
+        assert_eq!(found[0], Correction::NONE);
+        assert!(found[1].factor == 1.5 && found[1].least > 1.2, "{found:?}");
     }
 
     #[test]
     fn what_is_unknown_or_exact_needs_none() {
         let unknown = Differences { halved: f64::NAN, ..Differences::default() };
-        assert_eq!(corrections(&[unknown, Differences::default()], 0.37), [Correction::NONE; 2]);
+        assert_eq!(corrections(&[unknown, Differences::default()], 0.37, None), [Correction::NONE; 2]);
     }
 }

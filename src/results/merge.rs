@@ -58,6 +58,8 @@ impl Summary {
             whole.singular_at_start.extend(other.singular_at_start);
             whole.shared_start.extend(other.shared_start);
             whole.singular_configurations.extend(other.singular_configurations);
+            whole.damped_mode = whole.damped_mode.or(other.damped_mode);
+            whole.unmet_switch = whole.unmet_switch.into_iter().chain(other.unmet_switch).reduce(f64::min);
             whole.add_methods(&other.methods);
             whole
         };

@@ -38,6 +38,9 @@ pub struct Summary {
     /// A fast mode that the start excites and the steps damp, where that moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
+    /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unmet_switch: Option<f64>,
     /// By what the motion was integrated, where that was not HHT-I3 alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<String>,

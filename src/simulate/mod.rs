@@ -37,5 +37,5 @@ pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};
 pub use step::{Counters, Stepper};
 pub use time_functions::TimeFunctions;
-pub use unmet_switch::unmet_switch;
+pub use unmet_switch::{SwitchSearch, unmet_switch};
 pub use visit::Visit;

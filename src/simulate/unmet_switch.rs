@@ -3,7 +3,9 @@
 //!
 //! The motions of samples at Chebyshev nodes are polynomials in the parameters, row by row, and cubics in time between rows. Over both
 //! the values of the switches are ranged: where one can change its sign and no sample's does, that place is simulated itself. If it
-//! does switch, what the samples say holds no more from there on.
+//! does switch, what the samples say holds no more from there on. Of many parameters only samples spread over the box are looked at.
+//!
+//! The same samples show from when on steps have switches inside them.
 
 use symdiff::Tile;
 
@@ -11,11 +13,15 @@ use super::control::{Controller, Schedule};
 use super::ensemble::{EnsembleRun, Observed};
 use super::error::SimulationError;
 use super::simulator::Simulator;
+use super::step::Counters;
 use crate::compile::{SwitchProgram, Tapes};
-use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes};
+use crate::numerics::{Extent, ParameterBox, SparseWork, Surrogate, SurrogateWork, extremes, spread};
 
-/// Degree of the motions' polynomials by the number of parameters; more than these are not looked at.
+/// Degree of the motions' polynomials by the number of parameters.
 const DEGREES: [usize; 3] = [12, 6, 4];
+
+/// Samples for each parameter, where these are more.
+const SPREAD: usize = 24;
 
 /// Intervals of the first look over the box, by the number of parameters, and over the time between two rows.
 const INTERVALS: [usize; 3] = [32, 10, 6];
@@ -54,8 +60,20 @@ struct Suspect {
     xi: Vec<f64>,
 }
 
-/// The first row before which a switch changes its sign for some parameter values of the box and for none of the samples, of which
-/// `held_out` are some. `None` where there is none, no switch, or too many parameters.
+/// What is known of the switches in a box.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SwitchSearch {
+    /// The first row before which a switch changes its sign for some parameter values and for none of the samples that are held out.
+    pub unmet_from: Option<usize>,
+    /// The first row before which one changes its sign for any.
+    pub switched_from: Option<usize>,
+    /// Simulations that it took.
+    pub simulations: usize,
+    /// Work of these.
+    pub counters: Counters,
+}
+
+/// Searches a box for switches that other samples than those `held_out` meet. `None` where there is no switch or nothing uncertain.
 ///
 /// # Errors
 /// Where a sample cannot be assembled.
@@ -65,23 +83,22 @@ pub fn unmet_switch(
     (schedule, tolerance): (&Schedule, Option<Controller>),
     held_out: &[Vec<f64>],
     interrupted: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<usize>, SimulationError> {
+) -> Result<Option<SwitchSearch>, SimulationError> {
     let k = domain.dimension();
-    let (Some(program), Some(&degree)) = (simulator.switches(), k.checked_sub(1).and_then(|place| DEGREES.get(place)))
-    else {
-        return Ok(None);
-    };
-    let surrogate = Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]);
-    let nodes = surrogate.samples().len();
-    let points = [surrogate.samples(), held_out].concat();
+    let Some(program) = simulator.switches().filter(|_| k > 0) else { return Ok(None) };
+    let surrogate = DEGREES.get(k - 1).map(|&degree| Surrogate::tensor(&vec![degree; k], &vec![degree + 1; k]));
+    let others = surrogate.as_ref().map_or_else(|| spread(k, SPREAD * k), |surrogate| surrogate.samples().to_vec());
+    let nodes = others.len();
+    let points = [&others, held_out].concat();
     let observing = Observing { simulator, program, domain, schedule, tolerance, interrupted };
     let mut suspects = Vec::new();
     let mut before: Option<Vec<f64>> = None;
     let mut work = SurrogateWork::default();
-    let between = Between::new(simulator, program, domain, &surrogate);
-    let signs = observing.run(&points, nodes, |row, motions, met| {
+    let between = surrogate.as_ref().map(|surrogate| Between { simulator, program, domain, surrogate });
+    let Observations { signs, switched_from, mut counters } = observing.run(&points, nodes, |row, motions, met| {
+        let Some(between) = &between else { return };
         let of_nodes: Vec<f64> = motions.chunks_exact(points.len()).flat_map(|line| line[..nodes].to_vec()).collect();
-        let coefficients = surrogate.coefficients(&of_nodes, &mut work);
+        let coefficients = between.surrogate.coefficients(&of_nodes, &mut work);
         if let Some(before) = before.replace(coefficients.clone()) {
             let times = [schedule.time(row - 1), schedule.time(row)];
             suspects.extend(between.suspects(row, times, [&before, &coefficients], &one_sided(program, met)));
@@ -101,9 +118,18 @@ pub fn unmet_switch(
     let by_nodes = first_unmet(&signs);
     suspects.retain(|suspect| !is_met(suspect.row, suspect.switch, suspect.side));
     let chosen = chosen(suspects, program.switches.len());
-    let by_suspects =
-        if chosen.is_empty() { None } else { first_unmet(&observing.run(&chosen, chosen.len(), |_, _, _| ())?) };
-    Ok(by_nodes.into_iter().chain(by_suspects).min())
+    let mut by_suspects = None;
+    if !chosen.is_empty() {
+        let found = observing.run(&chosen, chosen.len(), |_, _, _| ())?;
+        by_suspects = first_unmet(&found.signs);
+        counters += found.counters;
+    }
+    Ok(Some(SwitchSearch {
+        unmet_from: by_nodes.into_iter().chain(by_suspects).min(),
+        switched_from,
+        simulations: points.len() + chosen.len(),
+        counters,
+    }))
 }
 
 /// Switches whose rates are known and that had one sign only, with the other one: 0 below zero, 1 above.
@@ -133,6 +159,15 @@ fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
     chosen
 }
 
+/// What is seen of samples.
+struct Observations {
+    /// The signs of switches before each row, of the first samples and of the others.
+    signs: Vec<[Vec<Signs>; 2]>,
+    /// The first row before which one of them switched.
+    switched_from: Option<usize>,
+    counters: Counters,
+}
+
 /// How samples are simulated.
 struct Observing<'a> {
     simulator: &'a Simulator,
@@ -145,19 +180,20 @@ struct Observing<'a> {
 
 impl Observing<'_> {
     /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and the signs that switches
-    /// had since the row before. Returns those of all rows, of the first `split` samples and of the others.
+    /// had since the row before. The first `split` samples' signs are kept apart from the others'.
     fn run(
         &self,
         xi: &[Vec<f64>],
         split: usize,
         mut look: impl FnMut(usize, &[f64], &[Signs]),
-    ) -> Result<Vec<[Vec<Signs>; 2]>, SimulationError> {
+    ) -> Result<Observations, SimulationError> {
         let samples = self.domain.samples(xi);
         let mut run = EnsembleRun::start(self.simulator, &samples, self.schedule.first_step())?;
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();
         let mut sizes = vec![0.0_f64; switches];
         let (mut all, mut values): (Vec<[Vec<Signs>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
+        let mut switched_from = None;
         for first in (0..self.schedule.rows).step_by(BLOCK) {
             let rows = first..(first + BLOCK).min(self.schedule.rows);
             let stops = run.advance(self.schedule, rows.clone(), self.tolerance, Observed::Switches, &mut values);
@@ -172,6 +208,11 @@ impl Observing<'_> {
                 let [mut before, mut after] = [Vec::new(), Vec::new()];
                 for (size, extents) in sizes.iter().zip(switches) {
                     let (low, high) = extents.split_at(samples.len());
+                    let has_switched =
+                        |(low, high): (&f64, &f64)| *low < -ZERO * size && *high > ZERO * size && high.is_finite();
+                    if switched_from.is_none() && low.iter().zip(high).any(has_switched) {
+                        switched_from = Some(row);
+                    }
                     before.push(signs(&low[..split], &high[..split], ZERO * size));
                     after.push(signs(&low[split..], &high[split..], ZERO * size));
                 }
@@ -183,7 +224,7 @@ impl Observing<'_> {
                 break;
             }
         }
-        Ok(all)
+        Ok(Observations { signs: all, switched_from, counters: run.counters() })
     }
 }
 
@@ -200,16 +241,7 @@ struct Between<'a> {
     surrogate: &'a Surrogate,
 }
 
-impl<'a> Between<'a> {
-    fn new(
-        simulator: &'a Simulator,
-        program: &'a SwitchProgram,
-        domain: &'a ParameterBox,
-        surrogate: &'a Surrogate,
-    ) -> Self {
-        Self { simulator, program, domain, surrogate }
-    }
-
+impl Between<'_> {
     /// Places where switches, each with a side of zero, may lie on that side between the row before and this one, given the motions'
     /// coefficients in both.
     fn suspects(

@@ -86,7 +86,7 @@ pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Ve
 pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
     let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
-    let corrections = validation.corrections(output, rows);
+    let corrections = validation.corrections(output, rows, results.switched_from());
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let ranges = &outcome.result.bands[output][..rows];
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
@@ -175,6 +175,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
     let mobility = &study.simulator.mobility;
     let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
     let damped_mode = damped_mode(&results, bounds);
+    let unmet_switch = results.unmet_switch_from().map(|row| results.schedule.time(row.saturating_sub(1)));
     let singular =
         results.singular.iter().map(|pass| SingularSummary { time: pass.time, constraints: names(&pass.constraints) });
     Summary {
@@ -190,6 +191,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
+        unmet_switch,
         integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
@@ -206,6 +208,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
             .collect(),
         methods: std::iter::once(results.nominal.summary)
             .chain(results.validation.map(|(_, summary)| summary))
+            .chain(results.switches.map(|(_, summary)| summary))
             .chain(results.methods.into_iter().map(|(_, outcome)| MethodSummary {
                 expanded_outputs: outcome.result.expanded.iter().map(|&k| system.outputs[k].name.clone()).collect(),
                 ..outcome.summary

@@ -29,6 +29,7 @@ impl Study<'_> {
             let mut results = Results {
                 schedule: schedule.clone(),
                 unresolved_from,
+                switches: None,
                 damped: self.damped_modes(&schedule),
                 nominal,
                 singular,

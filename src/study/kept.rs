@@ -108,7 +108,7 @@ impl Study<'_> {
         let own: Vec<Vec<f64>> =
             (0..rows).into_par_iter().map(|row| part.surrogate.values(row, (&every, &samples), &closures)).collect();
         let of_output = |output: usize| {
-            let corrections = validation.corrections(output, rows);
+            let corrections = validation.corrections(output, rows, results.switched_from());
             let surrogate = |row: usize| {
                 let values = &own[row][output * samples.len()..][..samples.len()];
                 let found = surrogate_error(values, &validation.direct.at(row, output));

@@ -29,6 +29,7 @@ mod step_search;
 mod steps;
 mod structure;
 mod subsystems;
+mod switches;
 mod visits;
 
 use crate::assemble::BuildError;

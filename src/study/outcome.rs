@@ -6,7 +6,7 @@ use super::reduced::Found;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
-use crate::simulate::{ExcitedMode, Schedule, SingularPass};
+use crate::simulate::{ExcitedMode, Schedule, SingularPass, SwitchSearch};
 
 /// A method's result and its line in the summary.
 pub(super) struct Outcome {
@@ -14,12 +14,16 @@ pub(super) struct Outcome {
     pub summary: MethodSummary,
 }
 
+/// What is known of contacts and kinks in the equations, and its line in the summary.
+pub(super) type Switches = (SwitchSearch, MethodSummary);
+
 /// What one schedule yields.
 pub(super) struct Results {
     pub schedule: Schedule,
-    /// The first row before which a step does not resolve a function of the time, or some parameter values meet a contact or a kink that
-    /// no sample meets.
+    /// The first row before which a step does not resolve a function of the time.
     pub unresolved_from: Option<usize>,
+    /// What is known of contacts and kinks, where the equations have any.
+    pub switches: Option<Switches>,
     /// Fast modes that the start excites and the steps damp.
     pub damped: Vec<ExcitedMode>,
     pub nominal: Outcome,
@@ -66,10 +70,20 @@ impl Results {
         ratios.map(|(_, ratio)| *ratio).filter(|ratio| *ratio > 1.0).max_by(f64::total_cmp)
     }
 
+    /// The first row before which some parameter values meet a contact or a kink that no sample meets.
+    pub fn unmet_switch_from(&self) -> Option<usize> {
+        self.switches.as_ref().and_then(|(found, _)| found.unmet_from)
+    }
+
+    /// The first row before which steps have a switch inside them. Steps from a tolerance end there.
+    pub fn switched_from(&self) -> Option<usize> {
+        self.switches.as_ref().and_then(|(found, _)| found.switched_from)
+    }
+
     /// The first row that cannot be relied on, whatever a method says of it.
     pub fn unreliable_from(&self) -> Option<usize> {
         let beyond = self.simulated().filter_map(|simulated| simulated.beyond_tolerance_from);
-        self.unresolved_from.into_iter().chain(beyond).min()
+        self.unresolved_from.into_iter().chain(self.unmet_switch_from()).chain(beyond).min()
     }
 }
 

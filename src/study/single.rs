@@ -16,7 +16,7 @@ use crate::model::{Description, Stepping};
 use crate::numerics::{ParameterBox, Sample, step_validation, validation};
 use crate::results::MethodSummary;
 use crate::simulate::{
-    Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance, unmet_switch,
+    Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance,
 };
 
 /// A compiled subsystem, and what is asked of it.
@@ -176,11 +176,10 @@ impl<'a> Study<'a> {
                 }
             }
         };
-        let unmet = match &validation {
-            Some((validation, _)) => self.unmet_switch((&schedule, tolerance), validation, &mut internal)?,
+        let switches = match &validation {
+            Some((validation, _)) => self.switches((&schedule, tolerance), validation, &mut internal)?,
             None => None,
         };
-        let unresolved_from = unresolved_from.into_iter().chain(unmet).min();
         let motions = self.motions(&schedule, tolerance, &progress);
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
@@ -200,6 +199,7 @@ impl<'a> Study<'a> {
         let mut results = Results {
             schedule,
             unresolved_from,
+            switches,
             damped,
             nominal,
             singular,
@@ -242,25 +242,6 @@ impl<'a> Study<'a> {
                 return Ok((Divided { schedule, unresolved_from }, tolerance, (validation, summary)));
             }
         }
-    }
-
-    /// The first row before which some parameter values meet a switch that no sample meets.
-    fn unmet_switch(
-        &self,
-        steps: (&Schedule, Option<Controller>),
-        validation: &Validation,
-        internal: &mut Vec<InternalError>,
-    ) -> Result<Option<usize>, SimulationError> {
-        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
-            return Ok(None);
-        }
-        let found = caught("the search for switches", || {
-            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
-        });
-        found.unwrap_or_else(|error| {
-            internal.push(error);
-            Ok(None)
-        })
     }
 
     /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that
@@ -312,6 +293,7 @@ impl<'a> Study<'a> {
         let results = Results {
             schedule,
             unresolved_from: None,
+            switches: None,
             damped: Vec::new(),
             nominal,
             singular: Vec::new(),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use mbint::inner::results::{Bounds, Method};
 
-use crate::common::{Vary, band, curve, largest, nominal, output, read, run};
+use crate::common::{Vary, band, curve, largest, nominal, output, read, run, run_methods};
 
 /// A ball that falls on a stiff ground.
 const BALL: &str = "
@@ -195,6 +195,82 @@ fn a_post_that_no_sample_meets_flags_what_follows() {
     // Half a metre above all throws.
     let above = [x, post[1] + 0.5];
     assert_eq!(flagged_from(&run(&read(&throw(above, settings)))), None);
+}
+
+/// The search's simulations are told, and from when on what it found matters.
+#[test]
+fn the_summary_has_the_search_for_switches() {
+    let settings = "simulation: { duration: 0.8, step: 2e-4, output_step: 0.02 }\nbounds: { chebyshev: { order: 5 } }";
+    let (x, t) = (2.5, 2.5 / 6.26);
+    let (_, summary) = run_methods(&read(&throw([x, -0.5 * 9.81 * t * t], settings)), None);
+    assert!(summary.unmet_switch.is_some_and(|from| (0.34..0.44).contains(&from)), "{:?}", summary.unmet_switch);
+    let line = summary.methods.iter().find(|line| line.method == "switches").expect("the search is a line");
+    assert!(line.simulations > 13 && line.newton_iterations > 0);
+    let (_, without) = run_methods(&read(&throw([x, 9.0], settings)), None);
+    assert_eq!(without.unmet_switch, None);
+}
+
+/// Of more than three parameters, samples that are spread over the box are looked at.
+#[test]
+fn five_parameters_are_searched_for_switches() {
+    let text = |stop: f64| {
+        format!(
+            "
+parameters:
+  k: {{ value: 40, unit: N/m, tolerance: 4% }}
+  m: {{ value: 1.3, unit: kg, tolerance: 4% }}
+  a: {{ value: 1, unit: m, tolerance: 4% }}
+  v: {{ value: 2, unit: m/s, tolerance: 4% }}
+  c: {{ value: 0.3, unit: N*s/m, tolerance: 4% }}
+bodies: {{ b: {{ mass: m, coordinates: [x] }} }}
+effects:
+  s: {{ force: {{ on: b, value: [\"-k*b.x - c*b.vx - 4e4*if(abs(v - 2.03) < 0.02, max(b.x - {stop}, 0), 0)\", 0] }} }}
+initial: {{ b.x: a, b.vx: v }}
+outputs: {{ x: b.x }}
+simulation: {{ duration: 0.5, step: 1e-3, output_step: 0.02 }}
+bounds: {{ chebyshev: {{ order: 2 }} }}
+"
+        )
+    };
+    // All swing to 1.06 m within 0.06 s, and no further than 1.12 m.
+    let (_, summary) = run_methods(&read(&text(0.9)), None);
+    assert!(summary.methods.iter().any(|line| line.method == "switches" && line.simulations > 100));
+    assert_eq!(flagged_from(&run(&read(&text(9.0)))), None);
+}
+
+/// A spring with a stop inside steps: wherever in a step the switch lies, the error covers what it does.
+#[test]
+fn a_switch_inside_fixed_steps_is_in_the_error() {
+    // Half of a swing to one side with k, of the other with K.
+    let text = |step: f64| {
+        format!(
+            "
+parameters: {{ m: {{ value: 1, unit: kg, tolerance: 1% }} }}
+bodies: {{ b: {{ mass: m, coordinates: [x] }} }}
+effects:
+  s: {{ force: {{ on: b, value: [\"-9*b.x + 700*max(-b.x, 0)\", 0] }} }}
+initial: {{ b.x: 0.2, b.vx: 0 }}
+outputs: {{ x: b.x }}
+simulation: {{ duration: 4, step: {step:?}, output_step: 0.08 }}
+bounds: {{ chebyshev: {{ order: 8 }}, scan: {{ points: 15 }} }}
+"
+        )
+    };
+    let swing = |m: f64, t: f64| {
+        let (slow, fast) = ((9.0 / m).sqrt(), (709.0 / m).sqrt());
+        let period = PI / slow + PI / fast;
+        let u = (t + 0.5 * PI / slow) % period;
+        if u < PI / slow { 0.2 * (slow * u).sin() } else { -0.2 * slow / fast * (fast * (u - PI / slow)).sin() }
+    };
+    let truth = |t: f64| {
+        let all = (0..=2000).map(|place| swing(0.99 + 1e-5 * f64::from(place), t));
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], x| [lower.min(x), upper.max(x)])
+    };
+    for step in [0.008, 0.004, 0.002] {
+        let bounds = run(&read(&text(step)));
+        let (held, open) = covered(&bounds, "x", truth);
+        assert!(open > 0 && 100 * held >= 99 * open, "{step}: {held} of {open}");
+    }
 }
 
 /// What every sample meets, each at its own time, is no surprise.

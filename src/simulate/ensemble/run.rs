@@ -224,13 +224,9 @@ impl<'s> EnsembleRun<'s> {
 
     /// Newton iterations and rank-revealing solves so far.
     pub fn counters(&self) -> Counters {
-        self.tiles.iter().fold(Counters::default(), |total, tile| {
-            let counters = tile.stepper.counters();
-            Counters {
-                iterations: total.iterations + counters.iterations,
-                rank_revealing: total.rank_revealing + counters.rank_revealing,
-            }
-        })
+        let mut total = Counters::default();
+        self.tiles.iter().for_each(|tile| total += tile.stepper.counters());
+        total
     }
 
     /// Singular configurations that the first sample has passed, if they are searched for.

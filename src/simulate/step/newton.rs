@@ -48,6 +48,13 @@ pub struct Counters {
     pub rank_revealing: u64,
 }
 
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, other: Self) {
+        self.iterations += other.iterations;
+        self.rank_revealing += other.rank_revealing;
+    }
+}
+
 /// The state of an iteration over the lanes of a tile.
 #[derive(Clone, Debug)]
 pub struct Newton {

@@ -147,6 +147,7 @@ impl Study<'_> {
         let mut results = Results {
             schedule: schedule.clone(),
             unresolved_from: None,
+            switches: None,
             damped: Vec::new(),
             nominal,
             singular: Vec::new(),

@@ -1,0 +1,53 @@
+//! The search for contacts and kinks in the equations that no sample meets, as a part of a study.
+
+use std::time::Instant;
+
+use super::internal::{InternalError, caught};
+use super::outcome::Switches;
+use super::single::Study;
+use crate::methods::Validation;
+use crate::results::MethodSummary;
+use crate::simulate::{Controller, Schedule, SimulationError, unmet_switch};
+
+impl Study<'_> {
+    /// Searches the box for them; `None` where the equations have none.
+    pub(super) fn switches(
+        &self,
+        (schedule, tolerance): (&Schedule, Option<Controller>),
+        validation: &Validation,
+        internal: &mut Vec<InternalError>,
+    ) -> Result<Option<Switches>, SimulationError> {
+        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
+            return Ok(None);
+        }
+        let begun = Instant::now();
+        let steps = (schedule, tolerance);
+        let found = caught("the search for switches", || {
+            unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
+        });
+        let found = match found {
+            Ok(found) => found?,
+            Err(error) => {
+                internal.push(error);
+                None
+            }
+        };
+        Ok(found.map(|mut found| {
+            if tolerance.is_some() {
+                found.switched_from = None;
+            }
+            let summary = MethodSummary {
+                method: "switches".to_owned(),
+                simulations: found.simulations,
+                steps: schedule.steps_before(schedule.rows - 1),
+                newton_iterations: found.counters.iterations,
+                rank_revealing_solves: found.counters.rank_revealing,
+                order: None,
+                boxes: None,
+                expanded_outputs: Vec::new(),
+                seconds: Some(begun.elapsed().as_secs_f64()),
+            };
+            (found, summary)
+        }))
+    }
+}
