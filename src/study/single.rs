@@ -9,7 +9,7 @@ use crate::methods::{
     BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
     Stop, Validation, can_compose,
 };
-use crate::model::{Description, Stepping};
+use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{ParameterBox, Sample, step_validation, validation};
 use crate::results::MethodSummary;
 use crate::simulate::{
@@ -41,7 +41,8 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
         parameters,
         composes: can_compose(parameters, simulator.system.q.len()),
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
-            && description.simulation.extrapolation.is_none(),
+            && description.simulation.extrapolation.is_none()
+            && description.simulation.scheme != SchemeChoice::Explicit,
         tolerance: description.bounds.tolerance,
     }
 }
@@ -198,6 +199,14 @@ impl<'a> Study<'a> {
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
         let observed = if motion { Observed::Motion } else { Observed::Outputs };
+        if let Some(allowed) = self.request.tolerance.filter(|_| self.may_be_explicit()) {
+            match self.balance_explicit(schedule, allowed, observed, progress)? {
+                Ok((schedule, validation)) => {
+                    return Ok((Divided { schedule, unresolved_from: None }, None, validation));
+                }
+                Err(obstacle) => self.refused(obstacle)?,
+            }
+        }
         let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let begun = std::time::Instant::now();
@@ -226,7 +235,10 @@ impl<'a> Study<'a> {
         if (self.interrupted)() {
             return Ok(None);
         }
+        let (schedule, tolerance) = steps;
+        let at_rows = schedule.ending_at_rows();
         let found = caught("the search for switches", || {
+            let steps = (&at_rows, tolerance);
             unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
         });
         found.unwrap_or_else(|error| {

@@ -5,7 +5,7 @@ use symdiff::math;
 use crate::simulate::{Integration, Schedule};
 
 /// Share of the tolerance that the steps may take; the surrogate has the rest.
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
 /// The share that is aimed at, so that what is found is within that with some room.
 const AIM: f64 = 0.4;

@@ -9,7 +9,10 @@ use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, S
 impl Study<'_> {
     /// How steps are taken where no tolerance decides it.
     pub(super) fn integration(&self) -> Integration {
-        Integration::of_levels(self.description.simulation.extrapolation.unwrap_or(1))
+        match self.description.simulation.scheme {
+            SchemeChoice::Explicit => Integration::Explicit,
+            _ => Integration::of_levels(self.description.simulation.extrapolation.unwrap_or(1)),
+        }
     }
 
     /// Whether a tolerance may choose levels of extrapolation. Certified bounds enclose the scheme itself.
@@ -22,6 +25,8 @@ impl Study<'_> {
     /// A schedule with those steps divided that do not resolve a function of the time.
     pub(super) fn divided(&self, schedule: Schedule) -> Divided {
         match &self.time_functions {
+            // Those have been resolved as they were chosen.
+            _ if schedule.passes_rows() => Divided { schedule, unresolved_from: None },
             Some(functions) => functions.divided(&schedule),
             None => Divided { schedule, unresolved_from: None },
         }
@@ -30,7 +35,8 @@ impl Study<'_> {
     /// Fast modes that the start excites and a schedule's steps damp. Steps that a tolerance decides follow them.
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
         match self.description.simulation.stepping {
-            Stepping::Fixed(_) if !self.request.is_empty() => {
+            // The explicit method damps nothing.
+            Stepping::Fixed(_) if !self.request.is_empty() && schedule.integration != Integration::Explicit => {
                 // The finest level has the most weight.
                 let halvings = schedule.integration.order() - 2;
                 excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)

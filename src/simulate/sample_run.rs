@@ -1,13 +1,13 @@
 //! The run of an ensemble of samples, however the schedule's steps are taken.
 
-use super::extrapolated::ExtrapolatedRun;
-use super::run::{EnsembleRun, Observed, Stop};
+use super::control::{Controller, Integration, Schedule};
+use super::diagnostics::{OpenConstraint, SingularPass};
+use super::ensemble::{EnsembleRun, ExtrapolatedRun, Observed, Stop};
+use super::error::SimulationError;
+use super::explicit::ExplicitRun;
+use super::simulator::Simulator;
+use super::step::Counters;
 use crate::numerics::Sample;
-use crate::simulate::control::{Controller, Integration, Schedule};
-use crate::simulate::diagnostics::{OpenConstraint, SingularPass};
-use crate::simulate::error::SimulationError;
-use crate::simulate::simulator::Simulator;
-use crate::simulate::step::Counters;
 
 /// A run by one of the ways to integrate.
 #[derive(Debug)]
@@ -16,6 +16,8 @@ pub enum SampleRun<'s> {
     Plain(EnsembleRun<'s>),
     /// By the scheme on several levels.
     Extrapolated(ExtrapolatedRun<'s>),
+    /// By the explicit method.
+    Explicit(ExplicitRun<'s>),
 }
 
 impl<'s> SampleRun<'s> {
@@ -30,6 +32,7 @@ impl<'s> SampleRun<'s> {
             Integration::Extrapolated { levels } => {
                 Self::Extrapolated(ExtrapolatedRun::start(simulator, samples, first_step, levels)?)
             }
+            Integration::Explicit => Self::Explicit(ExplicitRun::start(simulator, samples)?),
         })
     }
 
@@ -39,6 +42,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => Self::Plain(run.watching()),
             Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
+            Self::Explicit(run) => Self::Explicit(run),
         }
     }
 
@@ -54,6 +58,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => run.advance(schedule, rows, tolerance, observed, into),
             Self::Extrapolated(run) => run.advance(schedule, rows, tolerance, observed, into),
+            Self::Explicit(run) => run.advance(schedule, rows, observed, into),
         }
     }
 
@@ -62,6 +67,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => std::slice::from_ref(run),
             Self::Extrapolated(run) => run.levels(),
+            Self::Explicit(_) => &[],
         }
     }
 
