@@ -46,7 +46,9 @@ pub mod simulate {
 }
 
 pub mod study {
-    pub use crate::study::{CostOptions, Options, cost, explain, language_costs, prepare, run};
+    pub use crate::study::{
+        CostOptions, Evaluator, Kept, Options, cost, explain, language_costs, prepare, run, run_keeping,
+    };
 }
 
 pub mod syntax {

@@ -233,6 +233,8 @@ mod tests {
             }],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,

@@ -2,7 +2,7 @@
 
 use super::control::{Controller, Integration, Schedule};
 use super::diagnostics::{OpenConstraint, SingularPass};
-use super::ensemble::{EnsembleRun, ExtrapolatedRun, Observed, Stop};
+use super::ensemble::{Channel, EnsembleRun, ExtrapolatedRun, Observed, Stop};
 use super::error::SimulationError;
 use super::explicit::ExplicitRun;
 use super::simulator::Simulator;
@@ -43,6 +43,25 @@ impl<'s> SampleRun<'s> {
             Self::Plain(run) => Self::Plain(run.watching()),
             Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
             Self::Explicit(run) => Self::Explicit(run),
+        }
+    }
+
+    /// Also reduces outputs to one number each.
+    #[must_use]
+    pub fn reducing(self, channels: &'s [Channel]) -> Self {
+        match self {
+            Self::Plain(run) => Self::Plain(run.reducing(channels)),
+            Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
+            Self::Explicit(run) => Self::Explicit(run.reducing(channels)),
+        }
+    }
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        match self {
+            Self::Plain(run) => run.reduced(),
+            Self::Extrapolated(run) => run.reduced(),
+            Self::Explicit(run) => run.reduced(),
         }
     }
 

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::ensemble::Progress;
 use super::explicit::OF_STEPS;
 use super::outcome::{Outcome, Results};
+use super::reduced::Found;
 use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
@@ -44,6 +45,7 @@ impl Study<'_> {
                 methods: Vec::new(),
                 halved: Vec::new(),
                 internal: Vec::new(),
+                found: Found::default(),
             };
             if self.request.is_empty() {
                 return Ok(results);
@@ -73,6 +75,7 @@ impl Study<'_> {
                 }
             }
             results.validation = Some((validation, summary));
+            results.found = self.reduced(&results, tolerance, &progress)?;
             return Ok(results);
         }
     }

@@ -51,6 +51,9 @@ impl Study<'_> {
     /// Whether the explicit method may be taken: where the model asks for it, or under a tolerance where equations do not switch.
     pub(super) fn may_be_explicit(&self) -> bool {
         let simulation = &self.description.simulation;
+        if self.simulator.system.analysis.is_without_steps() {
+            return false;
+        }
         let tolerance = self.request.tolerance.is_some() || matches!(simulation.stepping, Stepping::Tolerance(_));
         match simulation.scheme {
             SchemeChoice::Explicit => tolerance,
@@ -170,7 +173,7 @@ pub(super) fn decision(description: &Description, simulator: &Simulator) -> Opti
         Stepping::Fixed(_) => of_bounds,
     };
     let open = simulation.scheme == SchemeChoice::Auto && simulation.extrapolation.is_none();
-    let tolerance = tolerance.filter(|_| open)?;
+    let tolerance = tolerance.filter(|_| open && !simulator.system.analysis.is_without_steps())?;
     let by_scheme = |why: String| {
         let levels = if of_bounds.is_some() { ", extrapolated where that takes fewer steps" } else { "" };
         Decision { what: format!("integrated by HHT-I3{levels}"), why, saves: None }

@@ -34,9 +34,12 @@ impl Study<'_> {
 
     /// Fast modes that the start excites and a schedule's steps damp. Steps that a tolerance decides follow them.
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
+        let has_steps = !self.simulator.system.analysis.is_without_steps();
         match self.description.simulation.stepping {
             // The explicit method damps nothing.
-            Stepping::Fixed(_) if !self.request.is_empty() && schedule.integration != Integration::Explicit => {
+            Stepping::Fixed(_)
+                if has_steps && !self.request.is_empty() && schedule.integration != Integration::Explicit =>
+            {
                 // The finest level has the most weight.
                 let halvings = schedule.integration.order() - 2;
                 excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)

@@ -28,6 +28,7 @@ mod hard_cases;
 mod honesty;
 mod honesty_search;
 mod invariants;
+mod kept;
 mod linkages;
 mod machines;
 mod pruning;

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use symdiff::{WIDTHS, jet::JetSpace};
 
 use super::jets::JetRun;
+use super::reduction::Channel;
 use super::row_closure::{JetClosure, RowClosure};
 use super::run::{EnsembleRun, Observed, Stop};
 use crate::numerics::Sample;
@@ -101,6 +102,21 @@ impl<'s> ExtrapolatedRun<'s> {
             self.levels.insert(0, first);
         }
         self
+    }
+
+    /// Also reduces outputs to one number each, on every level.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        self.levels = self.levels.into_iter().map(|level| level.reducing(channels)).collect();
+        self
+    }
+
+    /// As [`EnsembleRun::reduced`]: what the levels' outputs are reduced to, combined as their motions are.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(EnsembleRun::reduced).collect();
+        let mut values = Vec::new();
+        combined(&self.weights, &of_levels, &mut values);
+        values
     }
 
     /// As [`EnsembleRun::advance`].

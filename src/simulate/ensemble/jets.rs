@@ -242,6 +242,15 @@ pub(super) fn assembled_jet<'s>(
         start.set_constant(register, assembled.lane(register)[0]);
     }
     set_parameters(simulator, space, &mut start, (center, half_width));
+    if let Some(equilibrium) = &simulator.equilibrium {
+        let layout = &simulator.start.layout;
+        let state = assembled.values()[..layout.registers()].to_vec();
+        if let Some(found) = equilibrium.jet(space, center, half_width, &state) {
+            for register in layout.q.clone() {
+                start.jet_mut(register).copy_from_slice(found.jet(register));
+            }
+        }
+    }
     consistent(simulator, &mut start, space.monomials().order(), first_step);
     Ok((assembled, start))
 }

@@ -3,6 +3,7 @@
 mod extrapolated;
 mod jets;
 mod lane_steps;
+mod reduction;
 mod row_accelerations;
 mod row_closure;
 mod run;
@@ -10,5 +11,7 @@ mod switch_extents;
 
 pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jets::JetRun;
+pub(in crate::simulate) use reduction::Reduction;
+pub use reduction::{Accumulation, Channel};
 pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};
 pub use run::{EnsembleRun, Observed, Stop};

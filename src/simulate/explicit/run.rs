@@ -6,12 +6,15 @@ use symdiff::{WIDTHS, jet::JetSpace};
 use super::runge_kutta::{Motion, RungeKutta, StepError};
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
-use crate::simulate::ensemble::{JetClosure, Observed, RowClosure, Stop};
+use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 
 /// Samples whose states are advanced together.
 const WIDTH: usize = 32;
+
+/// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
+const REDUCED: usize = 16;
 
 impl Motion for RowClosure<'_> {
     fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
@@ -53,6 +56,8 @@ struct Tile<'s> {
     steps: usize,
     /// Lanes that still run.
     alive: Vec<bool>,
+    /// Where outputs are reduced to one number.
+    reduction: Option<Reduction<'s>>,
 }
 
 fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Result<Vec<Tile<'s>>, SimulationError> {
@@ -67,7 +72,7 @@ fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Re
         let run = RungeKutta::start(&mut motion, 0.0, state);
         let rows = RowClosure::new(simulator, &start)?;
         let alive = vec![true; width];
-        Ok(Tile { motion, rows, run, first: place * at_once, count: samples.len(), steps: 0, alive })
+        Ok(Tile { motion, rows, run, first: place * at_once, count: samples.len(), steps: 0, alive, reduction: None })
     };
     let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
     chunks.into_par_iter().map(of_tile).collect()
@@ -133,6 +138,30 @@ impl<'s> ExplicitRun<'s> {
         Ok(Self { simulator, tiles, samples: samples.len() })
     }
 
+    /// Also reduces outputs to one number each.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        let outputs = self.simulator.program.outputs.len();
+        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
+            tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
+        }
+        self
+    }
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let Some(reduction) = &mut tile.reduction else { continue };
+            let (found, width) = (reduction.finish(), tile.alive.len());
+            values.resize(found.len() / width * self.samples, f64::NAN);
+            for (channel, lanes) in found.chunks_exact(width).enumerate() {
+                values[channel * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
+            }
+        }
+        values
+    }
+
     /// Advances to `rows`, which follow the rows of the last call, and records what is `observed`: row by row, value by value,
     /// sample by sample. Returns the samples that stopped: whose state is no longer finite.
     pub fn advance(
@@ -176,7 +205,23 @@ impl Tile<'_> {
         let mut state = vec![0.0; self.run.state.len()];
         for (row, values) in rows.zip(values.chunks_exact_mut(lines * width)) {
             let time = schedule.time(row);
-            reach(&mut self.run, &mut self.motion, (&mut self.steps, ends), time, &mut state);
+            let Self { motion, rows, run, steps, alive, reduction, .. } = self;
+            if row == 0 {
+                let mut start = run.state.clone();
+                reduce(reduction, rows, alive, 0.0, &mut start);
+            }
+            let mut between = vec![0.0; if reduction.is_some() { state.len() } else { 0 }];
+            let mut stepped = |run: &mut RungeKutta, motion: &mut RowClosure, end: f64| {
+                if reduction.is_some() {
+                    run.prepare_dense(motion, end);
+                    for part in 1..=REDUCED {
+                        let share = part as f64 / REDUCED as f64;
+                        run.interpolate(share, &mut between);
+                        reduce(reduction, rows, alive, run.time + share * (end - run.time), &mut between);
+                    }
+                }
+            };
+            reach(run, motion, (steps, ends), time, (&mut state, &mut stepped));
             self.rows.close(time, &mut state);
             let outputs = match observed {
                 Observed::Outputs => &mut *values,
@@ -209,13 +254,24 @@ impl Tile<'_> {
     }
 }
 
-/// The state at a time, after those steps of a list that lead to it; a step that passes it stays open.
-fn reach(
+/// Takes the outputs of a state into what they are reduced to, if they are.
+fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[bool], time: f64, state: &mut [f64]) {
+    if let Some(reduction) = reduction {
+        let mut values = reduction.buffer();
+        rows.close(time, state);
+        rows.observe(&mut values);
+        reduction.push(time, values, alive);
+    }
+}
+
+/// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is called after each,
+/// before the run goes on from its end.
+fn reach<M: Motion>(
     run: &mut RungeKutta,
-    motion: &mut impl Motion,
+    motion: &mut M,
     (steps, ends): (&mut usize, &[f64]),
     time: f64,
-    state: &mut [f64],
+    (state, stepped): (&mut [f64], &mut dyn FnMut(&mut RungeKutta, &mut M, f64)),
 ) {
     // `steps` counts the steps that are begun; the last of them is open until a row lies beyond its end.
     while time > run.time {
@@ -227,6 +283,7 @@ fn reach(
                 *steps += 1;
                 run.attempt(motion, end);
                 run.finish(motion, end);
+                stepped(run, motion, end);
                 if time < end {
                     run.prepare_dense(motion, end);
                 }
@@ -276,7 +333,8 @@ impl<'s> ExplicitJets<'s> {
         let mut state = vec![0.0; self.run.state.len()];
         for row in rows {
             let time = schedule.time(row);
-            reach(&mut self.run, &mut self.motion, (&mut self.steps, &ends), time, &mut state);
+            let steps = (&mut self.steps, &ends[..]);
+            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut |_, _, _| {}));
             if let Some(place) = state.iter().position(|value| !value.is_finite()) {
                 let equation = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
                 return Some(Stop { sample: 0, row, time, equation, open: None, singular: true });
