@@ -24,7 +24,8 @@ impl Study<'_> {
         let explicit = match self.request.tolerance.filter(|_| self.may_be_explicit() && !schedule.passes_rows()) {
             None => None,
             Some(allowed) => {
-                let found = self.explicit_steps(&[self.domain.nominal.clone()], schedule, OF_STEPS * allowed)?;
+                let found =
+                    self.explicit_steps(std::slice::from_ref(&self.domain.nominal), schedule, OF_STEPS * allowed)?;
                 found.or_else(|obstacle| self.refused(obstacle.into()).map(|()| schedule.clone())).map(Some)?
             }
         };

@@ -6,7 +6,6 @@ use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
-use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::methods::{
     BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
@@ -35,9 +34,6 @@ pub(super) struct Study<'a> {
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
-
-/// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
-type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
@@ -214,43 +210,6 @@ impl<'a> Study<'a> {
             results.found = self.reduced(&results, tolerance, &progress)?;
         }
         Ok(results)
-    }
-
-    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
-    fn balance(
-        &self,
-        schedule: &Schedule,
-        tolerance: Option<Controller>,
-        progress: &Progress,
-    ) -> Result<Balanced, SimulationError> {
-        let problem = problem(self.description, &self.simulator);
-        let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
-        let motion = self.request.methods().iter().any(needs_motion);
-        let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        if let Some(allowed) = self.request.tolerance.filter(|_| self.may_be_explicit()) {
-            match self.balance_explicit(schedule, allowed, observed, progress)? {
-                Ok((schedule, validation)) => {
-                    return Ok((Divided { schedule, unresolved_from: None }, None, validation));
-                }
-                Err(obstacle) => self.refused(obstacle)?,
-            }
-        }
-        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
-        loop {
-            let begun = std::time::Instant::now();
-            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
-            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
-            let validation = self.validation(&schedule, tolerance, observed, progress)?;
-            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
-            let summary = validation_summary(&schedule, &validation, stop, begun);
-            let enough = match self.request.tolerance {
-                Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
-                None => true,
-            };
-            if enough {
-                return Ok((Divided { schedule, unresolved_from }, tolerance, (validation, summary)));
-            }
-        }
     }
 
     /// The first row before which some parameter values meet a switch that no sample meets.

@@ -111,13 +111,14 @@ impl StepSearch {
             return false;
         }
         let parts = self.parts_for(error);
+        // NaN gains nothing either.
+        let gains = GAIN * error < self.plain || error <= SHARE;
         match self.integration {
             Integration::Plain if error > SHARE && parts > WORTH_LEVELS => {
                 self.plain = error;
                 self.integration = Integration::of_levels(LEVELS);
             }
-            // NaN gains nothing either.
-            Integration::Extrapolated { .. } if !(GAIN * error < self.plain || error <= SHARE) => {
+            Integration::Extrapolated { .. } if !gains => {
                 self.may_extrapolate = false;
                 self.integration = Integration::Plain;
                 let most = MOST_PARTS * self.per_row.unwrap_or(1);

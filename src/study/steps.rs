@@ -1,10 +1,15 @@
 //! Schedules that resolve what they can, and the samples that tell the error of their steps.
 
 use super::ensemble::Progress;
-use super::single::{Study, simulation_error};
-use crate::methods::{Ensembles, Observed, Validation};
+use super::single::{Study, problem, simulation_error, validation_summary};
+use super::step_search::StepSearch;
+use crate::methods::{BoundingMethod, Ensembles, Method, Observed, Validation};
 use crate::model::{SchemeChoice, Simulation, Stepping};
+use crate::results::MethodSummary;
 use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
+
+/// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
+type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 
 impl Study<'_> {
     /// How steps are taken where no tolerance decides it.
@@ -45,6 +50,43 @@ impl Study<'_> {
                 excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)
             }
             _ => Vec::new(),
+        }
+    }
+
+    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    pub(super) fn balance(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<Controller>,
+        progress: &Progress,
+    ) -> Result<Balanced, SimulationError> {
+        let problem = problem(self.description, &self.simulator);
+        let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
+        let motion = self.request.methods().iter().any(needs_motion);
+        let observed = if motion { Observed::Motion } else { Observed::Outputs };
+        if let Some(allowed) = self.request.tolerance.filter(|_| self.may_be_explicit()) {
+            match self.balance_explicit(schedule, allowed, observed, progress)? {
+                Ok((schedule, validation)) => {
+                    return Ok((Divided { schedule, unresolved_from: None }, None, validation));
+                }
+                Err(obstacle) => self.refused(obstacle)?,
+            }
+        }
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
+        loop {
+            let begun = std::time::Instant::now();
+            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
+            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
+            let validation = self.validation(&schedule, tolerance, observed, progress)?;
+            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
+            let summary = validation_summary(&schedule, &validation, stop, begun);
+            let enough = match self.request.tolerance {
+                Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
+                None => true,
+            };
+            if enough {
+                return Ok((Divided { schedule, unresolved_from }, tolerance, (validation, summary)));
+            }
         }
     }
 

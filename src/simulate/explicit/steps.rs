@@ -80,7 +80,7 @@ pub fn explicit_schedule(
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, &sizes, tolerance);
         let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);
-        if !(worst.ratio <= 1.0) {
+        if worst.ratio > 1.0 {
             tiles.reject();
             h = step * if worst.ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
             continue;
