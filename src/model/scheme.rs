@@ -7,7 +7,8 @@ use crate::grammar::reader::Fields;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// The words of `scheme`.
-const SCHEMES: [(&str, SchemeChoice); 2] = [("auto", SchemeChoice::Auto), ("hht", SchemeChoice::Hht)];
+const SCHEMES: [(&str, SchemeChoice); 3] =
+    [("auto", SchemeChoice::Auto), ("hht", SchemeChoice::Hht), ("explicit", SchemeChoice::Explicit)];
 
 /// Levels that can be combined. A fifth gains nothing that rounding leaves.
 const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
@@ -30,5 +31,9 @@ pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice
             }
         },
     };
+    if let (Some(SchemeChoice::Explicit), Some(node)) = (scheme, fields.get("extrapolation")) {
+        let message = "`extrapolation` is of HHT-I3, but the `scheme` is `explicit`";
+        reader.diagnostics.push(Diagnostic::error(node.span.clone(), message).help("leave one of them out".to_owned()));
+    }
     Some((scheme?, levels?))
 }

@@ -29,6 +29,12 @@ pub enum SimulationError {
         /// Which constraints are too many, where some are.
         cause: Option<Box<str>>,
     },
+    /// The explicit method is asked for where it is of no use.
+    #[error("the explicit method is not for this: {why}; `scheme: hht` integrates it, and `auto` chooses")]
+    NotExplicit {
+        /// What stands against it.
+        why: String,
+    },
     /// The equations of motion cannot be solved at the start.
     #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
     Singular {

@@ -320,6 +320,11 @@ impl Simulator {
         compiled.as_ref().map_err(Clone::clone)
     }
 
+    /// Whether the equations switch somewhere.
+    pub fn has_switches(&self) -> bool {
+        self.switches().is_some()
+    }
+
     /// Where the equations switch, if they do.
     pub(super) fn switches(&self) -> Option<&SwitchProgram> {
         self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()

@@ -7,7 +7,7 @@ use super::outcome::Ran;
 use super::single::{Study, simulation_error};
 use crate::methods::{Ensemble, Observed, Sampling, Until};
 use crate::numerics::{Sample, corners};
-use crate::simulate::{Controller, SimulationError, ToleranceSchedule, schedule_for_tolerance};
+use crate::simulate::{Controller, Schedule, SimulationError, ToleranceSchedule, schedule_for_tolerance};
 
 /// Corners of the box that join the nominal sample as controlling samples of the step size.
 const CONTROLLING_CORNERS: usize = 16;
@@ -38,6 +38,12 @@ impl Study<'_> {
     /// The schedule of the controlling samples serves all; a sample that needs shorter steps in between takes its own.
     pub(super) fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
         let samples = self.controlling_samples();
+        if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
+            match self.explicit_within(tolerance, &samples)? {
+                Ok(schedule) => return Ok(self.conclude(self.methods(&schedule, None)?, None)),
+                Err(obstacle) => self.refused(obstacle)?,
+            }
+        }
         let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
         let failure = controlled.failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
         let results = self.methods(&controlled.schedule, Some(controller))?;
@@ -75,7 +81,7 @@ impl Study<'_> {
             if controlled.failure.is_some() || (self.interrupted)() {
                 break;
             }
-            let share = self.steps_error(&controlled, controller, samples)? / tolerance;
+            let share = self.steps_error(&controlled.schedule, Some(controller), samples)? / tolerance;
             // Steps go with the root of the tolerance.
             let room = (most / steps(&controlled).max(1.0)).powi(2);
             let factor = of_plain(share / AIM).min(room);
@@ -93,17 +99,16 @@ impl Study<'_> {
     }
 
     /// The largest error of an output at the controlling samples, relative to how far it moves, by halving the steps.
-    fn steps_error(
+    pub(super) fn steps_error(
         &self,
-        controlled: &ToleranceSchedule,
-        controller: Controller,
+        schedule: &Schedule,
+        controller: Option<Controller>,
         samples: &[Sample],
     ) -> Result<f64, SimulationError> {
         let progress = Progress::new(usize::MAX, self.progress);
-        let schedule = &controlled.schedule;
         let halved = schedule.refined(2);
         let values = |schedule, controller| {
-            let motions = self.motions(schedule, Some(controller), &progress);
+            let motions = self.motions(schedule, controller, &progress);
             let mut values: Vec<f64> = Vec::new();
             let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
             motions
@@ -111,7 +116,8 @@ impl Study<'_> {
                 .map_err(simulation_error)?;
             Ok(values)
         };
-        let (direct, halved) = (values(schedule, controller)?, values(&halved, controller.for_parts(2))?);
+        let (direct, halved) =
+            (values(schedule, controller)?, values(&halved, controller.map(|controller| controller.for_parts(2)))?);
         let outputs = &self.simulator.system.outputs;
         let lines = |values: &[f64]| -> Vec<Vec<f64>> {
             let line = |output: usize| values.chunks_exact(samples.len()).skip(output).step_by(outputs.len()).flatten();

@@ -2,6 +2,7 @@
 
 use symdiff::{Formula, Input, lower};
 
+use super::explicit;
 use super::formulation::{as_chosen, compiled, instructions};
 use super::subsystems::{Prepared, prepare};
 use crate::compile::Tapes;
@@ -49,6 +50,7 @@ pub(super) fn decisions(description: &Description, reduction: &Reduction, prepar
     }
     found.extend(subsystems(description, prepared));
     found.extend(constants(prepared));
+    found.extend(prepared.iter().filter_map(|one| explicit::decision(&one.subsystem.description, &one.simulator)));
     if affordable {
         found.extend(numbers(prepared, step));
         found.extend(unasked(prepared));

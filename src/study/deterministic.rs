@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use super::ensemble::Progress;
+use super::explicit::OF_STEPS;
 use super::outcome::{Outcome, Results};
 use super::reduced::Found;
 use super::single::{Study, simulation_error, timed, validation_summary};
@@ -20,6 +21,15 @@ impl Study<'_> {
         tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
+        let explicit = match self.request.tolerance.filter(|_| self.may_be_explicit() && !schedule.passes_rows()) {
+            None => None,
+            Some(allowed) => {
+                let found =
+                    self.explicit_steps(std::slice::from_ref(&self.domain.nominal), schedule, OF_STEPS * allowed)?;
+                found.or_else(|obstacle| self.refused(obstacle.into()).map(|()| schedule.clone())).map(Some)?
+            }
+        };
+        let schedule = explicit.as_ref().unwrap_or(schedule);
         let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());

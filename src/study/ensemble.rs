@@ -14,8 +14,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range, Sample};
 use crate::simulate::{
-    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, ExtrapolatedJets, Integration, JetRun,
-    Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
+    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, ExplicitJets, ExtrapolatedJets, Integration,
+    JetRun, Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
     choose_independent,
 };
 
@@ -183,6 +183,7 @@ impl<'a> Motions<'a> {
 enum SampleJet<'s> {
     Plain(Box<JetRun<'s>>),
     Extrapolated(Box<ExtrapolatedJets<'s>>),
+    Explicit(Box<ExplicitJets<'s>>),
 }
 
 impl<'s> SampleJet<'s> {
@@ -203,6 +204,9 @@ impl<'s> SampleJet<'s> {
                 let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
                 Self::Extrapolated(Box::new(jets))
             }
+            Integration::Explicit => {
+                Self::Explicit(Box::new(ExplicitJets::start(simulator, space, (center, half_widths))?))
+            }
         })
     }
 
@@ -210,6 +214,7 @@ impl<'s> SampleJet<'s> {
         match self {
             Self::Plain(jet) => jet.advance(schedule, rows, into),
             Self::Extrapolated(jets) => jets.advance(schedule, rows, into),
+            Self::Explicit(jets) => jets.advance(schedule, rows, into),
         }
     }
 
@@ -221,6 +226,7 @@ impl<'s> SampleJet<'s> {
                 jets.levels().iter().for_each(|jet| total += effort(jet.counters()));
                 total
             }
+            Self::Explicit(_) => Effort::default(),
         }
     }
 }

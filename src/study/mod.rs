@@ -16,6 +16,7 @@ mod drawing;
 mod effect_costs;
 mod ensemble;
 mod explain;
+mod explicit;
 mod feasible;
 mod formulation;
 mod internal;

@@ -6,13 +6,12 @@ use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
-use super::step_search::StepSearch;
 use super::{Options, RunError};
 use crate::methods::{
     BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
     Stop, Validation, can_compose,
 };
-use crate::model::{Description, Stepping};
+use crate::model::{Description, SchemeChoice, Stepping};
 use crate::numerics::{ParameterBox, Sample, step_validation, validation};
 use crate::results::MethodSummary;
 use crate::simulate::{
@@ -36,9 +35,6 @@ pub(super) struct Study<'a> {
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
-type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
-
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
@@ -47,7 +43,8 @@ pub(super) fn problem(description: &Description, simulator: &Simulator) -> Probl
         parameters,
         composes: has_steps && can_compose(parameters, simulator.system.q.len()),
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
-            && description.simulation.extrapolation.is_none(),
+            && description.simulation.extrapolation.is_none()
+            && description.simulation.scheme != SchemeChoice::Explicit,
         tolerance: description.bounds.tolerance,
     }
 }
@@ -213,35 +210,6 @@ impl<'a> Study<'a> {
             results.found = self.reduced(&results, tolerance, &progress)?;
         }
         Ok(results)
-    }
-
-    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
-    fn balance(
-        &self,
-        schedule: &Schedule,
-        tolerance: Option<Controller>,
-        progress: &Progress,
-    ) -> Result<Balanced, SimulationError> {
-        let problem = problem(self.description, &self.simulator);
-        let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
-        let motion = self.request.methods().iter().any(needs_motion);
-        let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
-        loop {
-            let begun = std::time::Instant::now();
-            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
-            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
-            let validation = self.validation(&schedule, tolerance, observed, progress)?;
-            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
-            let summary = validation_summary(&schedule, &validation, stop, begun);
-            let enough = match self.request.tolerance {
-                Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
-                None => true,
-            };
-            if enough {
-                return Ok((Divided { schedule, unresolved_from }, tolerance, (validation, summary)));
-            }
-        }
     }
 
     /// Bounds by every requested method that is wanted; those that were not begun at an interruption are left out, and of those that

@@ -5,7 +5,7 @@ use symdiff::math;
 use crate::simulate::{Integration, Schedule};
 
 /// Share of the tolerance that the steps may take; the surrogate has the rest.
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
 /// The share that is aimed at, so that what is found is within that with some room.
 const AIM: f64 = 0.4;
@@ -111,13 +111,14 @@ impl StepSearch {
             return false;
         }
         let parts = self.parts_for(error);
+        // NaN gains nothing either.
+        let gains = GAIN * error < self.plain || error <= SHARE;
         match self.integration {
             Integration::Plain if error > SHARE && parts > WORTH_LEVELS => {
                 self.plain = error;
                 self.integration = Integration::of_levels(LEVELS);
             }
-            // NaN gains nothing either.
-            Integration::Extrapolated { .. } if !(GAIN * error < self.plain || error <= SHARE) => {
+            Integration::Extrapolated { .. } if !gains => {
                 self.may_extrapolate = false;
                 self.integration = Integration::Plain;
                 let most = MOST_PARTS * self.per_row.unwrap_or(1);

@@ -1,15 +1,23 @@
 //! Schedules that resolve what they can, and the samples that tell the error of their steps.
 
 use super::ensemble::Progress;
-use super::single::{Study, simulation_error};
-use crate::methods::{Ensembles, Observed, Validation};
+use super::single::{Study, problem, simulation_error, validation_summary};
+use super::step_search::StepSearch;
+use crate::methods::{BoundingMethod, Ensembles, Method, Observed, Validation};
 use crate::model::{SchemeChoice, Simulation, Stepping};
+use crate::results::MethodSummary;
 use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
+
+/// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
+type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 
 impl Study<'_> {
     /// How steps are taken where no tolerance decides it.
     pub(super) fn integration(&self) -> Integration {
-        Integration::of_levels(self.description.simulation.extrapolation.unwrap_or(1))
+        match self.description.simulation.scheme {
+            SchemeChoice::Explicit => Integration::Explicit,
+            _ => Integration::of_levels(self.description.simulation.extrapolation.unwrap_or(1)),
+        }
     }
 
     /// Whether a tolerance may choose levels of extrapolation. Certified bounds enclose the scheme itself.
@@ -22,6 +30,8 @@ impl Study<'_> {
     /// A schedule with those steps divided that do not resolve a function of the time.
     pub(super) fn divided(&self, schedule: Schedule) -> Divided {
         match &self.time_functions {
+            // Those have been resolved as they were chosen.
+            _ if schedule.passes_rows() => Divided { schedule, unresolved_from: None },
             Some(functions) => functions.divided(&schedule),
             None => Divided { schedule, unresolved_from: None },
         }
@@ -31,12 +41,52 @@ impl Study<'_> {
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
         let has_steps = !self.simulator.system.analysis.is_without_steps();
         match self.description.simulation.stepping {
-            Stepping::Fixed(_) if has_steps && !self.request.is_empty() => {
+            // The explicit method damps nothing.
+            Stepping::Fixed(_)
+                if has_steps && !self.request.is_empty() && schedule.integration != Integration::Explicit =>
+            {
                 // The finest level has the most weight.
                 let halvings = schedule.integration.order() - 2;
                 excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)
             }
             _ => Vec::new(),
+        }
+    }
+
+    /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
+    pub(super) fn balance(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<Controller>,
+        progress: &Progress,
+    ) -> Result<Balanced, SimulationError> {
+        let problem = problem(self.description, &self.simulator);
+        let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
+        let motion = self.request.methods().iter().any(needs_motion);
+        let observed = if motion { Observed::Motion } else { Observed::Outputs };
+        if let Some(allowed) = self.request.tolerance.filter(|_| self.may_be_explicit()) {
+            match self.balance_explicit(schedule, allowed, observed, progress)? {
+                Ok((schedule, validation)) => {
+                    return Ok((Divided { schedule, unresolved_from: None }, None, validation));
+                }
+                Err(obstacle) => self.refused(obstacle)?,
+            }
+        }
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
+        loop {
+            let begun = std::time::Instant::now();
+            let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
+            let tolerance = tolerance.map(|tolerance| tolerance.for_parts(steps.parts()));
+            let validation = self.validation(&schedule, tolerance, observed, progress)?;
+            let stop = validation.simulated.stop.as_ref().map(|(stop, _)| stop);
+            let summary = validation_summary(&schedule, &validation, stop, begun);
+            let enough = match self.request.tolerance {
+                Some(allowed) => !steps.adjust(validation.worst_share(allowed, schedule.rows)),
+                None => true,
+            };
+            if enough {
+                return Ok((Divided { schedule, unresolved_from }, tolerance, (validation, summary)));
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::outcome::Switches;
 use super::single::Study;
 use crate::methods::Validation;
 use crate::results::MethodSummary;
-use crate::simulate::{Controller, Schedule, SimulationError, unmet_switch};
+use crate::simulate::{Controller, Integration, Schedule, SimulationError, unmet_switch};
 
 impl Study<'_> {
     /// Searches the box for them; `None` where the equations have none.
@@ -21,7 +21,8 @@ impl Study<'_> {
             return Ok(None);
         }
         let begun = Instant::now();
-        let steps = (schedule, tolerance);
+        let at_rows = schedule.ending_at_rows();
+        let steps = (&at_rows, tolerance);
         let found = caught("the search for switches", || {
             unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
         });
@@ -33,7 +34,8 @@ impl Study<'_> {
             }
         };
         Ok(found.map(|mut found| {
-            if tolerance.is_some() {
+            // Steps that a tolerance decides end at switches.
+            if tolerance.is_some() || schedule.integration == Integration::Explicit {
                 found.switched_from = None;
             }
             let summary = MethodSummary {

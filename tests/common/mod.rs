@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use mbint::inner::methods::{Chebyshev, Expand, Scan};
-use mbint::inner::model::{self, Description, Output, ParameterValue, Stepping};
+use mbint::inner::model::{self, Description, Output, ParameterValue, SchemeChoice, Stepping};
 use mbint::inner::numerics::RangeKind;
 use mbint::inner::results::Summary;
 use mbint::inner::results::{Band, Bounds, Method, OutputBounds};
@@ -88,6 +88,8 @@ pub trait Vary {
     /// A row of output after every this many seconds.
     fn rows_every(self, output_step: f64) -> Self;
     fn tolerance(self, tolerance: f64) -> Self;
+    /// Integrated by HHT-I3, whatever would be cheaper.
+    fn by_hht(self) -> Self;
     /// These outputs instead of the model's.
     fn observing(self, formulas: &[&str]) -> Self;
     /// An uncertain parameter's interval, relative to its nominal value.
@@ -121,6 +123,11 @@ impl Vary for Description {
 
     fn tolerance(mut self, tolerance: f64) -> Self {
         self.simulation.stepping = Stepping::Tolerance(tolerance);
+        self
+    }
+
+    fn by_hht(mut self) -> Self {
+        self.simulation.scheme = SchemeChoice::Hht;
         self
     }
 

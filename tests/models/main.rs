@@ -19,6 +19,7 @@ mod closed_forms;
 mod composition;
 mod convergence;
 mod drawing_linkages;
+mod explicit;
 mod extrapolation;
 mod far;
 mod formulas;

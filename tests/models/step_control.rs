@@ -1,4 +1,4 @@
-//! Steps from a tolerance.
+//! Steps of HHT-I3 from a tolerance.
 //!
 //! The local position error is of third order, δ ∼ h³, and is kept at each step's share of the tolerance, tol · h/T:
 //! h ∼ tol^(1/2), and the error at the end, ∼ h², is proportional to the tolerance:
@@ -13,7 +13,7 @@ fn the_error_falls_with_the_tolerance() {
         let exact = nominal(&description.clone().step(2e-5));
         let tolerances = [1e-4, 1e-5, 1e-6];
         let errors = tolerances.map(|tolerance| {
-            let bounds = nominal(&description.clone().tolerance(tolerance));
+            let bounds = nominal(&description.clone().by_hht().tolerance(tolerance));
             distance(&bounds.outputs[0].nominal, &exact.outputs[0].nominal)
         });
         println!("{name}: {errors:?}");
@@ -28,7 +28,7 @@ fn the_error_falls_with_the_tolerance() {
 fn a_tolerance_takes_the_steps_that_it_needs() {
     let description = model("slider_crank_one").duration(1.0);
     let steps = [1e-4, 1e-6].map(|tolerance| {
-        let (_, summary) = run_methods(&description.clone().tolerance(tolerance), Some(Vec::new()));
+        let (_, summary) = run_methods(&description.clone().by_hht().tolerance(tolerance), Some(Vec::new()));
         summary.methods[0].steps
     });
     println!("{steps:?}");

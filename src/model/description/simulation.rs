@@ -27,6 +27,8 @@ pub enum SchemeChoice {
     Auto,
     /// HHT-I3.
     Hht,
+    /// Dormand and Prince's explicit method of order 8.
+    Explicit,
 }
 
 /// By which coordinates a motion is described; the motion is the same.

@@ -42,6 +42,8 @@ schema_only! {
         Auto,
         /// HHT-I3.
         Hht,
+        /// Dormand and Prince's method of order 8, for what is not stiff.
+        Explicit,
     }
 
     #[schemars(rename_all = "lowercase", inline)]

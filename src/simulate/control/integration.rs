@@ -12,6 +12,8 @@ pub enum Integration {
         /// 2, 3 or 4.
         levels: usize,
     },
+    /// By Dormand and Prince's explicit method of order 8.
+    Explicit,
 }
 
 impl Integration {
@@ -23,7 +25,7 @@ impl Integration {
     /// Steps that are taken for each of the schedule's.
     pub fn steps(self) -> usize {
         match self {
-            Self::Plain => 1,
+            Self::Plain | Self::Explicit => 1,
             Self::Extrapolated { levels } => (1 << levels) - 1,
         }
     }
@@ -33,6 +35,7 @@ impl Integration {
         match self {
             Self::Plain => 2,
             Self::Extrapolated { levels } => levels + 1,
+            Self::Explicit => 8,
         }
     }
 
@@ -41,6 +44,7 @@ impl Integration {
         match self {
             Self::Plain => None,
             Self::Extrapolated { levels } => Some(format!("HHT-I3 extrapolated over {levels} levels")),
+            Self::Explicit => Some("Dormand–Prince 8(5,3), explicit".to_owned()),
         }
     }
 }

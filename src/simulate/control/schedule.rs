@@ -25,6 +25,8 @@ enum Steps {
     Fixed { step: f64, per_row: usize, last: LastSteps },
     /// For each row but the first, the times at which the steps before it end; the last is the row's own.
     Listed(Vec<Vec<f64>>),
+    /// The times at which steps end, which pass over rows; the last is the end of the run.
+    Passing(Vec<f64>),
 }
 
 /// Steps for each of those that they are at odds with.
@@ -40,6 +42,20 @@ struct LastSteps {
     whole: usize,
     rests: usize,
     rest: f64,
+}
+
+/// So many steps instead of those that end at these times, as dense as they are.
+fn divided(ends: &[f64], others: usize) -> Vec<f64> {
+    let count = ends.len();
+    let time = |step: usize| if step == 0 { 0.0 } else { ends[step - 1] };
+    let end = |other: usize| {
+        let (whole, part) = (other * count / others, other * count % others);
+        match part {
+            0 => time(whole),
+            _ => time(whole) + (time(whole + 1) - time(whole)) * part as f64 / others as f64,
+        }
+    };
+    (1..=others).map(end).collect()
 }
 
 /// A remainder below this share of a step is rounding.
@@ -85,6 +101,40 @@ impl Schedule {
         Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends), integration: Integration::Plain }
     }
 
+    /// Steps that end at the listed times, whatever rows lie between.
+    pub fn passing(duration: f64, output_step: f64, ends: Vec<f64>) -> Self {
+        let rows = rows(duration, output_step);
+        let steps = Steps::Passing(ends);
+        Self { output_step, rows, end: duration, steps, integration: Integration::Plain }
+    }
+
+    /// Whether steps pass over rows.
+    pub fn passes_rows(&self) -> bool {
+        matches!(self.steps, Steps::Passing(_))
+    }
+
+    /// The same with steps that end at the rows too.
+    #[must_use]
+    pub fn ending_at_rows(&self) -> Self {
+        let Steps::Passing(_) = &self.steps else { return self.clone() };
+        let of_row = |row: usize| {
+            let mut ends: Vec<f64> = self.steps_to(row).map(|(_, end)| end).collect();
+            if ends.last().is_none_or(|&end| end < self.time(row)) {
+                ends.push(self.time(row));
+            }
+            ends
+        };
+        Self::listed(self.output_step, (1..self.rows).map(of_row).collect())
+    }
+
+    /// Times at which all steps end.
+    pub fn ends(&self) -> Vec<f64> {
+        match &self.steps {
+            Steps::Passing(ends) => ends.clone(),
+            _ => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(_, end)| end).collect(),
+        }
+    }
+
     /// The same rows, each step divided into `parts` equal ones.
     #[must_use]
     pub fn refined(&self, parts: usize) -> Self {
@@ -98,6 +148,7 @@ impl Schedule {
                     rest: last.rest / parts as f64,
                 },
             },
+            Steps::Passing(ends) => Steps::Passing(divided(ends, ends.len() * parts)),
             Steps::Listed(ends) => {
                 let refine = |row: usize| {
                     self.steps_to(row)
@@ -119,6 +170,9 @@ impl Schedule {
             let least = (FINER * count as f64).round() as usize;
             (least..).find(|&others| are_coprime(others, 2 * count)).unwrap_or(least)
         };
+        if let Steps::Passing(ends) = &self.steps {
+            return Self { steps: Steps::Passing(divided(ends, others(ends.len()))), ..*self };
+        }
         let Steps::Listed(ends) = &self.steps else {
             return self.with_steps_per_row(others(self.steps_per_row().unwrap_or(1)));
         };
@@ -147,9 +201,13 @@ impl Schedule {
 
     /// The longest of the steps, s.
     pub fn longest_step(&self) -> f64 {
-        match self.steps {
-            Steps::Fixed { step, .. } => step,
+        match &self.steps {
+            Steps::Fixed { step, .. } => *step,
             Steps::Listed(_) => (1..self.rows).flat_map(|row| self.steps_to(row)).map(|(h, _)| h).fold(0.0, f64::max),
+            Steps::Passing(ends) => {
+                let first = ends.first().copied().unwrap_or(0.0);
+                ends.windows(2).map(|pair| pair[1] - pair[0]).fold(first, f64::max)
+            }
         }
     }
 
@@ -157,7 +215,7 @@ impl Schedule {
     pub fn steps_per_row(&self) -> Option<usize> {
         match &self.steps {
             Steps::Fixed { per_row, .. } => Some(*per_row),
-            Steps::Listed(_) => None,
+            Steps::Listed(_) | Steps::Passing(_) => None,
         }
     }
 
@@ -200,6 +258,7 @@ impl Schedule {
             Steps::Fixed { last, .. } if self.rows == 2 && last.whole == 0 => last.rest,
             Steps::Fixed { step, .. } => *step,
             Steps::Listed(ends) => ends.first().and_then(|ends| ends.first()).copied().unwrap_or(self.output_step),
+            Steps::Passing(ends) => ends.first().copied().unwrap_or(self.output_step),
         }
     }
 
@@ -210,6 +269,7 @@ impl Schedule {
             Steps::Fixed { last, .. } if row + 1 == self.rows => last.whole + last.rests,
             Steps::Fixed { per_row, .. } => *per_row,
             Steps::Listed(ends) => ends[row - 1].len(),
+            Steps::Passing(_) => self.steps_before(row) - self.steps_before(row - 1),
         };
         (0..count).map(move |index| match &self.steps {
             Steps::Fixed { last, .. } if row + 1 == self.rows && index >= last.whole => {
@@ -219,6 +279,11 @@ impl Schedule {
             Steps::Listed(ends) => {
                 let before = if index == 0 { self.time(row - 1) } else { ends[row - 1][index - 1] };
                 (ends[row - 1][index] - before, ends[row - 1][index])
+            }
+            Steps::Passing(ends) => {
+                let place = self.steps_before(row - 1) + index;
+                let before = if place == 0 { 0.0 } else { ends[place - 1] };
+                (ends[place] - before, ends[place])
             }
         })
     }
@@ -231,6 +296,10 @@ impl Schedule {
             }
             Steps::Fixed { per_row, .. } => row * per_row,
             Steps::Listed(ends) => ends[..row].iter().map(Vec::len).sum(),
+            Steps::Passing(ends) => {
+                let time = self.time(row);
+                ends.partition_point(|&end| end <= time)
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 //! x ← x − J₀⁻¹ R(x) in jets then makes one more order exact: the step's derivatives with respect to the parameters to
 //! any order, without differentiating anything by hand.
 
-use symdiff::{JetMemory, jet::JetSpace};
+use symdiff::{JetMemory, Tile, jet::JetSpace};
 
 use super::run::Stop;
 use crate::compile::{StartProgram, Tapes};
@@ -40,32 +40,11 @@ impl<'s> JetRun<'s> {
         half_width: &[f64],
         first_step: f64,
     ) -> Result<Self, SimulationError> {
-        let assembled = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
+        let (assembled, start) = assembled_jet(simulator, space, (center, half_width), first_step)?;
         let order = space.monomials().order();
-        let set_parameters = |memory: &mut JetMemory<'s>| {
-            for (variable, register) in simulator.start.layout.parameters.clone().enumerate() {
-                space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
-            }
-        };
-        let mut start = JetMemory::new(space, simulator.start.registers(), simulator.start.constants());
-        for register in simulator.start.layout.state() {
-            start.set_constant(register, assembled.lane(register)[0]);
-        }
-        set_parameters(&mut start);
-        if let Some(equilibrium) = &simulator.equilibrium {
-            let layout = &simulator.start.layout;
-            let state = assembled.values()[..layout.registers()].to_vec();
-            if let Some(found) = equilibrium.jet(space, center, half_width, &state) {
-                for register in layout.q.clone() {
-                    start.jet_mut(register).copy_from_slice(found.jet(register));
-                }
-            }
-        }
-        consistent(simulator, &mut start, order, first_step);
-
         let program = &simulator.program;
         let mut memory = JetMemory::new(space, program.registers(), program.constants());
-        set_parameters(&mut memory);
+        set_parameters(simulator, space, &mut memory, (center, half_width));
         for register in program.layout.state() {
             memory.jet_mut(register).copy_from_slice(start.jet(register));
         }
@@ -233,6 +212,47 @@ impl<'s> JetRun<'s> {
         self.memory.run(program.step_size());
         self.step_size = h;
     }
+}
+
+/// The parameters as jets about the box's centre.
+fn set_parameters(
+    simulator: &Simulator,
+    space: &JetSpace,
+    memory: &mut JetMemory,
+    (center, half_width): (&[f64], &[f64]),
+) {
+    for (variable, register) in simulator.start.layout.parameters.clone().enumerate() {
+        space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
+    }
+}
+
+/// The consistent start of a jet in the start's memory, and of its centre.
+///
+/// # Errors
+/// Where the centre cannot be assembled.
+pub(super) fn assembled_jet<'s>(
+    simulator: &'s Simulator,
+    space: &'s JetSpace,
+    (center, half_width): (&[f64], &[f64]),
+    first_step: f64,
+) -> Result<(Tile, JetMemory<'s>), SimulationError> {
+    let assembled = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
+    let mut start = JetMemory::new(space, simulator.start.registers(), simulator.start.constants());
+    for register in simulator.start.layout.state() {
+        start.set_constant(register, assembled.lane(register)[0]);
+    }
+    set_parameters(simulator, space, &mut start, (center, half_width));
+    if let Some(equilibrium) = &simulator.equilibrium {
+        let layout = &simulator.start.layout;
+        let state = assembled.values()[..layout.registers()].to_vec();
+        if let Some(found) = equilibrium.jet(space, center, half_width, &state) {
+            for register in layout.q.clone() {
+                start.jet_mut(register).copy_from_slice(found.jet(register));
+            }
+        }
+    }
+    consistent(simulator, &mut start, space.monomials().order(), first_step);
+    Ok((assembled, start))
 }
 
 /// Adds the correction to the unknowns.

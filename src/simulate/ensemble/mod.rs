@@ -7,11 +7,11 @@ mod reduction;
 mod row_accelerations;
 mod row_closure;
 mod run;
-mod sample_run;
 mod switch_extents;
 
-pub use extrapolated::ExtrapolatedJets;
+pub use extrapolated::{ExtrapolatedJets, ExtrapolatedRun};
 pub use jets::JetRun;
+pub(in crate::simulate) use reduction::Reduction;
 pub use reduction::{Accumulation, Channel};
+pub(in crate::simulate) use row_closure::{JetClosure, RowClosure};
 pub use run::{EnsembleRun, Observed, Stop};
-pub use sample_run::SampleRun;

@@ -6,8 +6,7 @@
 
 use symdiff::{JetMemory, Tile, jet::JetSpace};
 
-use super::jets::{add_correction, corrections, solve_accelerations};
-use crate::assemble::System;
+use super::jets::{add_correction, assembled_jet, corrections, solve_accelerations};
 use crate::compile::{StartProgram, Tapes};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -20,11 +19,20 @@ struct Needs {
     closure: bool,
     /// Whether outputs depend on accelerations or multipliers.
     accelerations: bool,
+    /// Whether one correction solves for the accelerations: forces do not depend on multipliers, and no constraint is redundant.
+    linear: bool,
 }
 
 impl Needs {
-    fn of(system: &System) -> Self {
-        Self { closure: !system.lambda.is_empty(), accelerations: system.observes_accelerations() }
+    fn of(simulator: &Simulator) -> Self {
+        let system = &simulator.system;
+        let symbols = system.graph.symbols_of(&system.force);
+        let depends = system.lambda.iter().any(|multiplier| symbols.binary_search(multiplier).is_ok());
+        Self {
+            closure: !system.lambda.is_empty(),
+            accelerations: system.observes_accelerations(),
+            linear: !depends && simulator.mobility.redundant.is_empty() && system.active_condition.is_none(),
+        }
     }
 }
 
@@ -50,7 +58,7 @@ impl<'s> RowClosure<'s> {
         for register in layout.state() {
             assembly.tile_mut().lane_mut(register).copy_from_slice(start.lane(register));
         }
-        Ok(Self { program, assembly, needs: Needs::of(&simulator.system) })
+        Ok(Self { program, assembly, needs: Needs::of(simulator) })
     }
 
     /// The memory, with the state that was closed last.
@@ -79,6 +87,34 @@ impl<'s> RowClosure<'s> {
         }
         self.assembly.project_velocities();
         motion.copy_from_slice(&self.assembly.tile().values()[registers]);
+    }
+
+    /// Rates (v, w; 2n lines) of a state (q, v) at a time, which need not be consistent.
+    pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        let layout = &self.program.layout;
+        let width = self.assembly.tile().width();
+        let tile = self.assembly.tile_mut();
+        tile.values_mut()[layout.q.start * width..layout.v.end * width].copy_from_slice(state);
+        tile.lane_mut(layout.time).fill(time);
+        if self.needs.linear {
+            tile.run(self.program.acceleration());
+            let (known, corrections) = tile.values_mut().split_at_mut(layout.correction.start * width);
+            let unknowns = &mut known[layout.w.start * width..layout.lambda.end * width];
+            unknowns.iter_mut().zip(corrections).for_each(|(value, correction)| *value += *correction);
+        } else {
+            self.assembly.accelerate();
+        }
+        let n = layout.q.len() * width;
+        into[..n].copy_from_slice(&state[n..]);
+        into[n..].copy_from_slice(&self.assembly.tile().values()[layout.w.start * width..layout.w.end * width]);
+    }
+
+    /// Forgets accelerations and multipliers, from which the next are corrected.
+    pub fn forget(&mut self) {
+        let layout = &self.program.layout;
+        for register in layout.w.start..layout.lambda.end {
+            self.assembly.tile_mut().lane_mut(register).fill(0.0);
+        }
     }
 
     /// Outputs (output, lane) of the state that was closed last.
@@ -123,7 +159,46 @@ impl<'s> JetClosure<'s> {
             memory.set_constant(register, start.lane(register)[0]);
         }
         memory.run(program.sample());
-        Ok(Self { program, memory, order: space.monomials().order(), needs: Needs::of(&simulator.system) })
+        Ok(Self { program, memory, order: space.monomials().order(), needs: Needs::of(simulator) })
+    }
+
+    /// A consistent start: q and v.
+    ///
+    /// # Errors
+    /// Where the centre cannot be assembled.
+    pub fn start(
+        &mut self,
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_width): (&[f64], &[f64]),
+    ) -> Result<Vec<f64>, SimulationError> {
+        let (_, start) = assembled_jet(simulator, space, (center, half_width), 0.0)?;
+        let layout = &self.program.layout;
+        for register in layout.state() {
+            self.memory.jet_mut(register).copy_from_slice(start.jet(register));
+        }
+        Ok((layout.q.start..layout.v.end).flat_map(|register| start.jet(register).to_vec()).collect())
+    }
+
+    /// Rates (v, w; 2n jets) of a state (q, v) at a time.
+    pub fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        let layout = &self.program.layout;
+        let terms = state.len() / (2 * layout.q.len());
+        for (register, jet) in (layout.q.start..layout.v.end).zip(state.chunks_exact(terms)) {
+            self.memory.jet_mut(register).copy_from_slice(jet);
+        }
+        self.memory.set_constant(layout.time, time);
+        if self.needs.linear {
+            self.memory.run(self.program.acceleration());
+            add_correction(&mut self.memory, layout.w.start..layout.lambda.end, layout.correction.start);
+        } else {
+            solve_accelerations(self.program, &mut self.memory, self.order);
+        }
+        let (speeds, accelerations) = into.split_at_mut(state.len() / 2);
+        speeds.copy_from_slice(&state[state.len() / 2..]);
+        for (register, jet) in layout.w.clone().zip(accelerations.chunks_exact_mut(terms)) {
+            jet.copy_from_slice(self.memory.jet(register));
+        }
     }
 
     /// Makes a motion (2n jets, q and v) consistent at a time.

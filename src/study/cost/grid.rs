@@ -1,7 +1,7 @@
 //! The settings that a study tries: methods, orders, points and steps.
 
 use crate::methods::{BoundsRequest, Curve, Method};
-use crate::model::{Description, Simulation, Stepping};
+use crate::model::{Description, SchemeChoice, Simulation, Stepping};
 use crate::results::CostMethod;
 
 /// Steps, in parts of the model's own.
@@ -74,6 +74,10 @@ impl Setting {
         let mut model = model.clone();
         let k = uncertain(&model);
         model.simulation.stepping = self.stepping;
+        // Its settings are steps of the scheme.
+        if model.simulation.scheme == SchemeChoice::Auto {
+            model.simulation.scheme = SchemeChoice::Hht;
+        }
         model.bounds = BoundsRequest::default();
         if let CostMethod::Bounds(curve) = self.method {
             (curve.about().ask)(&mut model.bounds, self.count, k);
@@ -111,7 +115,7 @@ mod tests {
             alpha: -0.1,
             output_step: 0.01,
             formulation: crate::model::Formulation::Auto,
-            scheme: crate::model::SchemeChoice::Auto,
+            scheme: SchemeChoice::Auto,
             extrapolation: None,
         }
     }

@@ -68,7 +68,7 @@ impl State {
 
 /// Accumulates the channels of a tile's lanes.
 #[derive(Debug)]
-pub(super) struct Reduction<'s> {
+pub(in crate::simulate) struct Reduction<'s> {
     channels: &'s [Channel],
     outputs: usize,
     width: usize,

@@ -1,14 +1,13 @@
 //! The run of an ensemble of samples, however the schedule's steps are taken.
 
-use super::extrapolated::ExtrapolatedRun;
-use super::reduction::Channel;
-use super::run::{EnsembleRun, Observed, Stop};
+use super::control::{Controller, Integration, Schedule};
+use super::diagnostics::{OpenConstraint, SingularPass};
+use super::ensemble::{Channel, EnsembleRun, ExtrapolatedRun, Observed, Stop};
+use super::error::SimulationError;
+use super::explicit::ExplicitRun;
+use super::simulator::Simulator;
+use super::step::Counters;
 use crate::numerics::Sample;
-use crate::simulate::control::{Controller, Integration, Schedule};
-use crate::simulate::diagnostics::{OpenConstraint, SingularPass};
-use crate::simulate::error::SimulationError;
-use crate::simulate::simulator::Simulator;
-use crate::simulate::step::Counters;
 
 /// A run by one of the ways to integrate.
 #[derive(Debug)]
@@ -17,6 +16,8 @@ pub enum SampleRun<'s> {
     Plain(EnsembleRun<'s>),
     /// By the scheme on several levels.
     Extrapolated(ExtrapolatedRun<'s>),
+    /// By the explicit method.
+    Explicit(ExplicitRun<'s>),
 }
 
 impl<'s> SampleRun<'s> {
@@ -31,6 +32,7 @@ impl<'s> SampleRun<'s> {
             Integration::Extrapolated { levels } => {
                 Self::Extrapolated(ExtrapolatedRun::start(simulator, samples, first_step, levels)?)
             }
+            Integration::Explicit => Self::Explicit(ExplicitRun::start(simulator, samples)?),
         })
     }
 
@@ -40,6 +42,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => Self::Plain(run.watching()),
             Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
+            Self::Explicit(run) => Self::Explicit(run),
         }
     }
 
@@ -49,6 +52,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => Self::Plain(run.reducing(channels)),
             Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
+            Self::Explicit(run) => Self::Explicit(run.reducing(channels)),
         }
     }
 
@@ -57,6 +61,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => run.reduced(),
             Self::Extrapolated(run) => run.reduced(),
+            Self::Explicit(run) => run.reduced(),
         }
     }
 
@@ -72,6 +77,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => run.advance(schedule, rows, tolerance, observed, into),
             Self::Extrapolated(run) => run.advance(schedule, rows, tolerance, observed, into),
+            Self::Explicit(run) => run.advance(schedule, rows, observed, into),
         }
     }
 
@@ -80,6 +86,7 @@ impl<'s> SampleRun<'s> {
         match self {
             Self::Plain(run) => std::slice::from_ref(run),
             Self::Extrapolated(run) => run.levels(),
+            Self::Explicit(_) => &[],
         }
     }
 

@@ -1,0 +1,347 @@
+//! Samples, and a jet, over a schedule whose steps pass over its rows.
+
+use rayon::prelude::*;
+use symdiff::{WIDTHS, jet::JetSpace};
+
+use super::runge_kutta::{Motion, RungeKutta, StepError};
+use crate::numerics::Sample;
+use crate::simulate::control::Schedule;
+use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+
+/// Samples whose states are advanced together.
+const WIDTH: usize = 32;
+
+/// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
+const REDUCED: usize = 16;
+
+impl Motion for RowClosure<'_> {
+    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        RowClosure::rate(self, time, state, into);
+    }
+
+    fn close(&mut self, time: f64, state: &mut [f64]) {
+        RowClosure::close(self, time, state);
+    }
+}
+
+impl Motion for JetClosure<'_> {
+    fn rate(&mut self, time: f64, state: &[f64], into: &mut [f64]) {
+        JetClosure::rate(self, time, state, into);
+    }
+
+    fn close(&mut self, time: f64, state: &mut [f64]) {
+        JetClosure::close(self, time, state);
+    }
+}
+
+/// What counts as one of each line of a state, of velocities as far as nothing is known yet.
+pub(super) fn sizes(simulator: &Simulator, duration: f64) -> Vec<f64> {
+    let scale = &simulator.program.scale;
+    scale.iter().copied().chain(scale.iter().map(|scale| scale / duration)).collect()
+}
+
+/// A tile of samples between two steps.
+#[derive(Debug)]
+struct Tile<'s> {
+    motion: RowClosure<'s>,
+    /// Of rows, whose accelerations are those of their own states.
+    rows: RowClosure<'s>,
+    run: RungeKutta,
+    /// First sample, and how many lanes are samples.
+    first: usize,
+    count: usize,
+    /// Ends of the steps that are taken.
+    steps: usize,
+    /// Lanes that still run.
+    alive: Vec<bool>,
+    /// Where outputs are reduced to one number.
+    reduction: Option<Reduction<'s>>,
+}
+
+fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Result<Vec<Tile<'s>>, SimulationError> {
+    let at_once = samples.len().div_ceil(threads.max(1)).clamp(1, WIDTH);
+    let at_once = WIDTHS.into_iter().find(|&width| width >= at_once).unwrap_or(WIDTH);
+    let of_tile = |(place, samples): (usize, &[Sample])| {
+        let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
+        let start = simulator.assemble(width, 0.0, |lane| samples[lane.min(samples.len() - 1)].clone())?;
+        let mut motion = RowClosure::new(simulator, &start)?;
+        let layout = &simulator.start.layout;
+        let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
+        let run = RungeKutta::start(&mut motion, 0.0, state);
+        let rows = RowClosure::new(simulator, &start)?;
+        let alive = vec![true; width];
+        Ok(Tile { motion, rows, run, first: place * at_once, count: samples.len(), steps: 0, alive, reduction: None })
+    };
+    let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
+    chunks.into_par_iter().map(of_tile).collect()
+}
+
+/// Controlling samples in step.
+#[derive(Debug)]
+pub(super) struct Tiles<'s> {
+    tiles: Vec<Tile<'s>>,
+}
+
+impl<'s> Tiles<'s> {
+    pub fn start(simulator: &'s Simulator, samples: &[Sample]) -> Result<Self, SimulationError> {
+        Ok(Self { tiles: tiles(simulator, samples, 1)? })
+    }
+
+    /// Tries a step of all; the worst lane's error.
+    pub fn attempt(&mut self, end: f64, sizes: &[f64], tolerance: f64) -> StepError {
+        let mut worst = StepError::default();
+        for tile in &mut self.tiles {
+            tile.run.attempt(&mut tile.motion, end);
+            tile.run.finish(&mut tile.motion, end);
+            for error in tile.run.errors(end, sizes, tolerance, tile.alive.len()) {
+                worst.ratio = worst.ratio.max(error.ratio);
+                worst.stiffness = worst.stiffness.max(error.stiffness);
+            }
+        }
+        worst
+    }
+
+    /// What a rejected step leaves in the memory may not be finite.
+    pub fn reject(&mut self) {
+        self.tiles.iter_mut().for_each(|tile| tile.motion.forget());
+    }
+
+    /// Goes on from the step's end; velocities count by the largest so far.
+    pub fn accept(&mut self, end: f64, sizes: &mut [f64]) {
+        let n = sizes.len() / 2;
+        for tile in &mut self.tiles {
+            tile.run.accept(end);
+            for (size, speeds) in sizes.iter_mut().zip(tile.run.state.chunks_exact(tile.alive.len())).skip(n) {
+                *size = speeds.iter().fold(*size, |size, speed| size.max(speed.abs()));
+            }
+        }
+    }
+}
+
+/// The run of an ensemble of samples.
+#[derive(Debug)]
+pub struct ExplicitRun<'s> {
+    simulator: &'s Simulator,
+    tiles: Vec<Tile<'s>>,
+    samples: usize,
+}
+
+impl<'s> ExplicitRun<'s> {
+    /// Assembles samples.
+    ///
+    /// # Errors
+    /// The first sample that cannot be assembled.
+    pub fn start(simulator: &'s Simulator, samples: &[Sample]) -> Result<Self, SimulationError> {
+        let tiles = tiles(simulator, samples, rayon::current_num_threads())?;
+        Ok(Self { simulator, tiles, samples: samples.len() })
+    }
+
+    /// Also reduces outputs to one number each.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        let outputs = self.simulator.program.outputs.len();
+        for tile in self.tiles.iter_mut().filter(|_| !channels.is_empty()) {
+            tile.reduction = Some(Reduction::new(channels, outputs, tile.alive.len()));
+        }
+        self
+    }
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let Some(reduction) = &mut tile.reduction else { continue };
+            let (found, width) = (reduction.finish(), tile.alive.len());
+            values.resize(found.len() / width * self.samples, f64::NAN);
+            for (channel, lanes) in found.chunks_exact(width).enumerate() {
+                values[channel * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
+            }
+        }
+        values
+    }
+
+    /// Advances to `rows`, which follow the rows of the last call, and records what is `observed`: row by row, value by value,
+    /// sample by sample. Returns the samples that stopped: whose state is no longer finite.
+    pub fn advance(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        observed: Observed,
+        into: &mut Vec<f64>,
+    ) -> Vec<Stop> {
+        let lines = observed.count(self.simulator);
+        let ends = schedule.ends();
+        let parts: Vec<(Vec<f64>, Vec<Stop>)> = self
+            .tiles
+            .par_iter_mut()
+            .map(|tile| tile.advance(schedule, &ends, rows.clone(), (observed, lines)))
+            .collect();
+        into.clear();
+        into.resize(rows.len() * lines * self.samples, 0.0);
+        let mut stops = Vec::new();
+        for (tile, (values, stopped)) in self.tiles.iter().zip(parts) {
+            for (line, lanes) in values.chunks_exact(tile.alive.len()).enumerate() {
+                into[line * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
+            }
+            stops.extend(stopped);
+        }
+        stops
+    }
+}
+
+impl Tile<'_> {
+    fn advance(
+        &mut self,
+        schedule: &Schedule,
+        ends: &[f64],
+        rows: std::ops::Range<usize>,
+        (observed, lines): (Observed, usize),
+    ) -> (Vec<f64>, Vec<Stop>) {
+        let width = self.alive.len();
+        let mut values = vec![0.0; rows.len() * lines * width];
+        let mut stops = Vec::new();
+        let mut state = vec![0.0; self.run.state.len()];
+        for (row, values) in rows.zip(values.chunks_exact_mut(lines * width)) {
+            let time = schedule.time(row);
+            let Self { motion, rows, run, steps, alive, reduction, .. } = self;
+            if row == 0 {
+                let mut start = run.state.clone();
+                reduce(reduction, rows, alive, 0.0, &mut start);
+            }
+            let mut between = vec![0.0; if reduction.is_some() { state.len() } else { 0 }];
+            let mut stepped = |run: &mut RungeKutta, motion: &mut RowClosure, end: f64| {
+                if reduction.is_some() {
+                    run.prepare_dense(motion, end);
+                    for part in 1..=REDUCED {
+                        let share = part as f64 / REDUCED as f64;
+                        run.interpolate(share, &mut between);
+                        reduce(reduction, rows, alive, run.time + share * (end - run.time), &mut between);
+                    }
+                }
+            };
+            reach(run, motion, (steps, ends), time, (&mut state, &mut stepped));
+            self.rows.close(time, &mut state);
+            let outputs = match observed {
+                Observed::Outputs => &mut *values,
+                _ => {
+                    let (motion, outputs) = values.split_at_mut(state.len());
+                    motion.copy_from_slice(&state);
+                    outputs
+                }
+            };
+            self.rows.observe(outputs);
+            for lane in 0..width {
+                let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
+                if let Some(line) = lost {
+                    if std::mem::replace(&mut self.alive[lane], false) && lane < self.count {
+                        let equation = line % (state.len() / width / 2).max(1);
+                        stops.push(Stop {
+                            sample: self.first + lane,
+                            row,
+                            time,
+                            equation,
+                            open: None,
+                            singular: false,
+                        });
+                    }
+                    values.iter_mut().skip(lane).step_by(width).for_each(|value| *value = f64::NAN);
+                }
+            }
+        }
+        (values, stops)
+    }
+}
+
+/// Takes the outputs of a state into what they are reduced to, if they are.
+fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[bool], time: f64, state: &mut [f64]) {
+    if let Some(reduction) = reduction {
+        let mut values = reduction.buffer();
+        rows.close(time, state);
+        rows.observe(&mut values);
+        reduction.push(time, values, alive);
+    }
+}
+
+/// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is called after each,
+/// before the run goes on from its end.
+fn reach<M: Motion>(
+    run: &mut RungeKutta,
+    motion: &mut M,
+    (steps, ends): (&mut usize, &[f64]),
+    time: f64,
+    (state, stepped): (&mut [f64], &mut dyn FnMut(&mut RungeKutta, &mut M, f64)),
+) {
+    // `steps` counts the steps that are begun; the last of them is open until a row lies beyond its end.
+    while time > run.time {
+        let open = steps.checked_sub(1).map(|last| ends[last]).filter(|&end| end > run.time);
+        let end = match open {
+            Some(end) => end,
+            None => {
+                let Some(&end) = ends.get(*steps) else { break };
+                *steps += 1;
+                run.attempt(motion, end);
+                run.finish(motion, end);
+                stepped(run, motion, end);
+                if time < end {
+                    run.prepare_dense(motion, end);
+                }
+                end
+            }
+        };
+        if time < end {
+            run.interpolate((time - run.time) / (end - run.time), state);
+            return;
+        }
+        run.accept(end);
+    }
+    state.copy_from_slice(&run.state);
+}
+
+/// The run of one jet.
+#[derive(Debug)]
+pub struct ExplicitJets<'s> {
+    motion: JetClosure<'s>,
+    run: RungeKutta,
+    steps: usize,
+    coordinates: usize,
+}
+
+impl<'s> ExplicitJets<'s> {
+    /// Assembles the jet around `center`; the parameters' half widths are its first derivatives.
+    ///
+    /// # Errors
+    /// Where the centre cannot be assembled.
+    pub fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_width): (&[f64], &[f64]),
+    ) -> Result<Self, SimulationError> {
+        let start = simulator.assemble(1, 0.0, |_| center.iter().copied().collect())?;
+        let mut motion = JetClosure::new(simulator, space, (center, half_width), &start)?;
+        let state = motion.start(simulator, space, (center, half_width))?;
+        let run = RungeKutta::start(&mut motion, 0.0, state);
+        Ok(Self { motion, run, steps: 0, coordinates: simulator.system.q.len() })
+    }
+
+    /// Advances to `rows`, which follow the rows of the last call, and records the outputs: row by row, output by output,
+    /// coefficient by coefficient. Returns where the run stopped, if it did.
+    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        into.clear();
+        let ends = schedule.ends();
+        let mut state = vec![0.0; self.run.state.len()];
+        for row in rows {
+            let time = schedule.time(row);
+            let steps = (&mut self.steps, &ends[..]);
+            reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut |_, _, _| {}));
+            if let Some(place) = state.iter().position(|value| !value.is_finite()) {
+                let equation = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
+                return Some(Stop { sample: 0, row, time, equation, open: None, singular: true });
+            }
+            self.motion.close(time, &mut state);
+            self.motion.observe(into);
+        }
+        None
+    }
+}

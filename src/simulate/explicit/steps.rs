@@ -1,0 +1,104 @@
+//! The steps that a tolerance asks for: all controlling samples in step, the worst decides; and what stands against the method.
+
+use symdiff::math;
+
+use super::run::{Tiles, sizes};
+use crate::numerics::Sample;
+use crate::simulate::control::{Integration, Schedule};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::time_functions::TimeFunctions;
+
+/// The first step, as a share of the output step.
+const FIRST_STEP: f64 = 1e-2;
+
+/// Smallest step, as a share of the duration.
+const SMALLEST: f64 = 1e-12;
+
+/// Where h times the largest eigenvalue is more than this, stability limits the step.
+const STABLE: f64 = 6.1;
+
+/// So many such steps, with no more than a few others between, are stiff.
+const STIFF_STEPS: usize = 15;
+const OTHERS: usize = 6;
+
+/// Safety of the step size, and what it may change by at once.
+const SAFETY: f64 = 0.9;
+const LEAST_FACTOR: f64 = 0.2;
+const LARGEST_FACTOR: f64 = 6.0;
+
+/// Why the explicit method is not for a motion.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ExplicitObstacle {
+    /// Stability limits the steps, not accuracy.
+    #[error("the motion is stiff from t = {time:.3} s on: stability limits its steps to {step:.1e} s")]
+    Stiff {
+        /// s
+        time: f64,
+        /// s
+        step: f64,
+    },
+    /// It takes more steps than it may.
+    #[error("it takes more than {steps} steps")]
+    TooManySteps {
+        /// So many.
+        steps: usize,
+    },
+    /// No step is small enough.
+    #[error("no step is small enough at t = {time:.3} s: the motion is not smooth there, or the position is singular")]
+    StepTooSmall {
+        /// s
+        time: f64,
+    },
+}
+
+/// The schedule at which every controlling sample keeps each step's error below `tolerance`, of at most so many steps. Rows
+/// stand where they are; steps pass over them.
+///
+/// # Errors
+/// Where a controlling sample cannot be assembled; inside, what stands against the method.
+pub fn explicit_schedule(
+    simulator: &Simulator,
+    samples: &[Sample],
+    (duration, output_step): (f64, f64),
+    tolerance: f64,
+    most: usize,
+) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
+    let mut tiles = Tiles::start(simulator, samples)?;
+    let functions = TimeFunctions::of(simulator, duration);
+    let mut sizes = sizes(simulator, duration);
+    let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
+    let (mut stiff, mut others) = (0, 0);
+    while time < duration {
+        if ends.len() == most {
+            return Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
+        }
+        if h < SMALLEST * duration {
+            return Ok(Err(ExplicitObstacle::StepTooSmall { time }));
+        }
+        let step = functions.as_ref().map_or(h, |functions| functions.longest_step(time, h.min(duration - time)));
+        let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
+        let worst = tiles.attempt(end, &sizes, tolerance);
+        let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);
+        if worst.ratio > 1.0 {
+            tiles.reject();
+            h = step * if worst.ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
+            continue;
+        }
+        if worst.stiffness > STABLE {
+            (stiff, others) = (stiff + 1, 0);
+        } else {
+            others += 1;
+            stiff = if others >= OTHERS { 0 } else { stiff };
+        }
+        if stiff == STIFF_STEPS {
+            return Ok(Err(ExplicitObstacle::Stiff { time, step }));
+        }
+        tiles.accept(end, &mut sizes);
+        ends.push(end);
+        time = end;
+        // A step cut short at the end, or by a function of the time, is no reason against the longer one.
+        h = if step < h { h } else { step * factor.clamp(LEAST_FACTOR, LARGEST_FACTOR) };
+    }
+    Ok(Ok(Schedule::passing(duration, output_step, ends).taken(Integration::Explicit)))
+}

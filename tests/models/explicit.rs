@@ -1,0 +1,172 @@
+//! The explicit method of order 8: against references that other methods computed, closed forms, and what it is not for.
+
+use mbint::inner::methods::Taylor;
+use mbint::inner::model::{Description, SchemeChoice};
+use mbint::inner::numerics::RangeKind;
+use mbint::inner::results::Method;
+use mbint::inner::study::{self, Options};
+
+use crate::common::{
+    Vary, band, curve, distance, largest, model, nominal, output, read, reference, row, run, run_methods,
+};
+
+fn scheme(mut description: Description, scheme: SchemeChoice) -> Description {
+    description.simulation.scheme = scheme;
+    description
+}
+
+/// The slider crank, whose loop is closed by projections, against DOP853 in minimal coordinates (error below 1e-8).
+#[test]
+fn the_slider_crank_is_within_its_tolerance() {
+    for tolerance in [1e-3, 1e-5, 1e-6] {
+        let description = model("slider_crank_one").observing(&["slider.x", "crank.angle"]).rows_every(0.05);
+        let (bounds, summary) = run_methods(&description.tolerance(tolerance), Some(Vec::new()));
+        assert_eq!(summary.integration.as_deref(), Some("Dormand–Prince 8(5,3), explicit"));
+        for (name, column) in [("slider.x", 1), ("crank.angle", 2)] {
+            let values = curve(&bounds, name);
+            let states = reference("slider_crank/nominal_states.csv");
+            let span = states.iter().map(|state| state[column]).fold(f64::NEG_INFINITY, f64::max)
+                - states.iter().map(|state| state[column]).fold(f64::INFINITY, f64::min);
+            let error = largest(states.iter().map(|state| values[row(&bounds, state[0])] - state[column])) / span;
+            println!("{name} at {tolerance:e}: {error:.2e}, {} steps", summary.methods[0].steps);
+            assert!(error < tolerance.max(1e-7), "{name} at {tolerance:e} is off by {error:e}");
+        }
+        // DOP853 in minimal coordinates takes 1250 evaluations for 5e-4 m, 3300 for 1e-6 m.
+        assert!(12 * summary.methods[0].steps < 5000, "{} steps", summary.methods[0].steps);
+    }
+}
+
+/// The pendulum in Cartesian coordinates: positions by Jacobi's elliptic functions, the tension by energy. Rows lie between steps.
+#[test]
+fn dense_rows_reactions_and_constraints_are_those_of_the_pendulum() {
+    let rows = reference("iftomm/pendulum.csv");
+    let description = model("pendulum").observing(&["bob.x", "bob.y", "rod.force + 3*9.81*bob.y"]).rows_every(0.01);
+    let (bounds, summary) = run_methods(&description.tolerance(1e-8), Some(Vec::new()));
+    assert!(summary.methods[0].steps < bounds.times.len() / 2, "rows are interpolated");
+    let (x, y) = (curve(&bounds, "bob.x"), curve(&bounds, "bob.y"));
+    let place = |line: &Vec<f64>| row(&bounds, line[0]);
+    let error = largest(rows.iter().flat_map(|line| [x[place(line)] - line[1], y[place(line)] - line[2]]));
+    let square = |row: usize| x[row] * x[row] + y[row] * y[row];
+    let length = largest((0..x.len()).map(|row| square(row) - square(0)));
+    let tension = largest(bounds.outputs[2].nominal[10..].iter().copied());
+    println!("{} steps: positions {error:.2e}, length {length:.2e}, tension {tension:.2e}", summary.methods[0].steps);
+    assert!(error < 1e-7 && length < 1e-12 && tension < 1e-5);
+}
+
+/// Over a box: a free oscillator, x₀ cos(√(k/m) t), by every method; jets are those of the motion.
+#[test]
+fn bounds_by_every_method_are_those_of_the_oscillator() {
+    let text = "
+parameters: { k: { value: 30, unit: N/m, tolerance: 3% } }
+bodies: { block: { mass: 1.5, coordinates: [x] } }
+effects: { spring: { spring_damper: { between: [ground, block], along: x, stiffness: k, damping: 0, free_length: 0 } } }
+initial: { block.x: 0.02, block.vx: 0 }
+outputs: { x: block.x, a: block.ax }
+simulation: { duration: 3, output_step: 0.03, tolerance: 1e-8 }
+bounds: { chebyshev: { order: 10 }, taylor: { order: 12 }, scan: { points: 41 } }
+";
+    let (bounds, summary) = run_methods(&read(text), None);
+    assert!(summary.integration.is_some());
+    for (name, power) in [("x", 0), ("a", 2)] {
+        let exact = |k: f64, t: f64| {
+            let omega = (k / 1.5).sqrt();
+            0.02 * (omega * t).cos() * if power == 0 { 1.0 } else { -omega * omega }
+        };
+        for band in &output(&bounds, name).bands {
+            for (row, &t) in bounds.times.iter().enumerate() {
+                let values = (0..=2000).map(|i| exact(30.0 * (1.0 + 0.03 * (f64::from(i) / 1000.0 - 1.0)), t));
+                let (lower, upper) =
+                    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+                let error = (band.lower[row] - lower).abs().max((band.upper[row] - upper).abs());
+                let stated = band.error.total[row] + 1e-9;
+                assert!(error <= stated, "{name}.{} at {t}: {error:e} of {stated:e}", band.method.name());
+            }
+            println!("{name}.{}: of the steps {:.2e}", band.method.name(), band.error.time);
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_of_the_bounds_takes_it() {
+    let mut description = model("slider_crank_one").chebyshev(8, RangeKind::Tight).duration(1.5);
+    description.bounds.tolerance = Some(1e-4);
+    let (bounds, summary) = run_methods(&description, None);
+    assert_eq!(summary.integration.as_deref(), Some("Dormand–Prince 8(5,3), explicit"));
+    let truth = reference("slider_crank/bounds_l1_1pct.csv");
+    let band = band(&bounds.outputs[0], Method::Chebyshev);
+    let error = largest(truth.iter().filter(|line| line[0] <= 1.5).flat_map(|line| {
+        let row = row(&bounds, line[0]);
+        [band.lower[row] - line[2], band.upper[row] - line[3]]
+    }));
+    assert!(error < 5e-5, "{error:e}");
+}
+
+/// A stiff bushing: stability limits the explicit steps, which is said, and `auto` takes HHT-I3.
+#[test]
+fn what_is_stiff_is_left_to_the_scheme() {
+    let text = "
+bodies: { block: { mass: 1, coordinates: [x] }, tip: { mass: 0.001, coordinates: [x] } }
+effects:
+  soft: { spring_damper: { between: [ground, block], along: x, stiffness: 20, damping: 0.1, free_length: 0 } }
+  hard: { spring_damper: { between: [block, tip], along: x, stiffness: 1e6, damping: 200, free_length: 0 } }
+initial: { block.x: 0.1, block.vx: 0, tip.x: 0.1, tip.vx: 0 }
+outputs: { x: block.x }
+simulation: { duration: 2, tolerance: 1e-5 }
+";
+    let (_, summary) = run_methods(&read(text), Some(Vec::new()));
+    assert_eq!(summary.integration, None);
+    let explicit = scheme(read(text), SchemeChoice::Explicit);
+    let refused = study::run(&explicit, Options::default()).unwrap_err().to_string();
+    assert!(refused.contains("stiff from t = "), "{refused}");
+}
+
+/// A scheme that is asked for with a step takes that step, and switches are crossed within the stated error.
+#[test]
+fn steps_that_are_given_are_taken() {
+    let mut description = model("double_pendulum").observing(&["lower.end.x"]).duration(1.0).rows_every(0.1);
+    description.bounds = mbint::inner::methods::BoundsRequest::default();
+    let exact = nominal(&scheme(description.clone().step(1e-3), SchemeChoice::Explicit));
+    let [coarse, fine] = [0.05, 0.025].map(|h| {
+        let bounds = nominal(&scheme(description.clone().step(h), SchemeChoice::Explicit));
+        distance(&bounds.outputs[0].nominal, &exact.outputs[0].nominal)
+    });
+    println!("double pendulum: {coarse:.2e} at 0.05 s, {fine:.2e} at 0.025 s");
+    // Half the steps: 2⁸ times less, rounding apart.
+    assert!(coarse < 1e-5 && fine < coarse / 64.0);
+    let plain = nominal(&description.step(5e-5));
+    assert!(distance(&plain.outputs[0].nominal, &exact.outputs[0].nominal) < 1e-4);
+}
+
+#[test]
+fn jets_follow_the_explicit_method() {
+    let mut description = model("slider_crank_one").observing(&["slider.x"]).duration(0.5).rows_every(0.05);
+    description.bounds.taylor = Some(Taylor { order: 6, range: RangeKind::Tight });
+    description.bounds.chebyshev = None;
+    description.bounds.scan = None;
+    let mut fine = description.clone().step(5e-4);
+    fine.simulation.extrapolation = Some(4);
+    let (fine, explicit) = (run(&fine), run(&description.tolerance(1e-8)));
+    let (band, exact) = (&explicit.outputs[0].bands[0], &fine.outputs[0].bands[0]);
+    let error = largest(band.upper.iter().zip(&exact.upper).map(|(a, b)| a - b));
+    println!("Taylor: {error:.2e}");
+    assert!(error < 1e-8, "{error:e}");
+}
+
+/// `explain` names the method under a tolerance, and why it is not taken.
+#[test]
+fn explain_says_by_what_a_model_is_integrated() {
+    let decisions = |description: &Description| -> Vec<String> {
+        let explained = study::explain(description).unwrap().decisions.into_iter();
+        explained
+            .filter(|one| one.what.starts_with("integrated"))
+            .map(|one| format!("{}: {}", one.what, one.why))
+            .collect()
+    };
+    let mut description = model("slider_crank_one");
+    assert!(decisions(&description).is_empty(), "nothing is chosen without a tolerance");
+    description.bounds.tolerance = Some(1e-4);
+    let [one] = &decisions(&description)[..] else { panic!("{:?}", decisions(&description)) };
+    println!("{one}");
+    assert!(one.starts_with("integrated by the explicit method of order 8: not stiff"), "{one}");
+    assert!(decisions(&description.by_hht()).is_empty(), "the model says it");
+}
