@@ -9,6 +9,7 @@ use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{SCHEMA, SUMMARY, owned};
+use crate::export::statistics::statistics_csv;
 use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
 use crate::results::{Bounds, PeakSummary, Provenance, Summary};
 
@@ -32,6 +33,9 @@ pub fn write_results(
     files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
+    }
+    if let Some(statistics) = summary.statistics.as_ref().filter(|statistics| !statistics.outputs.is_empty()) {
+        files.add("statistics.csv", &statistics_csv(statistics)?)?;
     }
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
@@ -155,6 +159,7 @@ mod tests {
             methods: vec![],
             errors: vec![],
             contributions: vec![],
+            statistics: None,
             pieces: vec![],
             reduced: vec![],
             requirements: vec![],

@@ -16,6 +16,7 @@ mod plot;
 mod reference;
 mod scenes;
 mod snapshot;
+mod statistics;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;

@@ -7,6 +7,7 @@ mod reduced;
 mod robot;
 mod simulation;
 mod start;
+mod statistics;
 
 use symdiff::Formula;
 
@@ -21,6 +22,7 @@ pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
+pub use statistics::{Correlation, Law, Statistics};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -64,6 +66,8 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+    /// Which statistics are asked for, and the parameters' laws.
+    pub statistics: Statistics,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -183,6 +187,7 @@ impl Description {
                 extrapolation: None,
             },
             bounds: BoundsRequest::default(),
+            statistics: Statistics::default(),
             places: Places::default(),
         }
     }

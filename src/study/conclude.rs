@@ -219,6 +219,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         contributions: ContributionSummary::of(bounds),
         reduced: results.found.reduced,
         requirements: results.found.requirements,
+        statistics: None,
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),

@@ -18,4 +18,5 @@ mod schema;
 mod shells;
 mod show;
 mod snapshot;
+mod statistics;
 mod structure;
