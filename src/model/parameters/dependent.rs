@@ -32,8 +32,7 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
         let name = format!("{}{SUFFIX}", reader.model.parameters[index].name);
         let set = overrides.iter().find(|(wanted, _)| wanted.name == name);
         let (name_span, unit_node) = (draft.name_span.clone(), draft.spec.unit.clone());
-        let mut spec = Spec::default();
-        spec.unit = unit_node;
+        let mut spec = Spec::of_unit(unit_node);
         if let Some((wanted, _)) = set {
             spec.replace(reader, &wanted.value);
         }

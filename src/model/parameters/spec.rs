@@ -25,6 +25,11 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Of which nothing but the unit is written.
+    pub fn of_unit(unit: Option<Node>) -> Self {
+        Self { unit, ..Self::default() }
+    }
+
     /// Reads a parameter of the file.
     pub fn read(reader: &mut Reader, entry: &Entry) -> Self {
         let mut spec = Self::default();
