@@ -30,7 +30,7 @@ struct Slack {
 fn of_requirement(rows: &Rows, requirement: &Requirement) -> Option<YieldSummary> {
     let (from, to) = requirement.times?;
     let times = rows.kept.times();
-    let rounding = 1e-9 * (to - from).abs().max(to.abs());
+    let rounding = 1e-9 * times.last().copied().unwrap_or(0.0);
     let within: Vec<usize> =
         (0..times.len()).filter(|&row| times[row] >= from - rounding && times[row] <= to + rounding).collect();
     if within.is_empty() || requirement.places.is_empty() {
