@@ -39,7 +39,10 @@ pub mod numerics {
 }
 
 pub mod results {
-    pub use crate::results::{Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, Summary};
+    pub use crate::results::{
+        Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, StatisticsResult, Summary,
+        Uncertain,
+    };
 }
 
 pub mod simulate {

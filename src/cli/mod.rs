@@ -21,6 +21,7 @@ mod run;
 mod scenes;
 mod show;
 mod snapshot;
+mod statistics;
 mod status;
 mod structure;
 mod table;

@@ -185,6 +185,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     text += &errors(&summary.errors);
     text += &contributions(&summary.contributions);
+    text += &super::statistics::statistics(summary);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let times = match method.rank_revealing_solves {
             1 => "once".to_owned(),
@@ -246,6 +247,7 @@ mod tests {
                 unresolved_from: None,
             }],
             contributions: vec![],
+            statistics: None,
             pieces: vec![],
             reduced: vec![],
             requirements: vec![],

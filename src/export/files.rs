@@ -10,6 +10,7 @@ use crate::export::folder::AtomicFiles;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY, owned};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stems::unique_stems;
+use crate::export::statistics::statistics_csv;
 use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
@@ -35,6 +36,9 @@ pub fn write_results(
     files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
+    }
+    if let Some(statistics) = summary.statistics.as_ref().filter(|statistics| !statistics.outputs.is_empty()) {
+        files.add("statistics.csv", &statistics_csv(statistics)?)?;
     }
     let mut figures = Vec::with_capacity(bounds.outputs.len());
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
@@ -148,6 +152,7 @@ mod tests {
             methods: vec![],
             errors: vec![],
             contributions: vec![],
+            statistics: None,
             pieces: vec![],
             reduced: vec![],
             requirements: vec![],

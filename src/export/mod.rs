@@ -20,6 +20,7 @@ mod scenes;
 mod snapshot;
 mod sweep;
 mod stems;
+mod statistics;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;

@@ -71,13 +71,19 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
             .or_else(|| attitude(table, owner, member))
             .or_else(|| joint_motion(table, owner, member))
             .or_else(|| reaction(table, owner, member, None))
-            .or_else(|| measure(table, owner, member)),
+            .or_else(|| measure(table, owner, member))
+            .or_else(|| deviation(table, name)),
         (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
             .or_else(|| angular_motion(table, owner, member, part))
             .or_else(|| reaction(table, owner, member, Some(part)))
             .or_else(|| of_beam(table, name)),
         _ => None,
     }
+}
+
+/// `s2.deviation`: how far a parameter is from the value that it follows.
+fn deviation(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
+    table.parameter(name).map(Symbol::Parameter)
 }
 
 /// `rod.end.x`, `rod.element1.torque`: of a node or an element of a beam.

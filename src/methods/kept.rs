@@ -97,6 +97,19 @@ impl KeptSurrogate {
         Some((&part.basis, part.rows[row].of_output(output, part.basis.len())))
     }
 
+    /// Values of the polynomials through outputs' own samples in one row, at samples of the box, output by output. `None` where the box was
+    /// split.
+    pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Option<Vec<f64>> {
+        let [part] = self.boxes.as_slice() else { return None };
+        let points: Vec<Vec<f64>> = samples.iter().map(|sample| part.xi(sample.as_ref())).collect();
+        let terms = part.basis.len();
+        let coefficients: Vec<f64> =
+            outputs.iter().flat_map(|&output| part.rows[row].of_output(output, terms).to_vec()).collect();
+        let mut values = vec![0.0; outputs.len() * samples.len()];
+        part.basis.values(&points, &coefficients, &mut values, &mut SparseWork::default());
+        Some(values)
+    }
+
     /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN where a closure has no solution.
     /// `closures` has one for every choice of [`independent`](Self::independent).
     pub fn values<'c, P: AsRef<[f64]>>(

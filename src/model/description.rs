@@ -7,6 +7,7 @@ mod reduced;
 mod robot;
 mod simulation;
 mod start;
+mod statistics;
 
 use std::collections::BTreeMap;
 
@@ -24,6 +25,7 @@ pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
+pub use statistics::{Correlation, Law, Statistics};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///
@@ -69,6 +71,8 @@ pub struct Description {
     pub simulation: Simulation,
     /// Which bounds are asked for.
     pub bounds: BoundsRequest,
+    /// Which statistics are asked for, and the parameters' laws.
+    pub statistics: Statistics,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -189,6 +193,7 @@ impl Description {
                 extrapolation: None,
             },
             bounds: BoundsRequest::default(),
+            statistics: Statistics::default(),
             places: Places::default(),
         }
     }

@@ -9,7 +9,9 @@ use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
-use super::{analysis, bodies, bounds, effects, joints, parameters, requests, requirements, space, tables, teeth};
+use super::{
+    analysis, bodies, bounds, effects, joints, parameters, requests, requirements, space, statistics, tables, teeth,
+};
 use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
@@ -267,6 +269,8 @@ fn describe(
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
+    let section = fields.get("statistics").map(|node| (node, fields.key_span("statistics")));
+    statistics::read(&mut reader, section);
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }

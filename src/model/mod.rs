@@ -26,6 +26,7 @@ mod requirements;
 mod scenes;
 mod scheme;
 mod space;
+mod statistics;
 mod tables;
 mod teeth;
 #[cfg(test)]

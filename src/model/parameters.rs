@@ -1,7 +1,9 @@
 //! `parameters:` and the `--set` that replace them.
 
 mod corners;
+mod dependent;
 mod interval;
+pub(super) mod law;
 mod order;
 mod spec;
 
@@ -28,13 +30,15 @@ use crate::syntax::yaml::{Entry, Node};
 const MOST: usize = 20_000;
 
 /// A parameter between its text and its value.
-struct Draft {
+pub(super) struct Draft {
     spec: Spec,
     name_span: Span,
     unit: Option<Unit>,
     value: Option<Written>,
     /// Parameters that the value's formula names.
     uses: Vec<usize>,
+    /// The parameter that is its own deviation, where its value depends on an uncertain one.
+    deviation: Option<usize>,
 }
 
 /// Reads the parameters; after this, formulas of them can be checked and evaluated.
@@ -56,17 +60,18 @@ pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span
     }
     reader.used = vec![false; entries.len()];
     reader.kinds = vec![Kind::Any; entries.len()];
-    let drafts: Vec<Draft> =
+    let mut drafts: Vec<Draft> =
         entries.iter().enumerate().map(|(index, entry)| draft(reader, entry, replaced.get(&index).copied())).collect();
+    dependent::add_deviations(reader, &mut drafts, overrides);
     let order = order::in_order(reader, &drafts);
-    let mut values = vec![f64::NAN; entries.len()];
+    let mut values = vec![f64::NAN; drafts.len()];
     for &index in &order {
         finish(reader, &drafts[index], index, &mut values);
     }
     sort(reader, &order);
     let places: Vec<Span> = order.iter().map(|&index| drafts[index].name_span.clone()).collect();
     corners::read(reader, &places);
-    let none = vec![false; entries.len()];
+    let none = vec![false; drafts.len()];
     reader.used_by_parameters = std::mem::replace(&mut reader.used, none);
 }
 
@@ -81,6 +86,8 @@ fn find_overrides<'o>(
             Some(index) => {
                 replaced.insert(index, wanted);
             }
+            // Whether it has one is known later.
+            None if dependent::owner(entries, &wanted.name).is_some() => {}
             None => {
                 let message = format!("unknown parameter `{}`", suggest::clip(&wanted.name));
                 let help = suggest::help(&wanted.name, "parameters", entries.iter().map(|entry| entry.key.as_str()));
@@ -116,7 +123,7 @@ fn draft(reader: &mut Reader, entry: &Entry, replaced: Option<&Override>) -> Dra
             })
             .collect();
     }
-    Draft { spec, name_span, unit, value, uses }
+    Draft { spec, name_span, unit, value, uses, deviation: None }
 }
 
 /// A unit by its name.
@@ -147,14 +154,14 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
     let number = value.as_ref().and_then(|formula| evaluate(formula, at));
     if draft.spec.is_uncertain() {
         let nominal = number.filter(|number| number.is_finite());
-        if let (Some(node), true) = (&draft.spec.value, interval::depends_on_uncertain(reader, draft)) {
-            let message = "the value of an uncertain parameter cannot depend on an uncertain parameter";
-            let help = "leave the tolerance out: what depends on an uncertain parameter varies with it".to_owned();
-            reader.error(node.span.clone(), message, help);
+        if let (Some(formula), Some(deviation)) = (&value, draft.deviation) {
+            dependent::finish(reader, draft, (index, deviation), (formula, nominal), &mut kind, values);
+            return;
         }
         let Some([nominal, lower, upper]) = interval::bounds(reader, draft, nominal, &mut kind) else { return };
         values[index] = nominal;
         reader.model.parameters[index].value = if lower < upper {
+            says_more(reader, draft, index, law::Place { nominal, lower, upper }, &mut kind);
             ParameterValue::Interval { nominal, lower, upper }
         } else {
             reader.certain.insert(reader.model.parameters[index].name.clone());
@@ -164,6 +171,25 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         values[index] = number.unwrap_or(f64::NAN);
         reader.model.parameters[index].value = ParameterValue::Formula(formula);
     }
+    if let (false, Some(node)) = (draft.spec.is_uncertain(), &draft.spec.distribution) {
+        let help = "give it a `tolerance` or an `interval`".to_owned();
+        reader.error(node.span.clone(), "the parameter is not uncertain, but has a `distribution`", help);
+    }
+    settle(reader, draft, index, kind);
+}
+
+/// Reads the law of an uncertain parameter.
+fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::Place, kind: &mut Kind) {
+    let name = reader.model.parameters[index].name.clone();
+    if let Some(node) = &draft.spec.distribution {
+        let law = law::read(reader, draft, node, place, kind);
+        reader.model.statistics.asked = true;
+        reader.model.statistics.laws.extend(law.map(|law| (name, law)));
+    }
+}
+
+/// Notes a parameter's dimension and unit.
+fn settle(reader: &mut Reader, draft: &Draft, index: usize, kind: Kind) {
     reader.kinds[index] = kind;
     let declared = draft.unit.filter(|unit| unit.is_si()).and(draft.spec.unit.as_ref()).and_then(Node::scalar);
     reader.model.parameters[index].unit = match (declared, kind) {

@@ -34,6 +34,7 @@ mod sobol;
 mod sparse_basis;
 mod sparse_grid;
 mod sparse_transform;
+pub mod statistics;
 mod surrogate;
 mod taylor;
 mod tensor;

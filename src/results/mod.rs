@@ -12,6 +12,7 @@ mod peaks;
 mod provenance;
 mod reduced;
 mod requirement;
+mod statistics;
 mod structure;
 mod summary;
 
@@ -30,6 +31,9 @@ pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
+pub use statistics::{
+    LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Uncertain, YieldSummary,
+};
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,

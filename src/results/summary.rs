@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::statistics::StatisticsResult;
 use super::{Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
 use crate::grammar::display_unit::DisplayUnit;
 
@@ -63,6 +64,9 @@ pub struct Summary {
     /// What is required, and whether it is fulfilled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementSummary>,
+    /// How the outputs are distributed, where that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub statistics: Option<Box<StatisticsResult>>,
     /// Where only a part of the box is bounded: the pieces that are, with how far in time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pieces: Vec<PieceSummary>,

@@ -223,6 +223,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         contributions: ContributionSummary::of(bounds),
         reduced: results.found.reduced,
         requirements: results.found.requirements,
+        statistics: None,
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),

@@ -5,7 +5,8 @@
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing`
-//! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `kept` keeps surrogates for whoever evaluates them after the run.
+//! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for whoever
+//! evaluates them after the run, as `statistics` does.
 
 mod conclude;
 mod controlled;
@@ -20,12 +21,14 @@ mod explicit;
 mod feasible;
 mod formulation;
 mod internal;
+mod keeping;
 mod kept;
 mod motion;
 mod outcome;
 mod price;
 mod reduced;
 mod single;
+mod statistics;
 mod step_search;
 mod steps;
 mod structure;
@@ -121,8 +124,14 @@ pub enum RunError {
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
-    let (bounds, summary, _) = pool.install(|| subsystems::run(&model, &options, false))?;
-    Ok(reduced::shown(description, (bounds, summary)))
+    let found = pool.install(|| {
+        if model.statistics.asked {
+            return statistics::run(&model, description.outputs.len(), &options);
+        }
+        let (bounds, summary, _) = subsystems::run(&model, &options, false)?;
+        Ok((bounds, summary))
+    });
+    Ok(reduced::shown(description, found?))
 }
 
 /// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with

@@ -42,6 +42,7 @@ mod slider_crank;
 mod snapshots;
 mod spatial_linkages;
 mod starts;
+mod statistics;
 mod step_control;
 mod switches;
 mod tables;

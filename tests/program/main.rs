@@ -19,4 +19,5 @@ mod schema;
 mod shells;
 mod show;
 mod snapshot;
+mod statistics;
 mod structure;

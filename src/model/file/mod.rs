@@ -10,12 +10,14 @@ mod constraints;
 mod model;
 mod reduced;
 mod run;
+mod statistics;
 mod values;
 
 pub use bodies::*;
 pub use model::*;
 pub use reduced::*;
 pub use run::*;
+pub use statistics::*;
 use values::*;
 
 use crate::grammar::mapping::grammar;
@@ -85,6 +87,9 @@ mod tests {
         same_keys::<SceneSimulation>();
         same_keys::<Parameter>();
         same_keys::<Body>();
+        same_keys::<Statistics>();
+        same_keys::<CorrelationFile>();
+        same_keys::<LawKinds>();
         same_keys::<Held>();
         same_keys::<Rotation>();
         same_keys::<Simulation>();

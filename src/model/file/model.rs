@@ -44,6 +44,8 @@ grammar! {
         simulation: Option<Simulation>,
         /// Which bounds to compute; without this, Chebyshev of order 5.
         bounds: Option<crate::methods::keys::Bounds>,
+        /// How the outputs are distributed, beside their bounds.
+        statistics: Option<Statistics>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
         limits: Option<Limits>,
         /// What is not in: effects, joints and outputs by name, or `all` effects. A scene can put them in.
@@ -82,6 +84,8 @@ grammar! {
         simulation: Option<SceneSimulation>,
         /// Instead of the model's.
         bounds: Option<crate::methods::keys::Bounds>,
+        /// Instead of the model's.
+        statistics: Option<Statistics>,
         /// Instead of the model's.
         limits: Option<Limits>,
     }
@@ -126,6 +130,8 @@ grammar! {
         plus: Option<Number>,
         /// Largest deviation downwards.
         minus: Option<Number>,
+        /// How it is distributed, for statistics; by default uniformly over its interval.
+        distribution: Option<LawFile>,
         /// What it is, for people.
         description: Option<String>,
     }

@@ -3,37 +3,14 @@
 use symdiff::formula::Term;
 
 use super::{Draft, Spec};
-use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::{Written, evaluate};
 use crate::grammar::names::Context;
 use crate::grammar::unit::number_and_unit;
-use crate::model::description::ParameterValue;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest;
 use crate::syntax::yaml::Node;
-
-pub fn depends_on_uncertain(reader: &Reader, draft: &Draft) -> bool {
-    // Whether a formula of others varies is known only in order: follow what they use.
-    let mut open: Vec<usize> = draft.uses.clone();
-    let mut seen = vec![false; reader.model.parameters.len()];
-    while let Some(index) = open.pop() {
-        if std::mem::replace(&mut seen[index], true) {
-            continue;
-        }
-        match &reader.model.parameters[index].value {
-            ParameterValue::Interval { .. } => return true,
-            ParameterValue::Formula(formula) => {
-                open.extend(formula.names().filter_map(|(name, _)| match reader.model.symbol(name) {
-                    Some(Symbol::Parameter(used)) => Some(used),
-                    _ => None,
-                }));
-            }
-        }
-    }
-    false
-}
 
 /// Nominal, lower and upper value.
 pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<[f64; 3]> {
@@ -65,6 +42,21 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
     }
     // Without a value there is nothing to deviate from; that was reported.
     value.as_ref()?;
+    let (above, below) = deviations(reader, draft, nominal, kind)?;
+    let nominal = nominal?;
+    let (lower, upper) = (nominal - below, nominal + above);
+    if !(lower.is_finite() && upper.is_finite() && (upper - lower).is_finite()) {
+        let written = [tolerance, plus, minus].into_iter().flatten().next();
+        let place = written.map_or_else(|| 0..0, |node| node.span.clone());
+        reader.error(place, "the parameter's limits are no finite numbers", None);
+        return None;
+    }
+    Some([nominal, lower, upper])
+}
+
+/// How far the value may deviate upwards and downwards.
+pub fn deviations(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &mut Kind) -> Option<(f64, f64)> {
+    let Spec { tolerance, plus, minus, .. } = &draft.spec;
     let (above, below) = match tolerance {
         Some(node) => {
             let either = deviation(reader, draft, Some(node), nominal, kind);
@@ -75,15 +67,7 @@ pub fn bounds(reader: &mut Reader, draft: &Draft, nominal: Option<f64>, kind: &m
             (above, deviation(reader, draft, minus.as_ref(), nominal, kind))
         }
     };
-    let (nominal, above, below) = (nominal?, above?, below?);
-    let (lower, upper) = (nominal - below, nominal + above);
-    if !(lower.is_finite() && upper.is_finite() && (upper - lower).is_finite()) {
-        let written = [tolerance, plus, minus].into_iter().flatten().next();
-        let place = written.map_or_else(|| 0..0, |node| node.span.clone());
-        reader.error(place, "the parameter's limits are no finite numbers", None);
-        return None;
-    }
-    Some([nominal, lower, upper])
+    above.zip(below)
 }
 
 /// How far a value may deviate: `1%` of it, or a quantity.
@@ -112,7 +96,7 @@ fn deviation(
 }
 
 /// A number in the parameter's unit, or with its own.
-fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind) -> Option<f64> {
+pub fn bare_number(reader: &mut Reader, draft: &Draft, node: &Node, kind: &mut Kind) -> Option<f64> {
     match reader.written(node)? {
         Written::Quantity { value, unit } => {
             match kind.dimension() {

@@ -17,6 +17,7 @@ pub struct Spec {
     pub interval: Option<Node>,
     pub plus: Option<Node>,
     pub minus: Option<Node>,
+    pub distribution: Option<Node>,
     /// The deviation is said twice, as was reported: there is none to go on with.
     pub contradictory: bool,
     /// Value and deviation stand in one piece.
@@ -24,6 +25,11 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Of which nothing but the unit is written.
+    pub fn of_unit(unit: Option<Node>) -> Self {
+        Self { unit, ..Self::default() }
+    }
+
     /// Reads a parameter of the file.
     pub fn read(reader: &mut Reader, entry: &Entry) -> Self {
         let mut spec = Self::default();
@@ -47,7 +53,7 @@ impl Spec {
 
     /// Takes what the command line says instead: all of it, or the deviation alone.
     pub fn replace(&mut self, reader: &mut Reader, node: &Node) {
-        let kept = Self { unit: self.unit.take(), ..Self::default() };
+        let kept = Self { unit: self.unit.take(), distribution: self.distribution.take(), ..Self::default() };
         let before = std::mem::replace(self, kept);
         self.whole(reader, node);
         if self.value.is_none() && self.interval.is_none() {
@@ -69,6 +75,7 @@ impl Spec {
             None => {}
         }
         self.unit = fields.get("unit").cloned();
+        self.distribution = fields.get("distribution").cloned();
         if let Some(description) = fields.get("description") {
             reader.scalar(description, "a text");
         }

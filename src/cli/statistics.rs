@@ -1,0 +1,90 @@
+//! Statistics for people, beside the bounds: worst case first.
+
+use super::table::{Align, Table};
+use crate::results::{StatisticsSummary, Summary, Uncertain};
+
+/// Laws, and for each output the worst case, the linearised stack and the distribution.
+pub(super) fn statistics(summary: &Summary) -> String {
+    let Some(found) = summary.statistics.as_ref().map(|found| &found.summary) else { return String::new() };
+    let note = found.failure.as_ref().map_or_else(String::new, |failure| format!("  statistics: {failure}\n\n"));
+    if found.outputs.is_empty() {
+        return note;
+    }
+    let mut table = Table::new([
+        ("at its widest", Align::Left),
+        ("t", Align::Right),
+        ("worst case", Align::Right),
+        ("linear", Align::Right),
+        ("RSS", Align::Right),
+        ("mean", Align::Right),
+        ("deviation", Align::Right),
+        ("statistical", Align::Right),
+    ]);
+    for output in &found.outputs {
+        let statistical = match (output.quantiles.first(), output.quantiles.last()) {
+            (Some(low), Some(high)) => ends(low.value, high.value),
+            _ => String::new(),
+        };
+        table.row([
+            output.output.clone(),
+            format!("{:.4}", output.time),
+            ends(output.worst_case[0], output.worst_case[1]),
+            format!("± {:.3e}", output.linear),
+            format!("± {:.3e}", output.rss),
+            estimate(output.mean),
+            estimate(output.deviation),
+            statistical,
+        ]);
+    }
+    let shares = match (found.quantiles.first(), found.quantiles.last()) {
+        (Some(low), Some(high)) => format!("; statistical: from the {}-quantile to the {}-quantile", low, high),
+        _ => String::new(),
+    };
+    format!(
+        "{}{note}{}  the worst case is every case of the box{shares}, by {} samples of the surrogate\n{}\n",
+        laws(found),
+        table.render(2),
+        found.samples,
+        yields(found)
+    )
+}
+
+/// How many fulfil each requirement.
+fn yields(found: &StatisticsSummary) -> String {
+    let line = |of: &crate::results::YieldSummary| {
+        let [least, most] = of.ppm_interval;
+        let cp = of.cp.map_or_else(String::new, |cp| format!("Cp {cp:.2}, "));
+        format!(
+            "  statistically, {} is fulfilled by {:.4} %: {:.0} ppm fail (95 %: {least:.0} to {most:.0}); {cp}Cpk {:.2} at t = {:.4} s\n",
+            of.requirement,
+            100.0 * of.share,
+            of.ppm,
+            of.cpk,
+            of.time
+        )
+    };
+    found.requirements.iter().map(line).collect()
+}
+
+fn ends(lower: f64, upper: f64) -> String {
+    format!("[{lower:.6}, {upper:.6}]")
+}
+
+/// A value with its whole error.
+fn estimate(value: Uncertain) -> String {
+    format!("{:.6} ± {:.1e}", value.value, value.total())
+}
+
+/// What is taken for each parameter's law.
+fn laws(found: &StatisticsSummary) -> String {
+    let law = |law: &crate::results::LawSummary| {
+        let rule = if law.tolerance_is_three_sigma { ", of which the tolerance is three" } else { "" };
+        format!("{} {} (deviation {:.3e}{rule})", law.parameter, law.distribution, law.deviation)
+    };
+    let laws: Vec<String> = found.parameters.iter().map(law).collect();
+    let outside = match found.outside {
+        0.0 => String::new(),
+        outside => format!("; up to {:.2} % of them lies outside of the box that is bounded", 100.0 * outside),
+    };
+    format!("  distributions: {}{outside}\n", laws.join(", "))
+}

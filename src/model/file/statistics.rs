@@ -1,0 +1,92 @@
+//! Laws of parameters, and statistics.
+
+use schemars::JsonSchema;
+
+use super::*;
+use crate::grammar::mapping::schema_only;
+
+schema_only! {
+    #[schemars(rename_all = "snake_case", inline)]
+    pub enum LawName {
+        /// Every value as likely as any other; the default.
+        Uniform,
+        /// Beyond the interval, too; where nothing else is said, the tolerance is three standard deviations.
+        Normal,
+        /// The same, cut off at the interval's ends.
+        TruncatedNormal,
+        /// Likeliest at the value, linearly less towards the ends.
+        Triangular,
+    }
+
+    /// A law by its name, or with its numbers.
+    #[schemars(untagged, inline)]
+    pub enum LawFile {
+        Name(LawName),
+        Full(Box<LawKinds>),
+    }
+}
+
+grammar! {
+    /// A law with its numbers.
+    LawKinds is "a `distribution`" {
+        /// Every value as likely as any other.
+        uniform: Option<NoNumbers>,
+        /// Beyond the interval, too.
+        normal: Option<NormalLaw>,
+        /// Cut off at the interval's ends.
+        truncated_normal: Option<NormalLaw>,
+        /// Linear to and from the mode.
+        triangular: Option<TriangularLaw>,
+        /// A beta law over the interval.
+        beta: Option<BetaLaw>,
+        /// Pairs of a value, in the parameter's unit, and a density, linear between them; it need not be normalised.
+        table: Option<Vec<[f64; 2]>>,
+    }
+
+    /// A law without numbers.
+    NoNumbers is "`uniform`" {}
+
+    /// Mean and standard deviation.
+    NormalLaw is "a normal law" {
+        /// Standard deviation; by default a third of the tolerance.
+        sigma: Option<Number>,
+        /// Mean; by default the middle of the interval.
+        mean: Option<Number>,
+    }
+
+    /// A triangle.
+    TriangularLaw is "`triangular`" {
+        /// The likeliest value; by default the parameter's.
+        mode: Option<Number>,
+    }
+
+    /// Exponents of the beta law, plus one.
+    BetaLaw is "`beta`" {
+        /// At the lower end.
+        alpha: f64,
+        /// At the upper end.
+        beta: f64,
+    }
+
+    /// What is asked of the outputs' distribution, beside the bounds.
+    Statistics is "`statistics`" {
+        /// The law of every uncertain parameter that has none of its own; by default uniform.
+        distribution: Option<LawFile>,
+        /// Samples of the surrogate, by default a million; a power of two is taken.
+        samples: Option<u32>,
+        /// Shares below the quantiles, e.g. `[0.135%, 50%, 99.865%]`, which is the default.
+        quantiles: Option<Vec<Number>>,
+        /// Parameters that depend on each other, group by group.
+        correlation: Option<Vec<CorrelationFile>>,
+    }
+
+    /// Correlated parameters.
+    CorrelationFile is "a correlation" {
+        /// Names of uncertain parameters.
+        of: Vec<String>,
+        /// Of any two of them.
+        coefficient: Option<f64>,
+        /// Instead: a row for each, with ones on the diagonal.
+        matrix: Option<Vec<Vec<f64>>>,
+    }
+}

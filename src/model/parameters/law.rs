@@ -1,0 +1,159 @@
+//! `distribution`: the law of an uncertain parameter.
+
+use super::Draft;
+use super::interval;
+use crate::grammar::dimension::Kind;
+use crate::model::description::Law;
+use crate::model::file;
+use crate::model::names::Reader;
+use crate::numerics::statistics::Distribution;
+use crate::syntax::suggest;
+use crate::syntax::yaml::{Node, Value};
+
+/// The tolerance is so many standard deviations where nothing else is said.
+const SIGMAS: f64 = 3.0;
+
+const NAMES: [&str; 6] = ["uniform", "normal", "truncated_normal", "triangular", "beta", "table"];
+
+/// Where a law is to lie: nominal value and interval.
+#[derive(Clone, Copy)]
+pub struct Place {
+    pub nominal: f64,
+    pub lower: f64,
+    pub upper: f64,
+}
+
+/// A law by its name, over an interval.
+pub fn named(name: &str, Place { nominal, lower, upper }: Place) -> Option<Law> {
+    let (mean, sigma) = (0.5 * lower + 0.5 * upper, (upper - lower) / (2.0 * SIGMAS));
+    let (distribution, by_tolerance) = match name {
+        "uniform" => (Distribution::Uniform { lower, upper }, false),
+        "normal" => (Distribution::Normal { mean, sigma }, true),
+        "truncated_normal" => (Distribution::TruncatedNormal { mean, sigma, lower, upper }, true),
+        "triangular" => (Distribution::Triangular { lower, mode: nominal, upper }, false),
+        _ => return None,
+    };
+    Some(Law { distribution, by_tolerance })
+}
+
+/// Reads a law over an interval; `kind` is the parameter's dimension.
+pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, place: Place, kind: &mut Kind) -> Option<Law> {
+    if let Some(scalar) = node.scalar() {
+        let law = named(&scalar.text, place);
+        if law.is_none() {
+            let (message, help) = match scalar.text.as_str() {
+                "beta" => ("`beta` needs its exponents", "e.g. `{ beta: { alpha: 2, beta: 5 } }`".to_owned()),
+                "table" => ("`table` needs its points", "e.g. `{ table: [[0.1, 0], [0.2, 1], [0.3, 0]] }`".to_owned()),
+                _ => ("this is no distribution", format!("the distributions are {}", suggest::list(&NAMES))),
+            };
+            reader.error(node.span.clone(), message, help);
+        }
+        return law;
+    }
+    let entry = reader.only::<file::LawKinds>(node, node.span.clone())?;
+    let Place { nominal, lower, upper } = place;
+    let by_name = named(&entry.key, place);
+    let distribution = match (entry.key.as_str(), by_name.as_ref().map(|law| &law.distribution)) {
+        ("normal" | "truncated_normal", Some(default)) => {
+            let fields = reader.fields::<file::NormalLaw>(&entry.value, entry.key_span.clone())?;
+            let mut number = |key: &str, default: f64| match fields.get(key) {
+                None => Some(default),
+                Some(node) => interval::bare_number(reader, draft, node, kind),
+            };
+            let (mean, third) = (number("mean", 0.5 * lower + 0.5 * upper)?, (upper - lower) / (2.0 * SIGMAS));
+            let sigma = number("sigma", third)?;
+            if sigma <= 0.0 {
+                let place = fields.get("sigma").map_or(node.span.clone(), |node| node.span.clone());
+                reader.error(place, "a standard deviation is positive", None);
+                return None;
+            }
+            let by_tolerance = fields.get("sigma").is_none();
+            let distribution = match default {
+                Distribution::Normal { .. } => Distribution::Normal { mean, sigma },
+                _ => Distribution::TruncatedNormal { mean, sigma, lower, upper },
+            };
+            return Some(Law { distribution, by_tolerance });
+        }
+        ("triangular", _) => {
+            let fields = reader.fields::<file::TriangularLaw>(&entry.value, entry.key_span.clone())?;
+            let mode = match fields.get("mode") {
+                None => nominal,
+                Some(node) => {
+                    let mode = interval::bare_number(reader, draft, node, kind)?;
+                    if !(lower..=upper).contains(&mode) {
+                        reader.error(node.span.clone(), "the mode lies outside of the interval", None);
+                        return None;
+                    }
+                    mode
+                }
+            };
+            Distribution::Triangular { lower, mode, upper }
+        }
+        ("beta", _) => {
+            let fields = reader.fields::<file::BetaLaw>(&entry.value, entry.key_span.clone())?;
+            let mut exponent = |key: &str| {
+                let node = reader.required(&fields, key)?;
+                positive(reader, node)
+            };
+            let (alpha, beta) = (exponent("alpha"), exponent("beta"));
+            Distribution::Beta { alpha: alpha?, beta: beta?, lower, upper }
+        }
+        ("table", _) => Distribution::Table(table(reader, draft, &entry.value, place, kind)?),
+        _ => {
+            reader.fields::<file::NoNumbers>(&entry.value, entry.key_span.clone())?;
+            Distribution::Uniform { lower, upper }
+        }
+    };
+    Some(Law { distribution, by_tolerance: false })
+}
+
+/// A positive number without a unit.
+pub fn positive(reader: &mut Reader, node: &Node) -> Option<f64> {
+    let scalar = reader.scalar(node, "a positive number")?;
+    let number = scalar.text.parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
+    if number.is_none() {
+        reader.error(node.span.clone(), format!("`{}` is not a positive number", suggest::clip(&scalar.text)), None);
+    }
+    number
+}
+
+/// Points of a density, ascending, within the interval.
+fn table(
+    reader: &mut Reader,
+    draft: &Draft,
+    node: &Node,
+    Place { lower, upper, .. }: Place,
+    kind: &mut Kind,
+) -> Option<Vec<(f64, f64)>> {
+    let Value::Sequence(items) = &node.value else {
+        let help = "e.g. `[[0.1, 0], [0.2, 1], [0.3, 0]]`".to_owned();
+        reader.error(node.span.clone(), "a table is a list of pairs of value and density", help);
+        return None;
+    };
+    let mut points: Vec<(f64, f64)> = Vec::with_capacity(items.len());
+    for item in items {
+        let [x, density] = reader.two(item, "a value and its density")?;
+        let x_value = interval::bare_number(reader, draft, x, kind)?;
+        let scalar = reader.scalar(density, "a density")?;
+        let value = scalar.text.parse::<f64>().ok().filter(|value| *value >= 0.0 && value.is_finite());
+        let Some(value) = value else {
+            reader.error(density.span.clone(), "a density is a number that is not negative", None);
+            return None;
+        };
+        let slack = 1e-9 * (upper - lower);
+        if !(lower - slack..=upper + slack).contains(&x_value) {
+            reader.error(x.span.clone(), "this value lies outside of the interval", None);
+            return None;
+        }
+        if points.last().is_some_and(|last| last.0 >= x_value) {
+            reader.error(x.span.clone(), "values ascend, but this one does not come after the one before", None);
+            return None;
+        }
+        points.push((x_value.clamp(lower, upper), value));
+    }
+    if points.len() < 2 || points.iter().all(|point| point.1 == 0.0) {
+        reader.error(node.span.clone(), "a table has two points at least, and a density somewhere", None);
+        return None;
+    }
+    Some(points)
+}

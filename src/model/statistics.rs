@@ -1,0 +1,185 @@
+//! `statistics:`, and the laws of parameters that have none of their own.
+
+use super::description::{Correlation, ParameterValue};
+use super::file;
+use super::parameters::law::{Place, named};
+use crate::grammar::reader::Fields;
+use crate::grammar::unit::number_and_unit;
+use crate::model::names::Reader;
+use crate::numerics::statistics::Copula;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Node, Value};
+
+/// Shares below the quantiles where none are named: the ends of ±3σ of a normal law, and the median.
+const QUANTILES: [f64; 3] = [0.00135, 0.5, 0.99865];
+
+/// Samples that can be asked for.
+const SAMPLES: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 24;
+
+/// Reads the section, and completes what parameters say of their laws.
+pub fn read(reader: &mut Reader, section: Option<(&Node, Span)>) {
+    reader.model.statistics.quantiles = QUANTILES.to_vec();
+    let Some((node, at)) = section else { return };
+    let Some(fields) = reader.fields::<file::Statistics>(node, at) else { return };
+    reader.model.statistics.asked = true;
+    if let Some(node) = fields.get("samples") {
+        reader.model.statistics.samples = reader.count(node, *SAMPLES.start(), *SAMPLES.end());
+    }
+    if let Some(node) = fields.get("quantiles") {
+        quantiles(reader, node);
+    }
+    if let Some(node) = fields.get("distribution") {
+        default_law(reader, node);
+    }
+    if let Some(node) = fields.get("correlation") {
+        correlations(reader, node);
+    }
+}
+
+fn quantiles(reader: &mut Reader, node: &Node) {
+    let Value::Sequence(items) = &node.value else {
+        reader.error(node.span.clone(), "quantiles are a list of shares", "e.g. `[5%, 50%, 95%]`".to_owned());
+        return;
+    };
+    let mut shares = Vec::new();
+    for item in items {
+        let Some(scalar) = reader.scalar(item, "a share") else { return };
+        let percent =
+            number_and_unit(&scalar.text).filter(|(_, unit, _)| *unit == "%").map(|(value, ..)| value / 100.0);
+        let share = percent.or_else(|| scalar.text.parse().ok()).filter(|share| *share > 0.0 && *share < 1.0);
+        let Some(share) = share else {
+            let message = format!("`{}` is not a share above 0 and below 1", clip(&scalar.text));
+            reader.error(item.span.clone(), message, "e.g. `95%` or `0.95`".to_owned());
+            return;
+        };
+        shares.push(share);
+    }
+    shares.sort_by(f64::total_cmp);
+    shares.dedup();
+    reader.model.statistics.quantiles = shares;
+}
+
+/// The law of every uncertain parameter that has none of its own.
+fn default_law(reader: &mut Reader, node: &Node) {
+    let Some(scalar) = reader.scalar(node, "the name of a distribution") else { return };
+    let known = reader.model.statistics.laws.clone();
+    let uncertain: Vec<(String, Place)> = reader
+        .model
+        .uncertain()
+        .filter_map(|(_, parameter)| match parameter.value {
+            ParameterValue::Interval { nominal, lower, upper } => {
+                Some((parameter.name.clone(), Place { nominal, lower, upper }))
+            }
+            ParameterValue::Formula(_) => None,
+        })
+        .filter(|(name, _)| !known.iter().any(|(known, _)| known == name))
+        .collect();
+    let anywhere = Place { nominal: 0.0, lower: -1.0, upper: 1.0 };
+    if named(&scalar.text, anywhere).is_none() {
+        let names = ["uniform", "normal", "truncated_normal", "triangular"];
+        let message = format!("`{}` is no distribution that needs no numbers", clip(&scalar.text));
+        reader.error(node.span.clone(), message, format!("those are {}", suggest::list(&names)));
+        return;
+    }
+    let laws = uncertain.into_iter().filter_map(|(name, place)| Some((name, named(&scalar.text, place)?)));
+    reader.model.statistics.laws.extend(laws.collect::<Vec<_>>());
+}
+
+fn correlations(reader: &mut Reader, node: &Node) {
+    let Value::Sequence(items) = &node.value else {
+        let help = "e.g. `[{ of: [a, b], coefficient: 0.8 }]`".to_owned();
+        reader.error(node.span.clone(), "correlations are a list of groups", help);
+        return;
+    };
+    for item in items {
+        let Some(fields) = reader.fields::<file::CorrelationFile>(item, item.span.clone()) else { continue };
+        if let Some(correlation) = correlation(reader, &fields) {
+            reader.model.statistics.correlations.push(correlation);
+        }
+    }
+}
+
+fn correlation(reader: &mut Reader, fields: &Fields) -> Option<Correlation> {
+    let of = reader.required(fields, "of")?;
+    let names = names(reader, of)?;
+    let k = names.len();
+    let matrix = match (fields.get("coefficient"), fields.get("matrix")) {
+        (Some(node), None) => {
+            let coefficient = coefficient(reader, node)?;
+            (0..k).map(|i| (0..k).map(|j| if i == j { 1.0 } else { coefficient }).collect()).collect()
+        }
+        (None, Some(node)) => matrix(reader, node, k)?,
+        _ => {
+            reader.error(fields.at.clone(), "a correlation needs `coefficient` or `matrix`", None);
+            return None;
+        }
+    };
+    if Copula::new(&matrix).is_err() {
+        let help = "the matrix is not positive definite: if a goes with b and b with c, a goes with c".to_owned();
+        reader.error(of.span.clone(), "no random numbers are correlated like this", help);
+        return None;
+    }
+    Some(Correlation { names, matrix })
+}
+
+fn names(reader: &mut Reader, node: &Node) -> Option<Vec<String>> {
+    let Value::Sequence(items) = &node.value else {
+        reader.error(node.span.clone(), "a list of parameters belongs here", "e.g. `[a, b]`".to_owned());
+        return None;
+    };
+    let uncertain: Vec<String> = reader.model.uncertain().map(|(_, parameter)| parameter.name.clone()).collect();
+    let taken: Vec<String> =
+        reader.model.statistics.correlations.iter().flat_map(|group| group.names.iter().cloned()).collect();
+    let mut names: Vec<String> = Vec::new();
+    for item in items {
+        let name = reader.scalar(item, "the name of a parameter")?.text.clone();
+        if !uncertain.contains(&name) {
+            let message = format!("`{}` is no uncertain parameter", clip(&name));
+            let help = suggest::help(&name, "uncertain parameters", uncertain.iter().map(String::as_str));
+            reader.error(item.span.clone(), message, help);
+            return None;
+        }
+        if names.contains(&name) || taken.contains(&name) {
+            let help = "give one matrix for all that depend on each other".to_owned();
+            reader.error(item.span.clone(), format!("`{name}` stands in a correlation already"), help);
+            return None;
+        }
+        names.push(name);
+    }
+    if names.len() < 2 {
+        reader.error(node.span.clone(), "a correlation is one of two parameters at least", None);
+        return None;
+    }
+    Some(names)
+}
+
+fn coefficient(reader: &mut Reader, node: &Node) -> Option<f64> {
+    let scalar = reader.scalar(node, "a correlation coefficient")?;
+    let number = scalar.text.parse::<f64>().ok().filter(|number| (-1.0..=1.0).contains(number));
+    if number.is_none() {
+        let message = format!("`{}` is no number from -1 to 1", clip(&scalar.text));
+        reader.error(node.span.clone(), message, None);
+    }
+    number
+}
+
+fn matrix(reader: &mut Reader, node: &Node, k: usize) -> Option<Vec<Vec<f64>>> {
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    if let Value::Sequence(items) = &node.value {
+        for item in items {
+            let Value::Sequence(numbers) = &item.value else { break };
+            rows.push(numbers.iter().map(|number| coefficient(reader, number)).collect::<Option<_>>()?);
+        }
+    }
+    if rows.len() != k || rows.iter().any(|row| row.len() != k) {
+        reader.error(node.span.clone(), format!("a matrix of {k} rows of {k} numbers belongs here"), None);
+        return None;
+    }
+    let symmetric = (0..k).all(|i| rows[i][i] == 1.0 && (0..i).all(|j| rows[i][j] == rows[j][i]));
+    if !symmetric {
+        reader.error(node.span.clone(), "a matrix of correlations is symmetric, with ones on its diagonal", None);
+        return None;
+    }
+    Some(rows)
+}

@@ -1,0 +1,140 @@
+//! Mean, standard deviation and quantiles from replicates of samples, with how far sampling may leave them off.
+
+use super::beta::beta_quantile;
+use super::points::REPLICATES;
+
+/// Student's t for 95 % on both sides with one degree of freedom less than there are replicates (Abramowitz & Stegun, table 26.10).
+const STUDENT: f64 = 2.131;
+
+/// An estimate, and the half width of its 95 % confidence interval as far as sampling goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The estimate.
+    pub value: f64,
+    /// The half width.
+    pub sampling: f64,
+}
+
+impl Estimate {
+    /// The mean of values of replicates.
+    pub fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let value = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|x| (x - value) * (x - value)).sum();
+        Self { value, sampling: STUDENT * (squares / (n * (n - 1.0))).sqrt() }
+    }
+}
+
+/// The 95 % confidence interval of a share of which so many of all samples were seen (C. J. Clopper & E. S. Pearson, Biometrika 26 (1934)
+/// 404). Points that are spread evenly are no worse than random ones.
+pub fn share_interval(seen: usize, of: usize) -> [f64; 2] {
+    let (seen, left) = (seen as f64, of.saturating_sub(seen) as f64);
+    let lower = if seen == 0.0 { 0.0 } else { beta_quantile(0.025, seen, left + 1.0) };
+    let upper = if left == 0.0 { 1.0 } else { beta_quantile(0.975, seen + 1.0, left) };
+    [lower, upper]
+}
+
+/// What replicates of one quantity's samples say.
+#[derive(Clone, Debug, Default)]
+pub struct Replicates {
+    means: Vec<f64>,
+    deviations: Vec<f64>,
+    /// By quantile, replicate by replicate.
+    quantiles: Vec<Vec<f64>>,
+}
+
+impl Replicates {
+    /// Before the first.
+    pub fn new(quantiles: usize) -> Self {
+        Self { quantiles: vec![Vec::with_capacity(REPLICATES); quantiles], ..Self::default() }
+    }
+
+    /// Adds a replicate, whose values are put in another order; `shares` are those below the quantiles.
+    pub fn add(&mut self, values: &mut [f64], shares: &[f64]) {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+        self.means.push(mean);
+        self.deviations.push((squares / (n - 1.0)).sqrt());
+        for (quantiles, &share) in self.quantiles.iter_mut().zip(shares) {
+            quantiles.push(quantile_of(values, share));
+        }
+    }
+
+    /// Mean.
+    pub fn mean(&self) -> Estimate {
+        Estimate::of(&self.means)
+    }
+
+    /// Standard deviation.
+    pub fn deviation(&self) -> Estimate {
+        Estimate::of(&self.deviations)
+    }
+
+    /// Quantiles, in the order of their shares.
+    pub fn quantiles(&self) -> Vec<Estimate> {
+        self.quantiles.iter().map(|values| Estimate::of(values)).collect()
+    }
+}
+
+/// The value below which a share of them lies, linearly between two of them (R. J. Hyndman & Y. Fan, The American Statistician 50 (1996)
+/// 361, type 5). Puts them in another order; NaN where one is.
+pub fn quantile_of(values: &mut [f64], share: f64) -> f64 {
+    if values.iter().any(|value| value.is_nan()) {
+        return f64::NAN;
+    }
+    let n = values.len();
+    let place = (share * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
+    let below = place as usize;
+    let (_, &mut low, rest) = values.select_nth_unstable_by(below, f64::total_cmp);
+    let high = rest.iter().copied().fold(f64::INFINITY, f64::min);
+    let between = place - below as f64;
+    if between == 0.0 || high == f64::INFINITY { low } else { low + between * (high - low) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::points::replicate;
+    use super::super::special::normal_quantile;
+    use super::*;
+
+    #[test]
+    fn a_normal_laws_numbers_lie_within_their_confidence() {
+        let shares = [0.001_349_898, 0.5, 0.998_650_102];
+        let mut replicates = Replicates::new(3);
+        for number in 0..REPLICATES {
+            let points = replicate(number, 2, 1 << 14);
+            let sum = |p: &[f64]| 2.0 + 3.0 * normal_quantile(p[0]) + 4.0 * normal_quantile(p[1]);
+            let mut values: Vec<f64> = points.chunks_exact(2).map(sum).collect();
+            replicates.add(&mut values, &shares);
+        }
+        // N(2, 5²)
+        let near = |estimate: Estimate, truth: f64, most: f64| {
+            let off = (estimate.value - truth).abs();
+            assert!(off <= 2.0 * estimate.sampling && estimate.sampling < most, "{estimate:?} {truth}");
+        };
+        near(replicates.mean(), 2.0, 1e-3);
+        near(replicates.deviation(), 5.0, 5e-3);
+        let [low, middle, high] = replicates.quantiles()[..] else { panic!("three") };
+        near(low, -13.0, 0.1);
+        near(middle, 2.0, 1e-2);
+        near(high, 17.0, 0.1);
+    }
+
+    #[test]
+    fn published_confidence_intervals() {
+        // Of none of 20 seen: 1 − 0.025^(1/20). Of 4 of 20: (0.0573, 0.4366), Clopper and Pearson's charts.
+        let [lower, upper] = share_interval(0, 20);
+        assert!(lower == 0.0 && (upper - (1.0 - 0.025_f64.powf(0.05))).abs() < 1e-12);
+        let [lower, upper] = share_interval(4, 20);
+        assert!((lower - 0.0573).abs() < 5e-5 && (upper - 0.4366).abs() < 5e-5, "{lower} {upper}");
+        assert_eq!(share_interval(7, 7)[1], 1.0);
+    }
+
+    #[test]
+    fn quantiles_of_few() {
+        let mut values = [4.0, 1.0, 3.0, 2.0];
+        assert_eq!([0.0, 0.125, 0.25, 0.5, 1.0].map(|p| quantile_of(&mut values, p)), [1.0, 1.0, 1.5, 2.5, 4.0]);
+        assert!(quantile_of(&mut [1.0, f64::NAN], 0.5).is_nan());
+    }
+}

@@ -1,0 +1,153 @@
+//! How outputs are distributed, beside their bounds.
+
+use serde::Serialize;
+
+/// An estimate with its error: `sampling` is the half width of the 95 % confidence interval, `error` what the surrogate and the time steps
+/// may add.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Uncertain {
+    /// The estimate.
+    pub value: f64,
+    /// Half width of its 95 % confidence interval as far as the number of samples goes.
+    pub sampling: f64,
+    /// How far the surrogate and the time steps may leave it off.
+    pub error: f64,
+}
+
+impl Uncertain {
+    /// Nothing is known.
+    pub const UNKNOWN: Self = Self { value: f64::NAN, sampling: f64::NAN, error: f64::NAN };
+
+    /// Both together.
+    pub fn total(&self) -> f64 {
+        self.sampling + self.error
+    }
+}
+
+/// An output's distribution over time; each vector runs over the times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputStatistics {
+    /// Name in the model.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Mean.
+    pub mean: Vec<Uncertain>,
+    /// Standard deviation.
+    pub deviation: Vec<Uncertain>,
+    /// By quantile.
+    pub quantiles: Vec<Vec<Uncertain>>,
+    /// Linearised worst case about the nominal value, to either side: Σ |∂y/∂pᵢ| Δpᵢ.
+    pub linear: Vec<f64>,
+    /// Root sum square of the same, to either side: √Σ (∂y/∂pᵢ Δpᵢ)².
+    pub rss: Vec<f64>,
+    /// Whether the numbers of a row can be relied on.
+    pub resolved: Vec<bool>,
+}
+
+/// The law of a parameter, as it is printed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LawSummary {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// `uniform`, `normal`, ….
+    pub distribution: String,
+    /// Mean, SI.
+    pub mean: f64,
+    /// Standard deviation, SI.
+    pub deviation: f64,
+    /// Whether the tolerance is taken for three standard deviations, since nothing else is said.
+    pub tolerance_is_three_sigma: bool,
+    /// How much of the law lies outside of the interval that is bounded.
+    pub outside: f64,
+}
+
+/// Statistics of a run; serialised as their summary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StatisticsResult {
+    /// Output times, s.
+    #[serde(skip)]
+    pub times: Vec<f64>,
+    /// In the model's order.
+    #[serde(skip)]
+    pub outputs: Vec<OutputStatistics>,
+    /// For people and `summary.json`.
+    #[serde(flatten)]
+    pub summary: StatisticsSummary,
+}
+
+/// Statistics in `summary.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StatisticsSummary {
+    /// Samples of the surrogate in each row.
+    pub samples: usize,
+    /// Laws of the parameters.
+    pub parameters: Vec<LawSummary>,
+    /// Shares below the quantiles.
+    pub quantiles: Vec<f64>,
+    /// How much of the laws lies outside of what the surrogate was made for; samples are drawn from the rest.
+    pub left_out: f64,
+    /// How much of the laws lies outside of the box that is bounded, at most.
+    pub outside: f64,
+    /// Simulations for a surrogate beyond the box, where laws reach beyond it.
+    pub simulations: usize,
+    /// By output, where it varies most.
+    pub outputs: Vec<OutputStatisticsSummary>,
+    /// How many fulfil each requirement that is over time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<YieldSummary>,
+    /// What prevents it, or a part of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+}
+
+/// An output's distribution at the time at which its standard deviation is largest: worst case, RSS and statistics side by side. SI.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OutputStatisticsSummary {
+    /// Name.
+    pub output: String,
+    /// SI unit.
+    pub unit: String,
+    /// When, s.
+    pub time: f64,
+    /// Bounds over the box: every case.
+    pub worst_case: [f64; 2],
+    /// The error of these bounds.
+    pub worst_case_error: f64,
+    /// With every parameter at its nominal value.
+    pub nominal: f64,
+    /// Linearised worst case about it, to either side.
+    pub linear: f64,
+    /// Root sum square, to either side.
+    pub rss: f64,
+    /// Mean.
+    pub mean: Uncertain,
+    /// Standard deviation.
+    pub deviation: Uncertain,
+    /// In the order of the shares.
+    pub quantiles: Vec<Uncertain>,
+}
+
+/// The share of what is made that fulfils a requirement, by samples of the surrogate at the output times.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct YieldSummary {
+    /// Name of the requirement.
+    pub requirement: String,
+    /// The share that fulfils it.
+    pub share: f64,
+    /// Its 95 % confidence interval, widened by what the surrogate's and the steps' error and what lies outside of the surrogate may do.
+    pub interval: [f64; 2],
+    /// Parts per million that do not fulfil it, and the same interval.
+    pub ppm: f64,
+    /// Of `ppm`.
+    pub ppm_interval: [f64; 2],
+    /// Capability at the worst time, (U − L)/(6σ); of a requirement with two limits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cp: Option<f64>,
+    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ.
+    pub cpk: f64,
+    /// When that is, s.
+    pub time: f64,
+    /// Samples.
+    pub samples: usize,
+}

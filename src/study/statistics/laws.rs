@@ -1,0 +1,134 @@
+//! The joint law of all uncertain parameters of a model.
+
+use super::{intervals, law_summary};
+use crate::model::{Description, Law, ParameterValue};
+use crate::numerics::statistics::{Copula, Distribution, replicate};
+use crate::results::LawSummary;
+
+/// A surrogate reaches as many standard deviations to either side of a normal law: 2e-9 of it lies beyond.
+const REACH: f64 = 6.0;
+
+/// Laws and correlations of the uncertain parameters in the model's order.
+pub(super) struct Laws {
+    names: Vec<String>,
+    laws: Vec<Law>,
+    /// The box that is bounded.
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    pub nominal: Vec<f64>,
+    /// The box that samples are drawn from.
+    least: Vec<f64>,
+    most: Vec<f64>,
+    pub copula: Copula,
+}
+
+impl Laws {
+    /// Those of a model.
+    ///
+    /// # Errors
+    /// Where nothing is uncertain.
+    pub fn of(description: &Description) -> Result<Self, String> {
+        let all: Vec<(&str, [f64; 3])> = intervals(description).collect();
+        if all.is_empty() {
+            return Err("no parameter is uncertain".to_owned());
+        }
+        let of = |&(name, [_, lower, upper]): &(&str, [f64; 3])| description.statistics.law(name, lower, upper);
+        let along = |which: usize| -> Vec<f64> { all.iter().map(|(_, ends)| ends[which]).collect() };
+        let names: Vec<String> = all.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let mut matrix: Vec<Vec<f64>> =
+            (0..names.len()).map(|i| (0..names.len()).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+        for group in &description.statistics.correlations {
+            let places: Vec<Option<usize>> =
+                group.names.iter().map(|name| names.iter().position(|known| known == name)).collect();
+            for (i, row) in places.iter().zip(&group.matrix) {
+                for (j, &value) in places.iter().zip(row) {
+                    if let (Some(i), Some(j)) = (*i, *j) {
+                        matrix[i][j] = value;
+                    }
+                }
+            }
+        }
+        let copula =
+            Copula::new(&matrix).map_err(|_| "the matrix of correlations is not positive definite".to_owned())?;
+        let (nominal, lower, upper) = (along(0), along(1), along(2));
+        let laws = all.iter().map(of).collect();
+        Ok(Self { names, laws, least: lower.clone(), most: upper.clone(), lower, upper, nominal, copula })
+    }
+
+    /// Number of parameters.
+    pub fn dimension(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// Whether something may lie outside of the box.
+    pub fn reach_beyond(&self) -> bool {
+        self.outside() > 0.0
+    }
+
+    /// The model over a box that has nearly all of the laws; samples are drawn from it then.
+    pub fn widened(&mut self, description: &Description) -> Description {
+        for (place, law) in self.laws.iter().enumerate() {
+            if let Distribution::Normal { mean, sigma } = law.distribution {
+                self.least[place] = self.lower[place].min(mean - REACH * sigma);
+                self.most[place] = self.upper[place].max(mean + REACH * sigma);
+            }
+        }
+        let mut wider = description.clone();
+        let uncertain = wider.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
+            ParameterValue::Interval { lower, upper, .. } => Some((lower, upper)),
+            ParameterValue::Formula(_) => None,
+        });
+        for ((lower, upper), (least, most)) in uncertain.zip(self.least.iter().zip(&self.most)) {
+            (*lower, *upper) = (*least, *most);
+        }
+        wider
+    }
+
+    /// Cuts off normal laws at the box' ends.
+    pub fn cut_off(&mut self) {
+        (self.least, self.most) = (self.lower.clone(), self.upper.clone());
+        for (place, law) in self.laws.iter_mut().enumerate() {
+            if let Distribution::Normal { mean, sigma } = law.distribution {
+                let (lower, upper) = (self.lower[place], self.upper[place]);
+                law.distribution = Distribution::TruncatedNormal { mean, sigma, lower, upper };
+            }
+        }
+    }
+
+    /// At most so much lies outside of the box that is bounded.
+    pub fn outside(&self) -> f64 {
+        self.laws
+            .iter()
+            .zip(self.lower.iter().zip(&self.upper))
+            .map(|(law, (a, b))| law.distribution.outside(*a, *b))
+            .sum()
+    }
+
+    /// At most so much lies outside of what samples are drawn from.
+    pub fn left_out(&self) -> f64 {
+        self.laws
+            .iter()
+            .zip(self.least.iter().zip(&self.most))
+            .map(|(law, (a, b))| law.distribution.outside(*a, *b))
+            .sum()
+    }
+
+    /// One replicate of samples, sample after sample: values of all parameters.
+    pub fn samples(&self, number: usize, count: usize) -> Vec<f64> {
+        let mut samples = replicate(number, self.dimension(), count);
+        for sample in samples.chunks_exact_mut(self.dimension()) {
+            self.copula.correlate(sample);
+            for (place, value) in sample.iter_mut().enumerate() {
+                let found = self.laws[place].distribution.quantile(*value);
+                *value = found.clamp(self.least[place], self.most[place]);
+            }
+        }
+        samples
+    }
+
+    /// As they are printed.
+    pub fn summaries(&self) -> Vec<LawSummary> {
+        let ends = self.lower.iter().copied().zip(self.upper.iter().copied());
+        self.names.iter().zip(&self.laws).zip(ends).map(|((name, law), ends)| law_summary(name, law, ends)).collect()
+    }
+}

@@ -1,0 +1,143 @@
+//! Statistics beside the bounds, from the surrogate that a run keeps: quantiles over time, mean, standard deviation, and the linearised
+//! tolerance stack.
+
+mod laws;
+mod requirements;
+mod rows;
+
+use super::kept::Kept;
+use super::{Options, RunError, subsystems};
+use crate::methods::Method;
+use crate::model::{Description, ParameterValue};
+use crate::numerics::BandError;
+use crate::results::{
+    Bounds, LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Summary,
+};
+use laws::Laws;
+use rows::Rows;
+
+/// Runs every method asked for, and statistics of the first so many outputs beside.
+///
+/// # Errors
+/// As for any run. Where statistics alone fail, the summary says why.
+pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
+    let (bounds, mut summary, kept) = subsystems::run(description, options, true)?;
+    let found = match &kept {
+        Some(kept) => of_run((description, shown), options, &bounds, kept),
+        None => Err("there is no surrogate over the whole box".to_owned()),
+    };
+    let found = found.unwrap_or_else(|failure| StatisticsResult {
+        times: Vec::new(),
+        outputs: Vec::new(),
+        summary: StatisticsSummary { failure: Some(failure), ..StatisticsSummary::default() },
+    });
+    summary.statistics = Some(Box::new(found));
+    Ok((bounds, summary))
+}
+
+/// Statistics of what a run kept; where a law reaches beyond the box, of a surrogate over a wider one.
+fn of_run(
+    (description, shown): (&Description, usize),
+    options: &Options,
+    bounds: &Bounds,
+    kept: &Kept,
+) -> Result<StatisticsResult, String> {
+    let mut laws = Laws::of(description)?;
+    let mut simulations = 0;
+    let mut wide = None;
+    let mut note = None;
+    if laws.reach_beyond() {
+        let wider = laws.widened(description);
+        let methods = Some(vec![Method::Chebyshev]);
+        let options = Options { methods, threads: options.threads, ..quiet(options) };
+        match subsystems::run(&wider, &options, true) {
+            Ok((_, summary, Some(found))) if follows(description, kept, &found) => {
+                simulations = summary.methods.iter().map(|method| method.simulations).sum();
+                wide = Some(found);
+            }
+            found => {
+                let why = match found {
+                    Err(error) => error.to_string(),
+                    Ok((_, summary, _)) => {
+                        summary.failure.unwrap_or_else(|| "the surrogate does not follow the outputs".to_owned())
+                    }
+                };
+                note = Some(format!("laws are cut off at the ends of their intervals, since beyond them: {why}"));
+            }
+        }
+        if wide.is_none() {
+            laws.cut_off();
+        }
+    }
+    let kept = wide.as_ref().unwrap_or(kept);
+    let rows = Rows::new(description, &laws, kept)?;
+    let outputs = rows.outputs(shown);
+    let requirements = requirements::all(&rows);
+    let summary = StatisticsSummary {
+        samples: rows.samples(),
+        parameters: laws.summaries(),
+        quantiles: description.statistics.quantiles.clone(),
+        left_out: laws.left_out(),
+        outside: laws.outside(),
+        simulations,
+        outputs: outputs.iter().enumerate().filter_map(|(place, output)| side_by_side(bounds, place, output)).collect(),
+        requirements,
+        failure: note,
+    };
+    Ok(StatisticsResult { times: kept.times().to_vec(), outputs, summary })
+}
+
+/// Whether a surrogate over a wider box is known and resolved wherever that of the box is.
+fn follows(description: &Description, kept: &Kept, wider: &Kept) -> bool {
+    let good = |error: &BandError, row: usize| !error.unresolved[row] && error.total[row].is_finite();
+    let of_output = |output: usize| {
+        (0..kept.times().len()).all(|row| good(wider.error(output), row) || !good(kept.error(output), row))
+    };
+    wider.times().len() >= kept.times().len() && (0..description.outputs.len()).all(of_output)
+}
+
+/// The same without what a second run does not need to be told again.
+fn quiet<'a>(options: &Options<'a>) -> Options<'a> {
+    Options { interrupted: options.interrupted, ..Options::default() }
+}
+
+/// Worst case, root sum square and statistics at the time at which the standard deviation is largest.
+fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Option<OutputStatisticsSummary> {
+    let known = (0..output.deviation.len()).filter(|&row| output.deviation[row].value.is_finite());
+    let row = known.max_by(|&a, &b| output.deviation[a].value.total_cmp(&output.deviation[b].value).then(b.cmp(&a)))?;
+    let of_bounds = &bounds.outputs[place];
+    let band = of_bounds.bands.iter().find(|band| band.method == Method::Chebyshev)?;
+    Some(OutputStatisticsSummary {
+        output: output.name.clone(),
+        unit: output.unit.clone(),
+        time: *bounds.times.get(row)?,
+        worst_case: [band.lower[row], band.upper[row]],
+        worst_case_error: band.error.total[row],
+        nominal: of_bounds.nominal[row],
+        linear: output.linear[row],
+        rss: output.rss[row],
+        mean: output.mean[row],
+        deviation: output.deviation[row],
+        quantiles: output.quantiles.iter().map(|values| values[row]).collect(),
+    })
+}
+
+/// The uncertain parameters: name, and nominal, least and largest value.
+fn intervals(description: &Description) -> impl Iterator<Item = (&str, [f64; 3])> {
+    description.parameters.iter().filter_map(|parameter| match parameter.value {
+        ParameterValue::Interval { nominal, lower, upper } => Some((parameter.name.as_str(), [nominal, lower, upper])),
+        ParameterValue::Formula(_) => None,
+    })
+}
+
+/// A law as it is printed.
+fn law_summary(name: &str, law: &crate::model::Law, (lower, upper): (f64, f64)) -> LawSummary {
+    LawSummary {
+        parameter: name.to_owned(),
+        distribution: law.distribution.name().to_owned(),
+        mean: law.distribution.mean(),
+        deviation: law.distribution.deviation(),
+        tolerance_is_three_sigma: law.by_tolerance,
+        outside: law.distribution.outside(lower, upper),
+    }
+}

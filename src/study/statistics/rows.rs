@@ -1,0 +1,193 @@
+//! One row after the other: samples of the surrogate, and what they say of each output.
+
+use rayon::prelude::*;
+
+use super::laws::Laws;
+use crate::model::Description;
+use crate::numerics::largest;
+use crate::numerics::statistics::{Estimate, REPLICATES, Replicates};
+use crate::results::{OutputStatistics, Uncertain};
+use crate::study::kept::{Evaluator, Kept};
+
+/// Samples where a model asks for no number: about a million.
+const SAMPLES: usize = 1 << 20;
+
+/// Over time a share of them is enough: quantiles are bands there. The row in which an output varies most has all.
+const OVER_TIME: usize = 16;
+
+/// Numbers that all samples hold, at most.
+const MOST_NUMBERS: usize = 1 << 25;
+
+/// Samples, at most, where each costs a loop closure.
+const CLOSED: usize = 1 << 14;
+
+/// Samples at which the polynomial through an output's own samples is held against the loop closure.
+const COMPARED: usize = 256;
+
+/// It takes the closure's place where it differs by no more than this share of the values' range, or of the stated error.
+const NEAR: (f64, f64) = (1e-4, 0.5);
+
+/// A difference quotient's step, as a share of the interval's half width.
+const STEP: f64 = 1e-2;
+
+/// Samples and what evaluates them.
+pub(super) struct Rows<'a> {
+    pub description: &'a Description,
+    pub laws: &'a Laws,
+    pub kept: &'a Kept,
+    evaluator: Evaluator<'a>,
+    /// By replicate.
+    samples: Vec<Vec<f64>>,
+}
+
+/// What one row says of one output.
+struct RowStatistics {
+    mean: Uncertain,
+    deviation: Uncertain,
+    quantiles: Vec<Uncertain>,
+    linear: f64,
+    rss: f64,
+    resolved: bool,
+}
+
+impl<'a> Rows<'a> {
+    /// Draws the samples.
+    ///
+    /// # Errors
+    /// Where a loop closure cannot be compiled.
+    pub fn new(description: &'a Description, laws: &'a Laws, kept: &'a Kept) -> Result<Self, String> {
+        let evaluator = kept.evaluator().map_err(|error| error.to_string())?;
+        let asked = description.statistics.samples.unwrap_or(SAMPLES);
+        let count = asked.min(MOST_NUMBERS / laws.dimension()).max(REPLICATES);
+        // The largest power of two that is not more.
+        let count = 1 << (count / REPLICATES).ilog2();
+        let samples = (0..REPLICATES).into_par_iter().map(|number| laws.samples(number, count)).collect();
+        Ok(Self { description, laws, kept, evaluator, samples })
+    }
+
+    /// Samples of each row.
+    pub fn samples(&self) -> usize {
+        self.samples.iter().map(|samples| samples.len() / self.laws.dimension()).sum()
+    }
+
+    /// The first so many outputs.
+    pub fn outputs(&self, count: usize) -> Vec<OutputStatistics> {
+        (0..count).map(|output| self.of_output(output)).collect()
+    }
+
+    /// One replicate's samples: every so many of the lattice's points are a lattice again.
+    fn points(&self, replicate: usize, fewer: usize) -> Vec<&[f64]> {
+        self.samples[replicate].chunks_exact(self.laws.dimension()).step_by(fewer).collect()
+    }
+
+    /// By how much fewer samples are taken, so that there are this many of each replicate.
+    pub fn fewer(&self, count: usize) -> usize {
+        (self.samples[0].len() / self.laws.dimension() / count).max(1)
+    }
+
+    fn of_output(&self, output: usize) -> OutputStatistics {
+        let mut rows: Vec<RowStatistics> =
+            (0..self.kept.times().len()).into_par_iter().map(|row| self.of_row(row, output, OVER_TIME)).collect();
+        let deviation = |row: &usize| rows[*row].deviation.value;
+        let known = (0..rows.len()).filter(|row| deviation(row).is_finite());
+        if let Some(widest) = known.max_by(|a, b| deviation(a).total_cmp(&deviation(b)).then(b.cmp(a))) {
+            rows[widest] = self.of_row(widest, output, 1);
+        }
+        let quantile = |place: usize| rows.iter().map(|row| row.quantiles[place]).collect();
+        let description = &self.description.outputs[output];
+        OutputStatistics {
+            name: description.name.clone(),
+            unit: description.unit.clone(),
+            mean: rows.iter().map(|row| row.mean).collect(),
+            deviation: rows.iter().map(|row| row.deviation).collect(),
+            quantiles: (0..self.description.statistics.quantiles.len()).map(quantile).collect(),
+            linear: rows.iter().map(|row| row.linear).collect(),
+            rss: rows.iter().map(|row| row.rss).collect(),
+            resolved: rows.iter().map(|row| row.resolved).collect(),
+        }
+    }
+
+    fn of_row(&self, row: usize, output: usize, fewer: usize) -> RowStatistics {
+        let stated = self.kept.error(output);
+        let own_error = self.own_error(row, output, stated.total[row]);
+        let shares = &self.description.statistics.quantiles;
+        let mut replicates = Replicates::new(shares.len());
+        for replicate in 0..REPLICATES {
+            replicates.add(&mut self.values(row, output, (replicate, fewer), own_error.is_some()), shares);
+        }
+        let error = stated.total[row] + own_error.unwrap_or(0.0);
+        let with_error = |Estimate { value, sampling }: Estimate| Uncertain { value, sampling, error };
+        let (linear, rss) = self.stack(row, output);
+        RowStatistics {
+            mean: with_error(replicates.mean()),
+            deviation: with_error(replicates.deviation()),
+            quantiles: replicates.quantiles().into_iter().map(with_error).collect(),
+            linear,
+            rss,
+            resolved: !stated.unresolved[row] && error.is_finite(),
+        }
+    }
+
+    /// Whether an output's values in a row take a loop closure each.
+    pub fn needs_closure(&self, row: usize, output: usize) -> bool {
+        self.own_error(row, output, self.kept.error(output).total[row]).is_none()
+    }
+
+    /// An output's values in a row of all replicates, and how far they may be off.
+    pub fn all_values(&self, row: usize, output: usize, fewer: usize) -> (Vec<f64>, f64) {
+        let stated = self.kept.error(output).total[row];
+        let own_error = self.own_error(row, output, stated);
+        // All rows have to have the same samples, whichever way they are evaluated.
+        let of = |replicate: usize| match own_error {
+            Some(_) => self.values(row, output, (replicate, fewer), true),
+            None => self.evaluator.values(row, &[output], &self.points(replicate, fewer)),
+        };
+        ((0..REPLICATES).flat_map(of).collect(), stated + own_error.unwrap_or(0.0))
+    }
+
+    /// An output's values in a row, by its own polynomial or through the loop closure.
+    fn values(&self, row: usize, output: usize, (replicate, fewer): (usize, usize), by_own: bool) -> Vec<f64> {
+        if by_own {
+            return self.kept.own_values(row, output, &self.points(replicate, fewer)).unwrap_or_default();
+        }
+        let fewer = fewer.max(self.fewer(CLOSED / REPLICATES));
+        self.evaluator.values(row, &[output], &self.points(replicate, fewer))
+    }
+
+    /// How far the polynomial through an output's own samples is from the closure, where it may take its place.
+    fn own_error(&self, row: usize, output: usize, stated: f64) -> Option<f64> {
+        if self.kept.is_polynomial(row, output) {
+            return Some(0.0);
+        }
+        let samples = self.points(0, self.fewer(COMPARED));
+        let own = self.kept.own_values(row, output, &samples)?;
+        let closed = self.evaluator.values(row, &[output], &samples);
+        let apart = largest(own.iter().zip(&closed).map(|(own, closed)| own - closed));
+        let (least, most) = closed.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
+        // Written so that NaN does not.
+        (apart <= (NEAR.0 * (most - least)).max(NEAR.1 * stated)).then_some(apart)
+    }
+
+    /// The linearised worst case about the nominal value, and the root sum square.
+    fn stack(&self, row: usize, output: usize) -> (f64, f64) {
+        let Laws { nominal, lower, upper, .. } = self.laws;
+        let mut points: Vec<Vec<f64>> = Vec::with_capacity(2 * nominal.len());
+        for axis in 0..nominal.len() {
+            let step = STEP * 0.5 * (upper[axis] - lower[axis]);
+            for side in [-step, step] {
+                let mut point = nominal.clone();
+                point[axis] = (point[axis] + side).clamp(lower[axis], upper[axis]);
+                points.push(point);
+            }
+        }
+        let values = self.evaluator.values(row, &[output], &points);
+        let deviation = |axis: usize| {
+            let between = points[2 * axis + 1][axis] - points[2 * axis][axis];
+            let slope = (values[2 * axis + 1] - values[2 * axis]) / between;
+            slope * (upper[axis] - nominal[axis]).max(nominal[axis] - lower[axis])
+        };
+        let deviations: Vec<f64> = (0..nominal.len()).map(deviation).collect();
+        let linear = deviations.iter().map(|d| d.abs()).sum();
+        (linear, deviations.iter().map(|d| d * d).sum::<f64>().sqrt())
+    }
+}
