@@ -27,6 +27,8 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Compute bounds of every output over time.
     Run(RunArgs),
+    /// Bound reduced outputs for values of one or two parameters.
+    Sweep(SweepArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Draw the assembled mechanism at its start, and print where its bodies and points are.
@@ -99,6 +101,10 @@ pub(super) struct RunArgs {
     #[arg(short, long)]
     pub yes: bool,
 
+    /// Also write the verdicts of all requirements into this file, as JUnit XML for CI.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+
     /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
     #[arg(long)]
     pub overwrite: bool,
@@ -112,6 +118,43 @@ Writes bounds.csv (columns: t; NAME.nominal, NAME.chebyshev.lower, .upper, .erro
 output; the unreliable bounds of the row), summary.json, and a plot NAME.svg of each output.
 Each scene of a model has a folder of its own; next to them are scenes.csv and a plot of each
 output with all scenes.";
+
+#[derive(Debug, Args)]
+#[command(after_help = SWEEP_HELP)]
+pub(super) struct SweepArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Folder for the results [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Sweep a parameter, as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, as `l2=0.3`; one or two
+    /// may be swept.
+    #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
+    pub set: Vec<String>,
+
+    /// Use this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    /// Number of threads; results do not depend on it [default: one per core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute for one value.
+    #[arg(short, long)]
+    pub yes: bool,
+}
+
+const SWEEP_HELP: &str = "\
+Runs the model for each value, and writes sweep.csv (a row for each value: bounds of every reduced
+output, margin and verdict of every requirement) and a plot sweep.NAME.svg of each reduced output.";
 
 #[derive(Debug, Args)]
 #[command(after_help = COST_HELP)]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::console::{BOLD, coordinates, count, file_names};
 use super::table::{Align, Table};
+use super::verdicts;
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
 
 /// The largest width and error of each band.
@@ -172,6 +173,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
     );
     text += &errors(&summary.errors);
     text += &contributions(&summary.contributions);
+    text += &verdicts::tables(summary);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let times = match method.rank_revealing_solves {
             1 => "once".to_owned(),

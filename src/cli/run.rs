@@ -72,8 +72,12 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
         };
         status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
-            return Ok(Status::Interrupted);
+            status = Status::Interrupted;
+            break;
         }
+    }
+    if let Some(junit) = &request.junit {
+        junit.write()?;
     }
     Ok(status)
 }
@@ -115,7 +119,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
-            (scene, Job { model, folder, files: files.clone() })
+            (scene, Job { model, path: path.clone(), folder, files: files.clone() })
         });
         // A single requested scene is run like a model.
         let alone = request.scenes.len() == 1;

@@ -76,7 +76,9 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
     let found = sources(reader, &fields, (key, kind), node);
     let (Some((from, mut to)), Some((sources, dimension))) = (times, found) else { return };
     if key == "value" {
-        let Some(at) = reader.required(&fields, "at").and_then(|node| reader.number(node, Dimension::TIME)) else { return };
+        let Some(at) = reader.required(&fields, "at").and_then(|node| reader.number(node, Dimension::TIME)) else {
+            return;
+        };
         to = at;
     }
     let unit = dimension.map_or_else(String::new, Dimension::unit);
@@ -88,7 +90,17 @@ pub fn read(reader: &mut Reader, entry: &Entry) {
         reader.error(entry.key_span.clone(), message, "give one of them another name".to_owned());
         return;
     }
-    reader.model.reduced.push(ReducedOutput { name, text, unit, dimension, kind, sources, places: Vec::new(), from, to });
+    reader.model.reduced.push(ReducedOutput {
+        name,
+        text,
+        unit,
+        dimension,
+        kind,
+        sources,
+        places: Vec::new(),
+        from,
+        to,
+    });
 }
 
 /// A value as it is written.
@@ -196,9 +208,8 @@ fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Opti
     let scalar = reader.scalar(node, "a formula")?;
     let parsed = reader.parse(node, scalar, range.clone())?;
     let outputs = &reader.model.outputs;
-    let formula = parsed.with_names(|name| {
-        outputs.iter().find(|output| output.name == name).map(|output| output.formula.clone())
-    });
+    let formula = parsed
+        .with_names(|name| outputs.iter().find(|output| output.name == name).map(|output| output.formula.clone()));
     reader.check_names(node, &formula, range.start, Context::Output).then_some(())?;
     let dimension = match reader.kind(node, &formula, range.start) {
         Kind::Known { dimension, .. } => Some(dimension),
@@ -209,8 +220,6 @@ fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Opti
 
 /// Two formulas that are compared.
 pub(super) struct Comparison {
-    /// What stands on the left, as it is written.
-    pub left: String,
     pub sides: [Source; 2],
     /// Whether the left side is to be the smaller one.
     pub is_upper: bool,
@@ -228,10 +237,15 @@ impl Comparison {
 /// The only `<`, `<=`, `>` or `>=` of a text: its place, its length, and whether it is one of the first two.
 pub(super) fn relation(reader: &mut Reader, node: &Node) -> Option<(usize, usize, bool)> {
     let text = &reader.scalar(node, "a comparison")?.text;
-    let signs: Vec<usize> = text.char_indices().filter(|(_, c)| matches!(c, '<' | '>')).map(|(place, _)| place).collect();
+    let signs: Vec<usize> =
+        text.char_indices().filter(|(_, c)| matches!(c, '<' | '>')).map(|(place, _)| place).collect();
     let [place] = signs.as_slice() else {
         let message = format!("`{}` is not a comparison", clip(text));
-        reader.error(node.span.clone(), message, "write one of `<=`, `>=`, `<` and `>` between two formulas".to_owned());
+        reader.error(
+            node.span.clone(),
+            message,
+            "write one of `<=`, `>=`, `<` and `>` between two formulas".to_owned(),
+        );
         return None;
     };
     let length = if text[place + 1..].starts_with('=') { 2 } else { 1 };
@@ -248,5 +262,5 @@ pub(super) fn comparison(reader: &mut Reader, node: &Node) -> Option<Comparison>
     if let (Some(first), Some(second)) = (sides[0].dimension, sides[1].dimension) {
         reader.check_fits(&node.span, second, first);
     }
-    Some(Comparison { left: text[..place].trim().to_owned(), sides, is_upper })
+    Some(Comparison { sides, is_upper })
 }

@@ -190,7 +190,8 @@ fn part_of_reduced(reader: &mut Reader, node: &Node, range: std::ops::Range<usiz
     }
     if let Some((name, span)) = unknown {
         let message = format!("`{name}` is neither a reduced output nor a parameter");
-        let help = "what is compared with a reduced output is one number a motion; make it a reduced output too".to_owned();
+        let help =
+            "what is compared with a reduced output is one number a motion; make it a reduced output too".to_owned();
         reader.error(scalar.place(&node.span, span), message, help);
         return None;
     }

@@ -112,7 +112,7 @@ pub enum RunError {
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
-    pool.install(|| subsystems::run(&model, &options)).map(|found| reduced::shown(description, found))
+    pool.install(|| reduced::run(&model, &options)).map(|found| reduced::shown(description, found))
 }
 
 /// A compiled model: of what `run` simulates, all in one.

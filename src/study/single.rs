@@ -192,8 +192,18 @@ impl<'a> Study<'a> {
         drop(motions);
         let damped = self.damped_modes(&schedule);
         let found = Found::default();
-        let mut results =
-            Results { schedule, unresolved_from, damped, nominal, singular, validation, methods, halved, internal, found };
+        let mut results = Results {
+            schedule,
+            unresolved_from,
+            damped,
+            nominal,
+            singular,
+            validation,
+            methods,
+            halved,
+            internal,
+            found,
+        };
         if !(self.interrupted)() {
             results.found = self.reduced(&results, tolerance, &progress)?;
         }

@@ -1,29 +1,31 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements.
+//! what the methods see; `verdicts` decides requirements; `refine` runs a model until all are decided.
 
 mod ensemble;
 mod expand;
 mod plan;
+mod refine;
 mod verdicts;
 
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
+pub(super) use refine::run;
 
 use super::conclude::{bands, contributions};
 use super::ensemble::Progress;
 use super::outcome::{Outcome, Results};
 use super::single::{Study, simulation_error, timed};
 use crate::methods::{
-    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated, Until,
-    Validation,
+    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation,
 };
 use crate::model::ReducedOutput;
 use crate::numerics::{Range, Sample};
 use crate::results::{
-    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, RequirementSummary,
-    WorstCase,
+    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary,
+    RequirementSummary, WorstCase,
 };
 use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 use ensemble::ReducedEnsemble;
@@ -135,7 +137,12 @@ impl Study<'_> {
     }
 
     /// What each sampled method finds of all values.
-    fn bounds_of(&self, ensembles: Ensembles, schedule: &Schedule, halved: &Schedule) -> Result<Results, SimulationError> {
+    fn bounds_of(
+        &self,
+        ensembles: Ensembles,
+        schedule: &Schedule,
+        halved: &Schedule,
+    ) -> Result<Results, SimulationError> {
         let ensemble = ensembles.direct;
         let nominal = self.nominal_values(ensemble)?;
         let (nominal, ()) = timed(schedule, "nominal", || Ok((nominal, ())))?;
@@ -178,7 +185,8 @@ impl Study<'_> {
             results.validation = Some((validation, summary));
             return Ok(results);
         }
-        let validation = Validation::run(ensembles, Observed::Motion, self.request.degree()).map_err(simulation_error)?;
+        let validation =
+            Validation::run(ensembles, Observed::Motion, self.request.degree()).map_err(simulation_error)?;
         let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
             let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
                 let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));
@@ -229,7 +237,8 @@ impl Study<'_> {
         contributions.retain(|contribution| contribution.total.is_finite());
         contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
         let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());
-        let case = |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
+        let case =
+            |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
         let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
         let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
         let occurs = Occurrence { samples: known().count(), of: values.whole };

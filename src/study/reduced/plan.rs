@@ -52,7 +52,12 @@ enum Value {
     Last(Humps),
     /// The same, from the beginning where there is none, unknown where it lasts to the end.
     Settling(Humps, f64, f64),
-    Overshoot { greatest: Vec<usize>, least: Vec<usize>, start: usize, target: usize },
+    Overshoot {
+        greatest: Vec<usize>,
+        least: Vec<usize>,
+        start: usize,
+        target: usize,
+    },
     /// The least of formulas of reduced outputs (by number) and parameters.
     Formulas(Box<Formulas>),
 }
@@ -144,10 +149,7 @@ impl Planner<'_> {
         let sign = if accumulation == Accumulation::WhenLeast { -1.0 } else { 1.0 };
         let windows = self.windows(output, sign, span);
         let height = if sign > 0.0 { Accumulation::Greatest } else { Accumulation::Least };
-        Humps {
-            heights: self.windowed(output, height, &windows),
-            times: self.windowed(output, accumulation, &windows),
-        }
+        Humps { heights: self.windowed(output, height, &windows), times: self.windowed(output, accumulation, &windows) }
     }
 
     fn reduced(&mut self, reduced: &ReducedOutput, end: f64) -> Value {
@@ -205,8 +207,9 @@ impl Planner<'_> {
         let rows: Vec<usize> = (0..self.times.len()).filter(|&row| (from..=to).contains(&self.times[row])).collect();
         let all = (self.nominal)(output);
         let value = |place: usize| sign * all[rows[place]];
-        let (low, high) =
-            (0..rows.len()).map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = (0..rows.len())
+            .map(value)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         // A dip with the depth below the lower one of the humps beside it.
         let mut dips: Vec<(usize, f64)> = Vec::new();
         for place in 1..rows.len().saturating_sub(1) {
@@ -224,7 +227,9 @@ impl Planner<'_> {
             }
             let shallowest = (0..dips.len()).min_by(|&a, &b| dips[a].1.total_cmp(&dips[b].1));
             match shallowest {
-                Some(number) if dips[number].1 < DEEP * (high - low) || dips.len() >= MOST_WINDOWS => dips.remove(number),
+                Some(number) if dips[number].1 < DEEP * (high - low) || dips.len() >= MOST_WINDOWS => {
+                    dips.remove(number)
+                }
                 _ => break,
             };
         }
@@ -297,7 +302,8 @@ impl Formulas {
             };
             known.push((parameter.name.as_str(), value));
         }
-        let names: Vec<_> = description.reduced.iter().map(|own| own.name.as_str()).zip(reduced.iter().copied()).collect();
+        let names: Vec<_> =
+            description.reduced.iter().map(|own| own.name.as_str()).zip(reduced.iter().copied()).collect();
         let roots = formulas.iter().map(|formula| build(&builder, formula, &known, &names).expr()).collect();
         let reduced = reduced.iter().map(|reduced| reduced.expr()).collect();
         Self { roots, reduced, parameters, graph: builder.finish() }
@@ -337,7 +343,8 @@ mod tests {
     #[test]
     fn the_time_is_cut_between_the_highest_humps() {
         let times: Vec<f64> = (0..=400).map(|row| 0.05 * f64::from(row)).collect();
-        let course = |frequency: f64| times.iter().map(|time| symdiff::math::cos(frequency * time)).collect::<Vec<f64>>();
+        let course =
+            |frequency: f64| times.iter().map(|time| symdiff::math::cos(frequency * time)).collect::<Vec<f64>>();
         let windows = |frequency: f64| {
             let nominal = |_| course(frequency);
             Planner { channels: vec![], nominal: &nominal, times: &times }.windows(0, 1.0, (0.0, f64::INFINITY))

@@ -162,10 +162,11 @@ impl Study<'_> {
     /// a step.
     fn is_certified(&self, own: &Requirement, rows: &Results) -> bool {
         let Some((from, to)) = own.times else { return false };
-        let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else { return false };
+        let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
+            return false;
+        };
         let schedule = &rows.schedule;
-        let counts: Vec<usize> =
-            (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
+        let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
         let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
         let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);
         seen && !counts.is_empty() && own.places.iter().all(holds)
@@ -196,7 +197,8 @@ fn decides(lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String
         return "reliable bounds: a higher order, shorter steps, or `bounds: { tolerance: … }`".to_owned();
     }
     if lower + surrogate + time < 0.0 {
-        return "a sample that fails: the bounds pass the limit, but no simulated sample does; a higher order".to_owned();
+        return "a sample that fails: the bounds pass the limit, but no simulated sample does; a higher order"
+            .to_owned();
     }
     match surrogate > time {
         true => format!("a higher order, or a smaller tolerance: the surrogate's error is {surrogate:.1e}"),

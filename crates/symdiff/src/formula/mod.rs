@@ -244,7 +244,9 @@ impl Formula {
                 Term::Name(name) => match formula(name) {
                     Some(other) => {
                         let first = terms.len();
-                        terms.extend(other.terms.iter().map(|(term, _)| (term.moved(|place| place + first), span.clone())));
+                        terms.extend(
+                            other.terms.iter().map(|(term, _)| (term.moved(|place| place + first), span.clone())),
+                        );
                     }
                     None => terms.push((term.clone(), span.clone())),
                 },
@@ -266,7 +268,9 @@ impl Formula {
     /// The argument of a function that is all of the formula.
     pub fn argument_of(&self, function: Unary) -> Option<Self> {
         match self.terms.split_last() {
-            Some(((Term::Unary(outer, argument), _), before)) if *outer == function && *argument + 1 == before.len() => {
+            Some(((Term::Unary(outer, argument), _), before))
+                if *outer == function && *argument + 1 == before.len() =>
+            {
                 Some(Self { terms: before.to_vec() })
             }
             _ => None,

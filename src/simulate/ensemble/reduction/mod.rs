@@ -148,7 +148,10 @@ impl<'s> Reduction<'s> {
         for (number, channel) in self.channels.iter().enumerate() {
             // A channel of a single time takes the piece that ends there or after it.
             let is_at = channel.accumulation == Accumulation::AtEnd;
-            if channel.from >= end && !is_at || channel.to < start || (is_at && channel.to > end && !is_last(channel, end)) {
+            if channel.from >= end && !is_at
+                || channel.to < start
+                || (is_at && channel.to > end && !is_last(channel, end))
+            {
                 continue;
             }
             for lane in (0..self.width).filter(|&lane| !self.stopped[lane]) {

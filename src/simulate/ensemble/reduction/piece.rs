@@ -127,7 +127,8 @@ impl Piece {
             heights.filter(|(_, rise)| *rise > 0.0).reduce(|a, b| if b.1 > a.1 { b } else { a })
         };
         let most = parabolas.iter().map(|parabola| rise(parabola).map_or(0.0, |(_, rise)| rise));
-        let (least, most) = most.fold((f64::INFINITY, 0.0_f64), |(least, most), rise| (least.min(rise), most.max(rise)));
+        let (least, most) =
+            most.fold((f64::INFINITY, 0.0_f64), |(least, most), rise| (least.min(rise), most.max(rise)));
         if !(least > 0.0 && least.is_finite()) {
             return None;
         }
