@@ -1,10 +1,9 @@
 //! Bounds → files: CSV, summary and plots.
 
-mod axis;
-mod canvas;
 mod columns;
 mod contributions;
 mod cost;
+mod courses;
 mod csv;
 mod drawing;
 mod error;
@@ -14,15 +13,12 @@ mod folder;
 mod junit;
 mod overlay;
 mod owned;
-mod panel;
 mod plot;
-mod polyline;
 mod reduced;
 mod reference;
 mod scenes;
 mod snapshot;
 mod sweep;
-mod view;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;
@@ -35,7 +31,7 @@ pub use folder::{prepare_folder, write_pages};
 pub use junit::{Suite, write_junit};
 pub use overlay::SceneBounds;
 pub use owned::holds_complete_results;
-pub use plot::plot_svg;
+pub use plot::{noise, plot_svg};
 pub use reduced::reduced_csv;
 pub use reference::effects as effects_page;
 pub use scenes::write_scenes;

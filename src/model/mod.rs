@@ -10,6 +10,7 @@ mod references;
 
 mod file;
 
+mod analysis;
 mod beams;
 mod bodies;
 mod bounds;
@@ -22,6 +23,7 @@ mod reduced;
 mod requests;
 mod requirements;
 mod scenes;
+mod scheme;
 mod space;
 mod tables;
 mod teeth;

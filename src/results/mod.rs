@@ -11,6 +11,7 @@ mod peaks;
 mod provenance;
 mod reduced;
 mod requirement;
+mod structure;
 mod summary;
 
 pub use crate::methods::Method;
@@ -27,6 +28,7 @@ pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
+pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,

@@ -37,6 +37,9 @@ pub struct Summary {
     /// A fast mode that the start excites and the steps damp, where that moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
+    /// By what the motion was integrated, where that was not HHT-I3 alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integration: Option<String>,
     /// The parameter α of HHT-I3.
     pub alpha: f64,
     /// Length of the run, s.

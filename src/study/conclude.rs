@@ -25,7 +25,7 @@ const RESOLVING: f64 = 0.1;
 
 impl Study<'_> {
     /// Bounds up to the last row of which something is known, and the summary.
-    pub(super) fn conclude(&self, results: Results, note: Option<String>) -> Ran {
+    pub(super) fn conclude(&self, mut results: Results, note: Option<String>) -> Ran {
         let study = self;
         let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
         // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
@@ -53,8 +53,9 @@ impl Study<'_> {
         let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
         let failure = (!failures.is_empty()).then(|| failures.join("; "));
         let whole = results.whole().min(rows);
+        let kept = study.kept(&mut results, whole);
         let summary = summary(study, results, &bounds, failure);
-        Ran { bounds, summary, whole }
+        Ran { bounds, summary, whole, kept }
     }
 }
 
@@ -188,6 +189,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
+        integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         parameters: system

@@ -20,7 +20,7 @@ impl Study<'_> {
         tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
-        let mut steps = StepSearch::new(schedule);
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let (halved, odd) = (schedule.refined(2), schedule.at_odds());

@@ -42,10 +42,12 @@ type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
+    let has_steps = !simulator.system.analysis.is_without_steps();
     Problem {
         parameters,
-        composes: can_compose(parameters, simulator.system.q.len()),
-        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
+        composes: has_steps && can_compose(parameters, simulator.system.q.len()),
+        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
+            && description.simulation.extrapolation.is_none(),
         tolerance: description.bounds.tolerance,
     }
 }
@@ -69,7 +71,9 @@ impl<'a> Study<'a> {
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
-        let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
+        let has_steps = !simulator.system.analysis.is_without_steps();
+        let time_functions =
+            if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
         let store = OnceLock::new();
         Ok(Self { description, simulator, domain, request, time_functions, certify_time, store, progress, interrupted })
     }
@@ -105,7 +109,8 @@ impl<'a> Study<'a> {
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         match simulation.stepping {
             Stepping::Fixed(step) => {
-                let Divided { schedule, .. } = self.divided(Schedule::fixed(duration, step, output_step));
+                let fixed = Schedule::fixed(duration, step, output_step).taken(self.integration());
+                let Divided { schedule, .. } = self.divided(fixed);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let validation = self.validation(&schedule, None, Observed::Outputs, &progress)?;
                 let Validation { points, simulated, .. } = validation;
@@ -136,7 +141,7 @@ impl<'a> Study<'a> {
         match simulation.stepping {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                let results = self.methods(&schedule, None)?;
+                let results = self.methods(&schedule.taken(self.integration()), None)?;
                 Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
@@ -221,7 +226,7 @@ impl<'a> Study<'a> {
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
         let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        let mut steps = StepSearch::new(schedule);
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let begun = std::time::Instant::now();
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
@@ -246,7 +251,7 @@ impl<'a> Study<'a> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<usize>, SimulationError> {
-        if (self.interrupted)() {
+        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
         let found = caught("the search for switches", || {
@@ -391,5 +396,6 @@ pub(super) fn validation_summary(
 
 /// Steps up to where a sample stopped, or to the end.
 fn steps(schedule: &Schedule, stop: Option<&Stop>) -> usize {
-    schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1))
+    let before = schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1));
+    before * schedule.integration.steps()
 }

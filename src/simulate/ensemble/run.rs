@@ -66,6 +66,8 @@ pub enum Observed {
     Outputs,
     /// Positions, then velocities (2n), then the model's outputs.
     Motion,
+    /// Positions, then velocities (2n).
+    Coordinates,
     /// Positions, then velocities (2n), then of each switch the least and the largest value since the row before.
     Switches,
 }
@@ -76,6 +78,7 @@ impl Observed {
         match self {
             Self::Outputs => simulator.program.outputs.len(),
             Self::Motion => 2 * simulator.program.scale.len() + simulator.program.outputs.len(),
+            Self::Coordinates => 2 * simulator.program.scale.len(),
             Self::Switches => {
                 2 * simulator.program.scale.len() + 2 * simulator.switches().map_or(0, |program| program.switches.len())
             }
@@ -338,6 +341,7 @@ impl TileRun<'_> {
                     self.stepper.copy_motion(motion);
                     self.observe(outputs);
                 }
+                Observed::Coordinates => self.stepper.copy_motion(values),
                 Observed::Switches => {
                     let (motion, extents) = values.split_at_mut(2 * self.stepper.coordinates() * width);
                     self.stepper.copy_motion(motion);

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::super::{Options, RunError, subsystems};
+use super::super::{Kept, Options, RunError, subsystems};
 use crate::methods::{Chebyshev, Degree};
 use crate::model::{Description, Stepping};
 use crate::results::{Bounds, MethodSummary, RequirementSummary, Summary, Verdict};
@@ -19,8 +19,12 @@ const SMALLER: f64 = 8.0;
 ///
 /// # Errors
 /// As for any run.
-pub fn run(model: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let mut found = subsystems::run(model, options)?;
+pub fn run(
+    model: &Description,
+    options: &Options,
+    keep: bool,
+) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    let mut found = subsystems::run(model, options, keep)?;
     if model.bounds.tolerance.is_some() {
         return Ok(found);
     }
@@ -38,7 +42,7 @@ pub fn run(model: &Description, options: &Options) -> Result<(Bounds, Summary), 
             break;
         }
         spent += before;
-        let next = subsystems::run(&finer, options)?;
+        let next = subsystems::run(&finer, options, keep)?;
         before = simulations(&next.1);
         (found, model, rounds) = (next, Cow::Owned(finer), rounds + 1);
     }
