@@ -36,7 +36,10 @@ pub mod numerics {
 }
 
 pub mod results {
-    pub use crate::results::{Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, Summary};
+    pub use crate::results::{
+        Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, ReducedBand, ReducedSummary, RequirementSummary,
+        Summary, Verdict,
+    };
 }
 
 pub mod simulate {

@@ -18,7 +18,7 @@ mod reduced;
 mod reference;
 mod scenes;
 mod snapshot;
-mod sweep;
+mod sweep_files;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;
@@ -36,4 +36,4 @@ pub use reduced::reduced_csv;
 pub use reference::effects as effects_page;
 pub use scenes::write_scenes;
 pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_snapshot};
-pub use sweep::{Sweep, SweepAxis, SweepPoint, write_sweep};
+pub use sweep_files::{Sweep, SweepAxis, SweepPoint, write_sweep};

@@ -31,6 +31,9 @@ use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 use ensemble::ReducedEnsemble;
 use plan::Plan;
 
+/// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
+const MUCH: f64 = 4.0;
+
 /// What was found of reduced outputs and requirements.
 #[derive(Default)]
 pub(super) struct Found {
@@ -69,12 +72,29 @@ impl Study<'_> {
         let Divided { schedule, .. } = self.divided(schedule.clone());
         let progress = Progress::new(usize::MAX, self.progress);
         let motions = self.motions(&schedule, tolerance, &progress);
+        // A deviation from what is nominal is rounding in the nominal motion: opposite corners show its course.
+        let corner = |xi: f64| self.domain.sample(&vec![xi; self.domain.dimension()]);
+        let mut samples = vec![self.domain.nominal.clone()];
+        if self.domain.dimension() > 0 {
+            samples.extend([corner(-1.0), corner(1.0)]);
+        }
         let (outputs, mut values) = (motions.outputs(), Vec::new());
         let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
-        let nominal = std::slice::from_ref(&self.domain.nominal);
-        motions.simulate(nominal, sampling, &mut |_, rows| values.extend_from_slice(rows)).map_err(simulation_error)?;
-        let times: Vec<f64> = (0..values.len() / outputs).map(|row| schedule.time(row)).collect();
-        let course = |output: usize| values.iter().skip(output).step_by(outputs).copied().collect::<Vec<f64>>();
+        motions
+            .simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows))
+            .map_err(simulation_error)?;
+        let stride = outputs * samples.len();
+        let times: Vec<f64> = (0..values.len() / stride).map(|row| schedule.time(row)).collect();
+        let of = |output: usize, sample: usize| -> Vec<f64> {
+            values.iter().skip(output * samples.len() + sample).step_by(stride).copied().collect()
+        };
+        let course = |output: usize| {
+            let wider = |a: Vec<f64>, b: Vec<f64>| if Range::of(&b).width() > Range::of(&a).width() { b } else { a };
+            // The nominal one, unless another moves much more.
+            let nominal = of(output, 0);
+            let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
+            if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
+        };
         self.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
         Ok(())
     }

@@ -19,11 +19,7 @@ const SMALLER: f64 = 8.0;
 ///
 /// # Errors
 /// As for any run.
-pub fn run(
-    model: &Description,
-    options: &Options,
-    keep: bool,
-) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+pub fn run(model: &Description, options: &Options, keep: bool) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let mut found = subsystems::run(model, options, keep)?;
     if model.bounds.tolerance.is_some() {
         return Ok(found);
