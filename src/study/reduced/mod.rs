@@ -1,16 +1,18 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements; `refine` runs a model until all are decided.
+//! what the methods see; `verdicts` decides requirements (`found` has all of it); `refine` runs a model until all are decided.
 
 mod ensemble;
 mod expand;
+mod found;
 mod plan;
 mod refine;
 mod verdicts;
 
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
+pub(super) use found::Found;
 pub(super) use refine::run;
 
 use super::conclude::{bands, contributions};
@@ -24,8 +26,7 @@ use crate::methods::{
 use crate::model::ReducedOutput;
 use crate::numerics::{Range, Sample};
 use crate::results::{
-    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary,
-    RequirementSummary, WorstCase,
+    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
 use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 use ensemble::ReducedEnsemble;
@@ -33,15 +34,6 @@ use plan::Plan;
 
 /// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
 const MUCH: f64 = 4.0;
-
-/// What was found of reduced outputs and requirements.
-#[derive(Default)]
-pub(super) struct Found {
-    pub reduced: Vec<ReducedSummary>,
-    pub requirements: Vec<RequirementSummary>,
-    /// What it took besides the samples of the outputs.
-    pub summary: Option<MethodSummary>,
-}
 
 /// What the methods found of each value, with what is common to all.
 struct Values<'a> {
