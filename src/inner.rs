@@ -40,8 +40,8 @@ pub mod numerics {
 
 pub mod results {
     pub use crate::results::{
-        Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, StatisticsResult, Summary,
-        Uncertain,
+        Band, Bounds, CostStudy, Method, MethodSummary, OutputBounds, OutputStatistics, ReducedBand, ReducedSummary,
+        RequirementSummary, StatisticsResult, Summary, Uncertain, Verdict,
     };
 }
 

@@ -1,5 +1,7 @@
 //! The arguments of the command line.
 
+mod sweep;
+
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -10,6 +12,7 @@ use super::listing::Listing;
 use super::{Failure, status};
 use crate::model::Override;
 use crate::results::Method;
+pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
 #[derive(Debug, Parser)]
@@ -27,6 +30,8 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Compute bounds of every output over time.
     Run(RunArgs),
+    /// Bound reduced outputs for values of one or two parameters.
+    Sweep(SweepArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.
@@ -104,6 +109,10 @@ pub(super) struct RunArgs {
     /// Write no report.html, nor what it shows moving.
     #[arg(long)]
     pub no_report: bool,
+
+    /// Also write the verdicts of all requirements into this file, as JUnit XML for CI.
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
 
     /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
     #[arg(long)]

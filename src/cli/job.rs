@@ -7,6 +7,7 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
+use super::verdicts::{self, Junit};
 use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
@@ -24,6 +25,8 @@ pub(super) struct Request {
     pub quiet: bool,
     /// Whether a report is written.
     pub report: bool,
+    /// Where verdicts are written, too.
+    pub junit: Option<Junit>,
     timings: bool,
     overwrite: bool,
     settings: Settings,
@@ -46,6 +49,8 @@ pub(super) struct Settings {
 /// A model, or a scene of it, with the folder for its results.
 pub(super) struct Job {
     pub model: Description,
+    /// The model's file.
+    pub path: PathBuf,
     pub folder: PathBuf,
     /// The files that the model was read from.
     pub files: Vec<ModelFile>,
@@ -86,6 +91,7 @@ impl Request {
             output: args.output,
             quiet: args.quiet,
             report: !args.no_report,
+            junit: args.junit.map(Junit::new),
             timings: args.timings,
             overwrite: args.overwrite,
             settings: Settings {
@@ -118,7 +124,12 @@ impl Request {
 pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
     let name = &job.model.name;
     let done = study::caught("the model's run", || run_and_write(job, request));
-    done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))))
+    let done = done.unwrap_or_else(|error| Err(Failure::Failed(format!("{name}: {error}"))));
+    if let Some(junit) = &request.junit {
+        let outcome = done.as_ref().map(|done| &done.summary);
+        junit.add(name, outcome.map_err(Failure::message));
+    }
+    done
 }
 
 /// A model's bounds, with a bar of the progress meanwhile. What takes too long is [`Failure::Wrong`], and was not begun.
@@ -150,7 +161,8 @@ pub(super) fn bounds(
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
     // From the first rows on there is something to keep.
-    let (bounds, summary) = bounds(&job.model, &request.settings, &|| interrupt::keep_results(true))?;
+    let (bounds, mut summary) = bounds(&job.model, &request.settings, &|| interrupt::keep_results(true))?;
+    verdicts::add_commands(&mut summary, &job.path, &request.overrides);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {
@@ -162,7 +174,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
     let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
-    let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
+    let resolved = || resolution(&bounds).max(verdicts::status(&summary));
+    let status = if summary.failure.is_some() { Status::Failed } else { resolved() };
     Ok(Done { status, bounds, summary, files, folder })
 }
 

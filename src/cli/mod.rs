@@ -24,8 +24,10 @@ mod snapshot;
 mod statistics;
 mod status;
 mod structure;
+mod sweep;
 mod table;
 mod tree;
+mod verdicts;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -47,6 +49,12 @@ enum Failure {
 }
 
 impl Failure {
+    fn message(&self) -> &str {
+        match self {
+            Self::Wrong(message) | Self::Failed(message) => message,
+        }
+    }
+
     /// Reports it, and tells what it comes to.
     fn report(&self, console: &Console) -> Status {
         let (message, status) = match self {
@@ -88,6 +96,7 @@ pub fn main() -> ExitCode {
 fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
         Command::Run(args) => run::run(args, console),
+        Command::Sweep(args) => sweep::sweep(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

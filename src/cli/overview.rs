@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::console::{BOLD, coordinates, count, file_names};
 use super::table::{Align, Table};
+use super::verdicts;
 use crate::results::{Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
 
 /// The largest width and error of each band.
@@ -185,6 +186,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     text += &errors(&summary.errors);
     text += &contributions(&summary.contributions);
+    text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
         let times = match method.rank_revealing_solves {

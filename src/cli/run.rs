@@ -72,8 +72,12 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
         };
         status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
-            return Ok(Status::Interrupted);
+            status = Status::Interrupted;
+            break;
         }
+    }
+    if let Some(junit) = &request.junit {
+        junit.write()?;
     }
     Ok(status)
 }
@@ -121,7 +125,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
             let (files, texts, beside) = (files.clone(), texts.clone(), beside.clone());
             let page = alone || scene.is_none();
-            (scene, Job { model, folder, files, texts, beside, share, page })
+            (scene, Job { model, path: path.clone(), folder, files, texts, beside, share, page })
         });
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {

@@ -114,7 +114,7 @@ impl Job {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 console.error(&format!("{name}: there is no snapshot {}; {} records it", shown(&place), again()));
-                return Ok(Status::Moved);
+                return Ok(Status::NotMet);
             }
             Err(error) => return Err(wrong(&error)),
         };
@@ -138,7 +138,7 @@ impl Job {
         }
         let what = count(found.len(), "curve has moved", "curves have moved");
         console.error(&format!("{name}: {what} beyond the stated errors; if that is right, {} records it", again()));
-        Ok(Status::Moved)
+        Ok(Status::NotMet)
     }
 }
 

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub(super) enum Status {
     Done,
     Unresolved,
-    Moved,
+    NotMet,
     Failed,
     Interrupted,
     Wrong,
@@ -26,7 +26,7 @@ pub(super) struct StatusDocs {
 impl Status {
     /// All of them, by their codes.
     pub const ALL: [Self; 6] =
-        [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::Moved, Self::Interrupted];
+        [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::NotMet, Self::Interrupted];
 
     pub const fn docs(self) -> StatusDocs {
         let (code, meaning, results) = match self {
@@ -43,13 +43,13 @@ impl Status {
             ),
             Self::Unresolved => (
                 3,
-                "success, but at some time no method gives reliable bounds of an output",
+                "success, but at some time no method gives reliable bounds of an output, or a requirement is undecided and none violated",
                 "all results; unreliable rows are marked",
             ),
-            Self::Moved => (
+            Self::NotMet => (
                 4,
-                "`mbint snapshot --check`: a bound is not as it was recorded, or nothing is recorded",
-                "nothing is written",
+                "what was to hold does not: a requirement is violated; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
+                "all results; `mbint snapshot --check` writes nothing",
             ),
             // 128 and SIGINT's number, as a shell reports it.
             Self::Interrupted => (

@@ -11,7 +11,7 @@ use crate::export::owned::{PAGE, SCHEMA, SUMMARY, owned};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stems::unique_stems;
 use crate::export::statistics::statistics_csv;
-use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
+use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg, reduced_csv};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
 
@@ -39,6 +39,9 @@ pub fn write_results(
     }
     if let Some(statistics) = summary.statistics.as_ref().filter(|statistics| !statistics.outputs.is_empty()) {
         files.add("statistics.csv", &statistics_csv(statistics)?)?;
+    }
+    if !summary.reduced.is_empty() {
+        files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
     }
     let mut figures = Vec::with_capacity(bounds.outputs.len());
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));

@@ -223,8 +223,6 @@ fn part(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Opti
 
 /// Two formulas that are compared.
 pub(super) struct Comparison {
-    /// What stands on the left, as it is written.
-    pub left: String,
     pub sides: [Source; 2],
     /// Whether the left side is to be the smaller one.
     pub is_upper: bool,
@@ -267,5 +265,5 @@ pub(super) fn comparison(reader: &mut Reader, node: &Node) -> Option<Comparison>
     if let (Some(first), Some(second)) = (sides[0].dimension, sides[1].dimension) {
         reader.check_fits(&node.span, second, first);
     }
-    Some(Comparison { left: text[..place].trim().to_owned(), sides, is_upper })
+    Some(Comparison { sides, is_upper })
 }

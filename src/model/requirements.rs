@@ -50,7 +50,11 @@ fn of_text(reader: &mut Reader, node: &Node, entry: &Entry) -> Option<Requiremen
         let comparison = reduced::comparison(reader, node)?;
         comparison.sides.map(Some)
     };
-    let limited = Limited { of, own: own?, limit: limit?, is_upper };
+    let (own, limit) = (own?, limit?);
+    if let (true, Some(found), Some(wanted)) = (of_reduced, limit.dimension, own.dimension) {
+        reader.check_fits(&node.span, found, wanted);
+    }
+    let limited = Limited { of, own, limit, is_upper };
     Some(required(reader, entry, text, vec![limited], (of_reduced, (0.0, f64::INFINITY))))
 }
 

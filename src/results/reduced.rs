@@ -75,3 +75,32 @@ pub struct Occurrence {
     /// Of so many.
     pub of: usize,
 }
+
+impl ReducedSummary {
+    /// Adds another piece of the box. Of several pieces together, contributions are not known.
+    pub fn add_piece(&mut self, other: &Self) {
+        for (band, more) in self.bands.iter_mut().zip(&other.bands) {
+            // NaN is passed on.
+            let worse = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+            band.lower = -worse(-band.lower, -more.lower);
+            band.upper = worse(band.upper, more.upper);
+            band.error = worse(band.error, more.error);
+            band.surrogate = worse(band.surrogate, more.surrogate);
+            band.time = worse(band.time, more.time);
+            band.unresolved |= more.unresolved;
+        }
+        self.contributions.clear();
+        self.worst = match (self.worst.take(), other.worst.clone()) {
+            (Some([a, b]), Some([c, d])) => {
+                Some([if c.value < a.value { c } else { a }, if d.value > b.value { d } else { b }])
+            }
+            (own, more) => own.or(more),
+        };
+        if let (Some(own), Some(more)) = (&mut self.occurs, other.occurs) {
+            own.samples += more.samples;
+            own.of += more.of;
+        } else {
+            self.occurs = self.occurs.or(other.occurs);
+        }
+    }
+}

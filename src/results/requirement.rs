@@ -3,15 +3,15 @@
 use serde::Serialize;
 
 /// Whether a requirement is fulfilled.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// For the whole box, the stated error included.
     Holds,
-    /// A simulated sample does not fulfil it, by more than the error of its steps.
-    Violated,
     /// Neither is known.
     Undecided,
+    /// A simulated sample does not fulfil it, by more than the error of its steps.
+    Violated,
 }
 
 impl Verdict {
@@ -96,4 +96,16 @@ pub struct LimitLine {
     pub from: f64,
     /// Until when, s.
     pub to: f64,
+}
+
+impl RequirementSummary {
+    /// Adds another piece of the box: the worse one decides.
+    pub fn add_piece(&mut self, other: &Self) {
+        let certified = self.certified && other.certified;
+        let is_worse = (other.verdict, -other.margin) > (self.verdict, -self.margin);
+        if is_worse {
+            *self = other.clone();
+        }
+        self.certified = certified;
+    }
 }

@@ -219,6 +219,12 @@ fn summary(study: &Study, ran: &[(Ran, &Piece)], bounds: &Bounds) -> Summary {
         upper: piece.domain.upper.clone(),
         until: ran.bounds.times[ran.whole - 1],
     };
+    for (ran, _) in &ran[1..] {
+        let pairs = summary.reduced.iter_mut().zip(&ran.summary.reduced);
+        pairs.for_each(|(own, other)| own.add_piece(other));
+        let pairs = summary.requirements.iter_mut().zip(&ran.summary.requirements);
+        pairs.for_each(|(own, other)| own.add_piece(other));
+    }
     summary.pieces = ran.iter().map(piece).collect();
     summary.errors = ErrorSummary::of(bounds);
     if ran.len() > 1 {

@@ -128,7 +128,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         if model.statistics.asked {
             return statistics::run(&model, description.outputs.len(), &options);
         }
-        let (bounds, summary, _) = subsystems::run(&model, &options, false)?;
+        let (bounds, summary, _) = reduced::run(&model, &options, false)?;
         Ok((bounds, summary))
     });
     Ok(reduced::shown(description, found?))
@@ -142,7 +142,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
 pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
-    let (bounds, summary, kept) = pool.install(|| subsystems::run(&model, &options, true))?;
+    let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
     let (bounds, summary) = reduced::shown(description, (bounds, summary));
     Ok((bounds, summary, kept))
 }

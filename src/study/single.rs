@@ -80,8 +80,7 @@ impl<'a> Study<'a> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        let store = OnceLock::new();
-        Study { domain: part.clone(), request, progress, simulator, time_functions, store, ..*self }
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store: OnceLock::new(), ..*self }
     }
 
     /// Rows of output that are asked for.

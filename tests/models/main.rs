@@ -33,6 +33,7 @@ mod linkages;
 mod machines;
 mod pruning;
 mod random;
+mod reduced;
 mod reproducibility;
 mod rotation;
 mod run_all;

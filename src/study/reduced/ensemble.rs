@@ -17,12 +17,12 @@ use crate::simulate::Schedule;
 /// Most numbers that are kept.
 const MOST_KEPT: usize = 1 << 24;
 
-/// A schedule: number of its steps and its longest one's bits.
-pub type Steps = (usize, u64);
+/// A schedule: number of its steps, its longest one's bits, and how many are taken for each.
+pub type Steps = (usize, u64, usize);
 
 /// The steps of a schedule.
 pub fn steps_of(schedule: &Schedule) -> Steps {
-    (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits())
+    (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits(), schedule.integration.steps())
 }
 
 /// What samples were reduced to.

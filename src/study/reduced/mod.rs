@@ -1,15 +1,19 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements.
+//! what the methods see; `verdicts` decides requirements (`found` has all of it); `refine` runs a model until all are decided.
 
 mod ensemble;
 mod expand;
+mod found;
 mod plan;
+mod refine;
 mod verdicts;
 
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
+pub(super) use found::Found;
+pub(super) use refine::run;
 
 use super::conclude::{bands, contributions};
 use super::ensemble::Progress;
@@ -22,21 +26,14 @@ use crate::methods::{
 use crate::model::ReducedOutput;
 use crate::numerics::{Range, Sample};
 use crate::results::{
-    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary,
-    RequirementSummary, WorstCase,
+    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase,
 };
 use crate::simulate::{Controller, Divided, Schedule, SimulationError};
 use ensemble::ReducedEnsemble;
 use plan::Plan;
 
-/// What was found of reduced outputs and requirements.
-#[derive(Default)]
-pub(super) struct Found {
-    pub reduced: Vec<ReducedSummary>,
-    pub requirements: Vec<RequirementSummary>,
-    /// What it took besides the samples of the outputs.
-    pub summary: Option<MethodSummary>,
-}
+/// A corner's course cuts the time instead of the nominal one where it ranges so many times as far.
+const MUCH: f64 = 4.0;
 
 /// What the methods found of each value, with what is common to all.
 struct Values<'a> {
@@ -67,12 +64,29 @@ impl Study<'_> {
         let Divided { schedule, .. } = self.divided(schedule.clone());
         let progress = Progress::new(usize::MAX, self.progress);
         let motions = self.motions(&schedule, tolerance, &progress);
+        // A deviation from what is nominal is rounding in the nominal motion: opposite corners show its course.
+        let corner = |xi: f64| self.domain.sample(&vec![xi; self.domain.dimension()]);
+        let mut samples = vec![self.domain.nominal.clone()];
+        if self.domain.dimension() > 0 {
+            samples.extend([corner(-1.0), corner(1.0)]);
+        }
         let (outputs, mut values) = (motions.outputs(), Vec::new());
         let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
-        let nominal = std::slice::from_ref(&self.domain.nominal);
-        motions.simulate(nominal, sampling, &mut |_, rows| values.extend_from_slice(rows)).map_err(simulation_error)?;
-        let times: Vec<f64> = (0..values.len() / outputs).map(|row| schedule.time(row)).collect();
-        let course = |output: usize| values.iter().skip(output).step_by(outputs).copied().collect::<Vec<f64>>();
+        motions
+            .simulate(&samples, sampling, &mut |_, rows| values.extend_from_slice(rows))
+            .map_err(simulation_error)?;
+        let stride = outputs * samples.len();
+        let times: Vec<f64> = (0..values.len() / stride).map(|row| schedule.time(row)).collect();
+        let of = |output: usize, sample: usize| -> Vec<f64> {
+            values.iter().skip(output * samples.len() + sample).step_by(stride).copied().collect()
+        };
+        let course = |output: usize| {
+            let wider = |a: Vec<f64>, b: Vec<f64>| if Range::of(&b).width() > Range::of(&a).width() { b } else { a };
+            // The nominal one, unless another moves much more.
+            let nominal = of(output, 0);
+            let widest = (1..samples.len()).map(|sample| of(output, sample)).fold(nominal.clone(), wider);
+            if Range::of(&widest).width() > MUCH * Range::of(&nominal).width() { widest } else { nominal }
+        };
         self.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
         Ok(())
     }

@@ -6,7 +6,7 @@ mod requirements;
 mod rows;
 
 use super::kept::Kept;
-use super::{Options, RunError, subsystems};
+use super::{Options, RunError, reduced, subsystems};
 use crate::methods::Method;
 use crate::model::{Description, ParameterValue};
 use crate::numerics::BandError;
@@ -21,7 +21,7 @@ use rows::Rows;
 /// # Errors
 /// As for any run. Where statistics alone fail, the summary says why.
 pub(super) fn run(description: &Description, shown: usize, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let (bounds, mut summary, kept) = subsystems::run(description, options, true)?;
+    let (bounds, mut summary, kept) = reduced::run(description, options, true)?;
     let found = match &kept {
         Some(kept) => of_run((description, shown), options, &bounds, kept),
         None => Err("there is no surrogate over the whole box".to_owned()),

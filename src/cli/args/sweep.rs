@@ -1,0 +1,44 @@
+//! The arguments of `mbint sweep`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::MOST_THREADS;
+
+#[derive(Debug, Args)]
+#[command(after_help = SWEEP_HELP)]
+pub(in crate::cli) struct SweepArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Folder for the results [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Sweep a parameter, as `l1=0.1..0.2:11`, `l1=100..200:11 mm` or `l1=0.1..0.2:11 ± 1%`, or set one, as `l2=0.3`; one or two
+    /// may be swept.
+    #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
+    pub set: Vec<String>,
+
+    /// Use this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    /// Number of threads; results do not depend on it [default: one per core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute for one value.
+    #[arg(short, long)]
+    pub yes: bool,
+}
+
+const SWEEP_HELP: &str = "\
+Runs the model for each value, and writes sweep.csv (a row for each value: bounds of every reduced
+output, margin and verdict of every requirement) and a plot sweep.NAME.svg of each reduced output.";

@@ -1,0 +1,169 @@
+//! `mbint sweep`: reduced outputs' bounds for values of one or two parameters.
+
+use super::args::SweepArgs;
+use super::console::{BOLD, Console, count, file_names};
+use super::job::{self, Settings};
+use super::run::results_of;
+use super::table::{Align, Table};
+use super::verdicts::{band, short};
+use super::{Failure, Status, interrupt, load, verdicts};
+use crate::export::{Sweep, SweepAxis, SweepPoint, prepare_folder, write_sweep};
+use crate::model::Override;
+
+/// Most values of an axis, and most runs.
+const MOST_VALUES: usize = 10_000;
+const MOST_RUNS: usize = 100_000;
+
+/// A parameter over a range: `l1=0.1..0.2:11`, perhaps with a unit and a tolerance behind it.
+struct Axis {
+    name: String,
+    values: Vec<f64>,
+    /// What stands behind: ` mm ± 1%`.
+    behind: String,
+}
+
+impl Axis {
+    /// `None` where the text has no range.
+    fn parse(text: &str) -> Result<Option<Self>, Failure> {
+        let Some((name, range)) = text.split_once('=') else { return Ok(None) };
+        let Some((lower, rest)) = range.split_once("..") else { return Ok(None) };
+        let wrong =
+            || Failure::Wrong(format!("`{text}` is not of the form `NAME=FROM..TO:VALUES`, as `l1=0.1..0.2:11`"));
+        let (upper, rest) = rest.split_once(':').ok_or_else(wrong)?;
+        let digits = rest.trim_start().find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.trim_start().len());
+        let (values, behind) = rest.trim_start().split_at(digits);
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(wrong);
+        let (lower, upper) = (number(lower)?, number(upper)?);
+        let values: usize = values.parse().map_err(|_| wrong())?;
+        if !(2..=MOST_VALUES).contains(&values) {
+            return Err(Failure::Wrong(format!("`{text}`: from 2 to {MOST_VALUES} values can be swept")));
+        }
+        let last = (values - 1) as f64;
+        // Weights, so that the ends are exact.
+        let at = |place: usize| (lower * (last - place as f64) + upper * place as f64) / last;
+        let (name, behind) = (name.trim().to_owned(), behind.trim().to_owned());
+        Ok(Some(Self { name, values: (0..values).map(at).collect(), behind }))
+    }
+
+    /// The setting of one of the values.
+    fn setting(&self, value: f64) -> String {
+        format!("{}={value:?} {}", self.name, self.behind).trim_end().to_owned()
+    }
+
+    fn heading(&self) -> SweepAxis {
+        let unit = self.behind.split('±').next().unwrap_or_default().trim().to_owned();
+        SweepAxis { name: self.name.clone(), unit, values: self.values.clone() }
+    }
+}
+
+pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Failure> {
+    let (mut axes, mut others) = (Vec::new(), Vec::new());
+    for text in &args.set {
+        match Axis::parse(text)? {
+            Some(axis) => axes.push(axis),
+            None => others.push(setting(text)?),
+        }
+    }
+    if !(1..=2).contains(&axes.len()) {
+        let message = "one parameter or two are swept: give `--set NAME=FROM..TO:VALUES` for each";
+        return Err(Failure::Wrong(message.to_owned()));
+    }
+    let runs: usize = axes.iter().map(|axis| axis.values.len()).product();
+    if runs > MOST_RUNS {
+        return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
+    }
+    let settings =
+        Settings { threads: args.threads.map(usize::from), yes: args.yes, quiet: true, ..Settings::default() };
+    let mut status = Status::Done;
+    let mut points = Vec::with_capacity(runs);
+    let mut name = String::new();
+    interrupt::listen();
+    for run in 0..runs {
+        let inner = axes.last().map_or(1, |axis| axis.values.len());
+        let place = if axes.len() == 2 { vec![run / inner, run % inner] } else { vec![run] };
+        let values: Vec<f64> = axes.iter().zip(&place).map(|(axis, &place)| axis.values[place]).collect();
+        let mut overrides = others.clone();
+        for (axis, &value) in axes.iter().zip(&values) {
+            overrides.push(setting(&axis.setting(value))?);
+        }
+        let scenes: Vec<String> = args.scene.iter().cloned().collect();
+        let loaded = load::load_all(std::slice::from_ref(&args.model), &overrides, &scenes, console)?;
+        let Some(model) = loaded.and_then(|loaded| loaded.models.into_iter().next()) else { return Ok(Status::Wrong) };
+        let Some((_, description)) = model.scenes.into_iter().next() else { return Ok(Status::Wrong) };
+        if description.reduced.is_empty() && description.requirements.is_empty() {
+            let message = "a sweep is of reduced outputs or requirements, and the model has none: add e.g. `stroke: { range: slider.x }` to `outputs`";
+            return Err(Failure::Wrong(format!("{}: {message}", args.model.display())));
+        }
+        name.clone_from(&description.name);
+        let point = match job::bounds(&description, &settings, &|| ()) {
+            Ok((_, summary)) => {
+                status = status.max(verdicts::status(&summary));
+                SweepPoint { values, summary: Some(summary) }
+            }
+            Err(Failure::Failed(message)) => {
+                status = status.max(Status::Failed);
+                console.warning(&format!(
+                    "{}: {message}",
+                    overrides.iter().map(|own| own.text.as_str()).collect::<Vec<_>>().join(", ")
+                ));
+                SweepPoint { values, summary: None }
+            }
+            Err(wrong) => return Err(wrong),
+        };
+        points.push(point);
+        if interrupt::asked() {
+            status = Status::Interrupted;
+            break;
+        }
+    }
+    let sweep = Sweep { model: name.clone(), axes: axes.iter().map(Axis::heading).collect(), points };
+    let folder = args.output.clone().unwrap_or_else(|| results_of(&name));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    let files = write_sweep(&folder, &sweep).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+    if !args.quiet {
+        let simulations = sweep.simulations();
+        let head = format!(
+            "{BOLD}{name}{BOLD:#}: {}, {}\n\n",
+            count(sweep.points.len(), "run", "runs"),
+            count(simulations, "simulation", "simulations")
+        );
+        console.print(&format!("{head}{}\n  {}: {}\n", table(&sweep), folder.display(), file_names(files.iter())))?;
+    }
+    Ok(status)
+}
+
+fn setting(text: &str) -> Result<Override, Failure> {
+    Override::parse(text).map_err(|diagnostics| Failure::Wrong(format!("--set {text}: {diagnostics}")))
+}
+
+/// Lower and upper bounds of each reduced output, and margins of requirements.
+fn table(sweep: &Sweep) -> String {
+    let mut table = Table::new([
+        ("at", Align::Left),
+        ("of", Align::Left),
+        ("from", Align::Right),
+        ("to", Align::Right),
+        ("unit", Align::Left),
+        ("verdict", Align::Left),
+    ]);
+    for point in &sweep.points {
+        let at = |(axis, value): (&SweepAxis, &f64)| {
+            format!("{}={} {}", axis.name, short(*value), axis.unit).trim_end().to_owned()
+        };
+        let mut at = sweep.axes.iter().zip(&point.values).map(at).collect::<Vec<_>>().join(", ");
+        let Some(summary) = &point.summary else {
+            table.row([at, "failed".to_owned(), String::new(), String::new(), String::new(), String::new()]);
+            continue;
+        };
+        for own in &summary.reduced {
+            let [lower, upper] = band(own).map_or([f64::NAN; 2], |band| [band.lower, band.upper]).map(short);
+            table.row([std::mem::take(&mut at), own.name.clone(), lower, upper, own.unit.clone(), String::new()]);
+        }
+        for own in &summary.requirements {
+            let verdict = own.verdict.name().to_owned();
+            let margin = format!("margin of {}", own.name);
+            table.row([std::mem::take(&mut at), margin, short(own.margin), String::new(), own.unit.clone(), verdict]);
+        }
+    }
+    table.render(2)
+}

@@ -1,0 +1,190 @@
+//! Reduced outputs and requirements of a run: tables, the command that shows a sample, exit status, JUnit file.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use super::table::{Align, Table};
+use super::{Failure, Status};
+use crate::export::{Suite, write_junit};
+use crate::model::{Override, is_standard_input, shown};
+use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, Verdict, foremost};
+
+/// Where verdicts are collected for a file.
+pub(super) struct Junit {
+    path: PathBuf,
+    suites: Mutex<Vec<Suite>>,
+}
+
+impl Junit {
+    pub fn new(path: PathBuf) -> Self {
+        Self { path, suites: Mutex::default() }
+    }
+
+    /// Takes in a model's requirements, or why there are no verdicts.
+    pub fn add(&self, model: &str, outcome: Result<&Summary, &str>) {
+        let suite = Suite {
+            model: model.to_owned(),
+            requirements: outcome.map_or_else(|_| Vec::new(), |summary| summary.requirements.clone()),
+            failure: outcome.err().map(str::to_owned),
+        };
+        self.suites.lock().unwrap_or_else(PoisonError::into_inner).push(suite);
+    }
+
+    /// Writes all of them.
+    pub fn write(&self) -> Result<(), Failure> {
+        let suites = self.suites.lock().unwrap_or_else(PoisonError::into_inner);
+        write_junit(&self.path, &suites).map_err(|error| Failure::Failed(error.to_string()))
+    }
+}
+
+/// What the requirements come to.
+pub(super) fn status(summary: &Summary) -> Status {
+    let of = |requirement: &RequirementSummary| match requirement.verdict {
+        Verdict::Holds => Status::Done,
+        Verdict::Undecided => Status::Unresolved,
+        Verdict::Violated => Status::NotMet,
+    };
+    summary.requirements.iter().map(of).max().unwrap_or(Status::Done)
+}
+
+/// Adds the command that shows each requirement's nearest sample.
+pub(super) fn add_commands(summary: &mut Summary, path: &Path, overrides: &[Override]) {
+    if is_standard_input(path) {
+        return;
+    }
+    let scene = summary.model.split_once('/').map(|(_, scene)| scene.to_owned());
+    for nearest in summary.requirements.iter_mut().filter_map(|requirement| requirement.nearest.as_mut()) {
+        let mut words = vec!["mbint".to_owned(), "run".to_owned(), quoted(&shown(path))];
+        if let Some(scene) = &scene {
+            words.extend(["--scene".to_owned(), quoted(scene)]);
+        }
+        let is_set = |name: &str| nearest.settings.iter().any(|setting| setting.split('=').next() == Some(name));
+        let others = overrides.iter().filter(|setting| !is_set(&setting.name)).map(|setting| setting.text.as_str());
+        for setting in others.chain(nearest.settings.iter().map(String::as_str)) {
+            words.extend(["--set".to_owned(), quoted(setting)]);
+        }
+        nearest.command = words.join(" ");
+    }
+}
+
+/// A word of a command line.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-./=+,:".contains(c);
+    if word.chars().all(plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+/// Six digits, without zeros at the end.
+pub(super) fn short(value: f64) -> String {
+    if value.is_nan() {
+        return "unknown".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&value.abs()) {
+        return format!("{value:.3e}");
+    }
+    let digits = format!("{value:.6}");
+    digits.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A reduced output's foremost band.
+pub(super) fn band(reduced: &ReducedSummary) -> Option<&ReducedBand> {
+    foremost(&reduced.bands, |band: &ReducedBand| !band.unresolved)
+}
+
+/// Both tables; nothing where there is nothing to show.
+pub(super) fn tables(summary: &Summary) -> String {
+    let mut text = String::new();
+    if !summary.reduced.is_empty() {
+        text += &format!("{}\n", reduced(&summary.reduced));
+    }
+    if !summary.requirements.is_empty() {
+        text += &format!("{}\n{}", requirements(&summary.requirements), notes(&summary.requirements));
+    }
+    text
+}
+
+fn reduced(all: &[ReducedSummary]) -> String {
+    let mut table = Table::new([
+        ("reduced output", Align::Left),
+        ("nominal", Align::Right),
+        ("from", Align::Right),
+        ("to", Align::Right),
+        ("error", Align::Right),
+        ("unit", Align::Left),
+        ("tolerances that matter", Align::Left),
+    ]);
+    for own in all {
+        let numbers = match band(own) {
+            Some(band) => [short(band.lower), short(band.upper), format!("{:.1e}", band.error)],
+            None => [(); 3].map(|()| "unknown".to_owned()),
+        };
+        let [lower, upper, error] = numbers;
+        let several = own.contributions.len() > 1;
+        let shares = own.contributions.iter().filter(|own| several && own.total >= 0.005).take(3);
+        let mut notes: Vec<String> =
+            shares.map(|own| format!("{} {:.0} %", own.parameter, 100.0 * own.total)).collect();
+        if let Some(occurs) = own.occurs {
+            notes.push(format!("occurs in {} of {} samples", occurs.samples, occurs.of));
+        } else if band(own).is_some_and(|band| band.unresolved) {
+            notes.push("unreliable".to_owned());
+        }
+        let unit = own.unit.clone();
+        table.row([own.name.clone(), short(own.nominal), lower, upper, error, unit, notes.join(", ")]);
+    }
+    table.render(2)
+}
+
+fn requirements(all: &[RequirementSummary]) -> String {
+    let mut table = Table::new([
+        ("requirement", Align::Left),
+        ("", Align::Left),
+        ("verdict", Align::Left),
+        ("margin", Align::Right),
+        ("error", Align::Right),
+        ("unit", Align::Left),
+        ("", Align::Right),
+    ]);
+    for own in all {
+        let certified = if own.certified { ", certified" } else { "" };
+        let percent = own.percent.filter(|percent| percent.is_finite());
+        table.row([
+            own.name.clone(),
+            own.text.clone(),
+            format!("{}{certified}", own.verdict.name()),
+            short(own.margin),
+            if own.error.is_nan() { "unknown".to_owned() } else { format!("{:.1e}", own.error) },
+            own.unit.clone(),
+            percent.map_or_else(String::new, |percent| format!("{percent:.2} %")),
+        ]);
+    }
+    table.render(2)
+}
+
+/// What shows that a requirement is violated, and what would decide it.
+fn notes(all: &[RequirementSummary]) -> String {
+    let mut text = String::new();
+    for own in all {
+        let nearest = own.nearest.as_ref();
+        match own.verdict {
+            Verdict::Holds => (),
+            Verdict::Violated => {
+                let Some(nearest) = nearest else { continue };
+                let time = nearest.time.map_or_else(String::new, |time| format!(" at {} s", short(time)));
+                let command =
+                    if nearest.command.is_empty() { nearest.settings.join(", ") } else { nearest.command.clone() };
+                let margin = match nearest.margin.is_nan() {
+                    true => "has no value".to_owned(),
+                    false => format!("by {} {}", short(-nearest.margin), own.unit).trim_end().to_owned(),
+                };
+                text += &format!("  {} is violated{time}, {margin}: {command}\n", own.name);
+            }
+            Verdict::Undecided => {
+                let decides = own.decides.as_deref().unwrap_or_default();
+                text += &format!("  {} is undecided; it takes {decides}\n", own.name);
+            }
+        }
+    }
+    if text.is_empty() { text } else { text + "\n" }
+}

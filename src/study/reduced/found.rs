@@ -1,0 +1,12 @@
+//! What was found of reduced outputs and requirements.
+
+use crate::results::{MethodSummary, ReducedSummary, RequirementSummary};
+
+/// What was found of reduced outputs and requirements.
+#[derive(Default)]
+pub struct Found {
+    pub reduced: Vec<ReducedSummary>,
+    pub requirements: Vec<RequirementSummary>,
+    /// What it took besides the samples of the outputs.
+    pub summary: Option<MethodSummary>,
+}
