@@ -43,4 +43,7 @@ mod tree;
 
 pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
-pub use system::{ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System};
+pub use system::{
+    ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System,
+    UncertainParameter,
+};

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::export::analysis::{configuration_csv, response_csv};
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{SCHEMA, SUMMARY, owned};
@@ -32,9 +33,18 @@ pub fn write_results(
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
     }
-    let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
+    let is_alone = bounds.is_of_one_configuration();
+    if is_alone {
+        let name = format!("{}.csv", bounds.analysis.name());
+        files.add(&name, &configuration_csv(&bounds.outputs)?)?;
+    }
+    if !bounds.responses.is_empty() {
+        files.add("response.csv", &response_csv(&bounds.times, &bounds.responses)?)?;
+    }
+    let plotted = if is_alone { &[][..] } else { &bounds.outputs };
+    let names = unique_stems(plotted.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
-    for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
+    for ((output, name), contributions) in plotted.iter().zip(names).zip(contributions) {
         let svg = plot_svg(&bounds.times, output)
             .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
@@ -150,6 +160,7 @@ mod tests {
             damped_mode: None,
             alpha: -0.1,
             duration: 1.0,
+            analysis: None,
             parameters: vec![],
             methods: vec![],
             errors: vec![],

@@ -1,5 +1,6 @@
 //! Bounds → files: CSV, summary and plots.
 
+mod analysis;
 mod axis;
 mod canvas;
 mod columns;

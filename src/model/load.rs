@@ -249,7 +249,12 @@ fn describe(
     requests::outputs(&mut reader, output_entries);
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     analysis::check_outputs(&mut reader, output_entries);
-    let simulation = if analysis::needs_time(&reader.model) { reader.required(&fields, "simulation") } else { fields.get("simulation") };
+    analysis::read_modes(&mut reader, &fields);
+    let simulation = if analysis::needs_time(&reader.model) {
+        reader.required(&fields, "simulation")
+    } else {
+        fields.get("simulation")
+    };
     if let Some(node) = simulation {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
@@ -261,6 +266,7 @@ fn describe(
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
+    analysis::check_bounds(&mut reader, &fields);
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }

@@ -62,7 +62,8 @@ impl RowSpace {
         }
         let mut open: Vec<usize> = (0..n).collect();
         while self.null.len() + self.basis.len() < n {
-            let longest = (0..open.len()).reduce(|a, b| if norm(&left[open[b]]) > norm(&left[open[a]]) { b } else { a });
+            let longest =
+                (0..open.len()).reduce(|a, b| if norm(&left[open[b]]) > norm(&left[open[a]]) { b } else { a });
             let Some(longest) = longest else { break };
             let mut vector = unit(open.remove(longest));
             orthogonalise(&mut vector, &self.basis, &mut []);

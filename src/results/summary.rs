@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Band, Bounds, Contribution, OutputBounds};
+use super::{AnalysisSummary, Band, Bounds, Contribution, OutputBounds};
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
@@ -41,6 +41,9 @@ pub struct Summary {
     pub alpha: f64,
     /// Length of the run, s.
     pub duration: f64,
+    /// What was done other than a motion from a given start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub analysis: Option<AnalysisSummary>,
     /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
     /// What each method took.

@@ -7,6 +7,7 @@
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
 //! panic to what panicked.
 
+mod analysis;
 mod conclude;
 mod controlled;
 mod cost;

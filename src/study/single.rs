@@ -37,10 +37,10 @@ type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
-    let has_steps = !simulator.system.analysis.is_without_steps();
+    let visits = simulator.system.analysis.visits();
     Problem {
         parameters,
-        composes: has_steps && can_compose(parameters, simulator.system.q.len()),
+        composes: !visits && can_compose(parameters, simulator.system.q.len()),
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
         tolerance: description.bounds.tolerance,
     }
@@ -224,7 +224,7 @@ impl<'a> Study<'a> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<usize>, SimulationError> {
-        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
+        if (self.interrupted)() || self.simulator.system.analysis.visits() {
             return Ok(None);
         }
         let found = caught("the search for switches", || {

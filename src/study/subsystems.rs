@@ -10,7 +10,7 @@ use super::internal::caught;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
-use super::{Options, RunError, feasible, formulation};
+use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
@@ -101,7 +101,7 @@ fn as_far_as_joints_go<T>(
 /// As for any run.
 pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
     // Stability and modes are those of the whole.
-    let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
     let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);
@@ -149,7 +149,9 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
         };
         ran.push(Done { subsystem, bounds, summary });
     }
-    Ok(Whole::of(description, reduction.left_out).merge(ran))
+    let (mut bounds, mut summary) = Whole::of(description, reduction.left_out).merge(ran);
+    analysis::arrange(description, &mut bounds, &mut summary);
+    Ok((bounds, summary))
 }
 
 /// The budget is divided evenly among the subsystems with uncertain parameters.
@@ -229,6 +231,8 @@ impl<'a> Whole<'a> {
                 .find_map(|done| Some(&done.bounds.covered).filter(|covered| !covered.is_empty()))
                 .cloned()
                 .unwrap_or_default(),
+            analysis: self.description.analysis,
+            responses: Vec::new(),
         };
         let summary = self.summary(ran, &bounds);
         (bounds, summary)

@@ -33,7 +33,8 @@ const NONNEGATIVE: &str = "minimum";
 
 /// A model stands alone, or on a robot.
 fn of_model(root: &mut Map<String, Value>) {
-    let without_time = json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
+    let without_time =
+        json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
     root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time]));
     let alone = json!({
         "required": ["bodies", "outputs"],

@@ -28,7 +28,7 @@ const BY_NAME: [(&str, &str); 5] = [
 ];
 
 /// Keys whose value in a scene stands instead of the model's.
-const WHOLE: [&str; 4] = ["description", "limits", "bounds", "analysis"];
+const WHOLE: [&str; 5] = ["description", "limits", "bounds", "analysis", "modes"];
 
 /// What says how far a parameter may be off.
 const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];

@@ -96,7 +96,9 @@ impl<'p> Configuration<'p> {
 
 /// A x, by plain sums: a product of matrices may be fused with its addition on some processors.
 pub fn times(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
-    (0..matrix.nrows()).map(|row| vector.iter().enumerate().map(|(column, x)| matrix[(row, column)] * x).sum()).collect()
+    (0..matrix.nrows())
+        .map(|row| vector.iter().enumerate().map(|(column, x)| matrix[(row, column)] * x).sum())
+        .collect()
 }
 
 /// Nᵀ A N for vectors N.

@@ -222,10 +222,10 @@ impl Balance {
         let pushed = combined(basis, &forces, n);
         let coordinate = (0..n).max_by(|&a, &b| pushed[a].abs().total_cmp(&pushed[b].abs())).unwrap_or(0);
         let small = reduced(&self.linear.stiffness, basis);
-        let yields: Vec<f64> =
-            times(&small, &forces).iter().map(|part| part.abs()).collect();
+        let yields: Vec<f64> = times(&small, &forces).iter().map(|part| part.abs()).collect();
         let largest = yields.iter().copied().fold(0.0, f64::max);
-        let is_free = largest <= NOTHING * longest_of(&self.linear.stiffness).max(1e-300) * dot(&forces, &forces).sqrt();
+        let is_free =
+            largest <= NOTHING * longest_of(&self.linear.stiffness).max(1e-300) * dot(&forces, &forces).sqrt();
         NoEquilibrium {
             coordinate,
             force: pushed.get(coordinate).map_or(0.0, |force| force / scale[coordinate]),
@@ -241,9 +241,7 @@ fn longest_of(matrix: &DMatrix<f64>) -> f64 {
 /// K⁻¹ f, and whether there is one. Forces below `nothing` push nothing where nothing is stiff.
 fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool) {
     let is_symmetric = (small - small.transpose()).iter().all(|part| part.abs() <= NOTHING * longest_of(small));
-    if !is_symmetric
-        && let Some(found) = small.clone().full_piv_lu().solve(&DVector::from_column_slice(forces))
-    {
+    if !is_symmetric && let Some(found) = small.clone().full_piv_lu().solve(&DVector::from_column_slice(forces)) {
         return (found.iter().copied().collect(), true);
     }
     let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);

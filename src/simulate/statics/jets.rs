@@ -61,7 +61,8 @@ impl Equilibrium {
     fn inverse(&self, state: &[f64], parameters: &[f64]) -> Option<DMatrix<f64>> {
         let (n, m) = (self.scale.len(), self.program.layout.lambda.len());
         let linear = self.at(state, parameters).linearise();
-        let kept: Vec<usize> = (0..n + m).filter(|&place| place < n || !self.redundant.contains(&(place - n))).collect();
+        let kept: Vec<usize> =
+            (0..n + m).filter(|&place| place < n || !self.redundant.contains(&(place - n))).collect();
         let entry = |row: usize, column: usize| match (row < n, column < n) {
             (true, true) => linear.stiffness[(row, column)],
             (false, true) => linear.jacobian[row - n][column],
