@@ -126,6 +126,7 @@ bodies: { wheel: { mass: 2, inertia: 1 } }
 joints: { axle: { revolute: [ground, wheel] } }
 effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
 outputs: { angle: wheel.angle, fy: axle.force.y }
+simulation: { duration: 1, formulation: absolute }
 ";
     let (bounds, summary) = study::run(&read(text), Options::default()).unwrap();
     assert_eq!(summary.analysis.unwrap().indifferent, ["wheel.angle"]);
@@ -172,6 +173,7 @@ joints:
 effects:
   weight: {{ gravity: {{ acceleration: [0, -9.81{}] }} }}
   pull: {{ spring_damper: {{ between: [ground.wall, plate.b], stiffness: 40, damping: 1, free_length: 0.2 }} }}
+guess: {{ plate.x: 0.5, plate.y: -0.5 }}
 outputs: {{ x: plate.x, y: plate.y, pull: pull.force }}
 ",
             if space == "spatial" { ", 0" } else { "" }
