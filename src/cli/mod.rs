@@ -21,6 +21,7 @@ mod scenes;
 mod show;
 mod snapshot;
 mod status;
+mod structure;
 mod table;
 mod tree;
 

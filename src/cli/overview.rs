@@ -205,6 +205,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
         table.render(2),
     );
+    text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     match &summary.analysis {
         Some(found) if !found.values.is_empty() => text += &analysis(found),
         found => {
@@ -256,6 +257,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            integration: None,
             alpha: -0.1,
             duration: 2.0,
             analysis: None,
@@ -273,6 +275,8 @@ mod tests {
             }],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,

@@ -3,6 +3,7 @@
 mod analysis;
 mod body;
 mod index;
+mod reduced;
 mod robot;
 mod simulation;
 mod start;
@@ -16,8 +17,9 @@ use crate::methods::BoundsRequest;
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
+pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
-pub use simulation::{Formulation, Simulation, Stepping};
+pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
@@ -56,6 +58,10 @@ pub struct Description {
     pub guess: Vec<StartValue>,
     /// What is observed.
     pub outputs: Vec<Output>,
+    /// What is observed as one number a motion.
+    pub reduced: Vec<ReducedOutput>,
+    /// What is required of outputs.
+    pub requirements: Vec<Requirement>,
     /// How time is stepped.
     pub simulation: Simulation,
     /// Which bounds are asked for.
@@ -168,12 +174,16 @@ impl Description {
             initial: Vec::new(),
             guess: Vec::new(),
             outputs: Vec::new(),
+            reduced: Vec::new(),
+            requirements: Vec::new(),
             simulation: Simulation {
                 duration: 1.0,
                 stepping: Stepping::Fixed(1e-3),
                 alpha: -0.1,
                 output_step: 0.01,
                 formulation: Formulation::Auto,
+                scheme: SchemeChoice::Auto,
+                extrapolation: None,
             },
             bounds: BoundsRequest::default(),
             places: Places::default(),

@@ -9,7 +9,7 @@ use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
-use super::{analysis, bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
+use super::{analysis, bodies, bounds, effects, joints, parameters, requests, requirements, space, tables, teeth};
 use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
@@ -221,6 +221,7 @@ fn describe(
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
     let output_entries = section(&mut reader, fields.get("outputs"), "outputs");
+    let requirement_entries = section(&mut reader, fields.get("requirements"), "requirements");
     analysis::read(&mut reader, &fields);
     let initial_entries = section(&mut reader, analysis::values_of_start(&fields), "start values");
     let guess_entries = section(&mut reader, fields.get("guess"), "start values");
@@ -259,6 +260,7 @@ fn describe(
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
     analysis::fit_time(&mut reader.model);
+    requirements::read(&mut reader, requirement_entries);
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }
@@ -266,7 +268,7 @@ fn describe(
     if let Some(bounds) = bounds::read(&mut reader, bounds_section) {
         reader.model.bounds = bounds;
     }
-    analysis::check_bounds(&mut reader, &fields);
+    analysis::check_requests(&mut reader, &fields);
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }

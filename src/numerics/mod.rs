@@ -37,6 +37,7 @@ mod sparse_transform;
 mod surrogate;
 mod taylor;
 mod tensor;
+mod time_shift;
 
 pub use decay::truncation;
 pub use domain::{ParameterBox, Sample};
@@ -58,3 +59,4 @@ pub use sparse_basis::{SparseBasis, SparseWork};
 pub use sparse_grid::SparseGrid;
 pub use surrogate::{Surrogate, SurrogateWork};
 pub use taylor::TaylorRange;
+pub use time_shift::{TimeShift, Turning};

@@ -30,10 +30,10 @@ mod unmet_switch;
 mod visit;
 
 pub use closure::{Closure, Points, choose_independent};
-pub use control::{Controller, Divided, Schedule, ToleranceSchedule, schedule_for_tolerance};
+pub use control::{Controller, Divided, Integration, Schedule, ToleranceSchedule, schedule_for_tolerance};
 pub use diagnostics::{OpenConstraint, SingularPass};
 pub use enclosure::{Certifier, Enclosure, EnclosureError};
-pub use ensemble::{EnsembleRun, JetRun, Observed, Stop};
+pub use ensemble::{Accumulation, Channel, EnsembleRun, ExtrapolatedJets, JetRun, Observed, SampleRun, Stop};
 pub use error::SimulationError;
 pub use modes::{ExcitedMode, excited_modes};
 pub use simulator::{Assembled, Simulator};

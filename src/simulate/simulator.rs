@@ -163,6 +163,8 @@ pub struct Simulator {
     pub vibrations: Option<Arc<Vibrations>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
+    /// Compiled where rows are closed.
+    free_closure: OnceLock<Result<StartProgram, SimulationError>>,
 }
 
 impl Simulator {
@@ -185,8 +187,19 @@ impl Simulator {
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;
         system.graph.limit(None);
-        let switches = OnceLock::new();
-        Ok(Self { system, start, program, nominal, mobility, undetermined, shared, equilibrium, vibrations, switches })
+        Ok(Self {
+            system,
+            start,
+            program,
+            nominal,
+            mobility,
+            undetermined,
+            shared,
+            equilibrium,
+            vibrations,
+            switches: OnceLock::new(),
+            free_closure: OnceLock::new(),
+        })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -300,6 +313,23 @@ impl Simulator {
     /// Whether rows of output make their velocities consistent where steps are controlled.
     pub(super) fn projects_row_velocities(&self) -> bool {
         !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// The start's tapes with nothing given: they move any motion onto the constraints.
+    ///
+    /// # Errors
+    /// Where its equations have no factors.
+    pub(super) fn free_closure(&self) -> Result<&StartProgram, SimulationError> {
+        let compiled = self.free_closure.get_or_init(|| {
+            let mut system = self.system.clone();
+            let n = system.q.len();
+            system.start.position = vec![None; n];
+            system.start.velocity = vec![None; n];
+            system.start.conditions.clear();
+            compile_start(&system, &self.mobility.redundant, &self.nominal)
+                .map_err(|none| no_factors(&self.system, &none))
+        });
+        compiled.as_ref().map_err(Clone::clone)
     }
 
     /// Where the equations switch, if they do.

@@ -97,6 +97,10 @@ fn of_simulation(simulation: &mut Value) {
     insert(alpha, "exclusiveMaximum", json!(0));
     insert(alpha, "default", json!(-0.1));
     insert(&mut simulation["properties"]["formulation"], "default", json!("auto"));
+    insert(&mut simulation["properties"]["scheme"], "default", json!("auto"));
+    insert(&mut simulation["properties"]["extrapolation"], "minimum", json!(2));
+    insert(&mut simulation["properties"]["extrapolation"], "maximum", json!(4));
+    insert(&mut simulation["properties"]["extrapolation"], "examples", json!([3]));
     for (key, example) in [("duration", json!("2 s")), ("step", json!(1e-3)), ("tolerance", json!(1e-6))] {
         insert(&mut simulation["properties"][key], "examples", json!([example]));
     }

@@ -37,6 +37,14 @@ schema_only! {
     }
 
     #[schemars(rename_all = "lowercase", inline)]
+    pub enum SchemeName {
+        /// Under a tolerance whichever reaches it with the least work; else HHT-I3.
+        Auto,
+        /// HHT-I3.
+        Hht,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
     pub enum BaseName {
         /// The root link is part of the ground.
         Fixed,

@@ -19,12 +19,13 @@ const PARTS: &[&str] = &["effects", "joints"];
 const OUTPUTS: &[&str] = &["outputs"];
 
 /// Sections of which a scene's entries replace the model's of the same name, or come on top.
-const BY_NAME: [(&str, &str); 5] = [
+const BY_NAME: [(&str, &str); 6] = [
     ("joints", "joints"),
     ("effects", "effects"),
     ("initial", "start values"),
     ("guess", "start values"),
     ("outputs", "outputs"),
+    ("requirements", "requirements"),
 ];
 
 /// Keys whose value in a scene stands instead of the model's.
