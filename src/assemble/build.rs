@@ -87,7 +87,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     });
     let coordinates = coordinates.collect();
     let formulation = FormulationInfo { joint: !m.tree.is_absolute(), why: "the model asks for them".to_owned() };
-    let analysis = description.analysis.clone();
+    let (analysis, modes) = (description.analysis, description.modes.clone());
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let [lambda, constraint] = [&constraints.lambda, &constraints.values].map(|list| Scalar::exprs(list));
@@ -121,6 +121,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             length,
             start,
             analysis,
+            modes,
             effects,
             left_out,
             space,

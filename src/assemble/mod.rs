@@ -47,4 +47,5 @@ pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elim
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System,
+    UncertainParameter,
 };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use symdiff::{Expr, Graph};
 
 use crate::grammar::quantity::Dimension;
-use crate::model::{Analysis, Space};
+use crate::model::{Analysis, ModesRequest, Space};
 
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
@@ -50,6 +50,8 @@ pub struct System {
     pub start: Start,
     /// What is done with it.
     pub analysis: Analysis,
+    /// What is asked of small vibrations.
+    pub modes: ModesRequest,
     /// What each effect came to, in file order.
     pub effects: Vec<EffectInfo>,
     /// What the model says and no equation holds.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::console::{BOLD, coordinates, count, file_names};
 use super::table::{Align, Table};
 use super::verdicts;
-use crate::results::{Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
+use crate::results::{AnalysisSummary, Bounds, ContributionSummary, ErrorSummary, ParameterSummary, Summary};
 
 /// The largest width and error of each band.
 fn errors(errors: &[ErrorSummary]) -> String {
@@ -32,6 +32,41 @@ fn errors(errors: &[ErrorSummary]) -> String {
         n if n > MOST => format!("{}  … and {} more in summary.json\n\n", table.render(2), n - MOST),
         _ => format!("{}\n", table.render(2)),
     }
+}
+
+/// What an analysis of one configuration found, and what an equilibrium is.
+fn analysis(analysis: &AnalysisSummary) -> String {
+    /// Rows that fit a screen.
+    const MOST: usize = 30;
+    let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.5e}") };
+    let mut table = Table::new([
+        ("output", Align::Left),
+        ("unit", Align::Left),
+        ("nominal", Align::Right),
+        ("lower", Align::Right),
+        ("upper", Align::Right),
+        ("error", Align::Right),
+    ]);
+    for value in analysis.values.iter().take(MOST) {
+        let bounds = value.bounds.first();
+        let [lower, upper] = [bounds.map(|b| b.1), bounds.map(|b| b.2)].map(|end| end.map_or_else(String::new, number));
+        let error =
+            bounds.map_or_else(String::new, |b| if b.3.is_nan() { number(b.3) } else { format!("{:.1e}", b.3) });
+        table.row([value.output.clone(), value.unit.clone(), number(value.nominal), lower, upper, error]);
+    }
+    let mut text = if analysis.values.is_empty() { String::new() } else { format!("{}\n", table.render(2)) };
+    if let Some(smallest) = analysis.stability {
+        let is = match smallest {
+            _ if !analysis.indifferent.is_empty() => {
+                format!("indifferent: {} may have other values as well", named(&analysis.indifferent))
+            }
+            smallest if smallest < 0.0 => format!("unstable: it is left like exp({:.3e} t / s)", (-smallest).sqrt()),
+            f64::INFINITY => "held by constraints alone: nothing can move".to_owned(),
+            smallest => format!("stable: the slowest motion about it has {:.3e} rad/s", smallest.sqrt()),
+        };
+        text += &format!("  the nominal equilibrium is {is}\n\n");
+    }
+    text
 }
 
 /// The three parameters that contribute most to each output.
@@ -184,7 +219,13 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         table.render(2),
     );
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
-    text += &errors(&summary.errors);
+    match &summary.analysis {
+        Some(found) if !found.values.is_empty() => text += &analysis(found),
+        found => {
+            text += &errors(&summary.errors);
+            text += &found.as_ref().map_or_else(String::new, analysis);
+        }
+    }
     text += &contributions(&summary.contributions);
     text += &verdicts::tables(summary);
     text += &super::statistics::statistics(summary);
@@ -235,6 +276,7 @@ mod tests {
             integration: None,
             alpha: -0.1,
             duration: 2.0,
+            analysis: None,
             parameters: vec![],
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
             errors: vec![ErrorSummary {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::export::analysis::{configuration_csv, response_csv};
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
@@ -43,10 +44,19 @@ pub fn write_results(
     if !summary.reduced.is_empty() {
         files.add("reduced.csv", &reduced_csv(&summary.reduced)?)?;
     }
+    let is_alone = bounds.is_of_one_configuration();
+    if is_alone {
+        let name = format!("{}.csv", bounds.analysis.name());
+        files.add(&name, &configuration_csv(&bounds.outputs)?)?;
+    }
+    if !bounds.responses.is_empty() {
+        files.add("response.csv", &response_csv(&bounds.times, &bounds.responses)?)?;
+    }
     let mut figures = Vec::with_capacity(bounds.outputs.len());
-    let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
+    let plotted = if is_alone { &[][..] } else { &bounds.outputs };
+    let names = unique_stems(plotted.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
-    for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
+    for ((output, name), contributions) in plotted.iter().zip(names).zip(contributions) {
         let caption = Caption { model: &summary.model, prefix: "figure" };
         let noise = noise(bounds, output);
         let svg = plot_svg(caption, &bounds.times, output, noise, &summary.requirements)?;
@@ -151,6 +161,7 @@ mod tests {
             integration: None,
             alpha: -0.1,
             duration: 1.0,
+            analysis: None,
             parameters: vec![],
             methods: vec![],
             errors: vec![],

@@ -1,5 +1,6 @@
 //! Bounds → files: CSV, summary and plots.
 
+mod analysis;
 mod columns;
 mod contributions;
 mod cost;

@@ -33,6 +33,8 @@ impl Dimension {
     pub const MASS: Self = Self::of(0, 1, 0, 0);
     /// s
     pub const TIME: Self = Self::of(0, 0, 1, 0);
+    /// 1/s
+    pub const FREQUENCY: Self = Self::of(0, 0, -1, 0);
     /// rad
     pub const ANGLE: Self = Self::of(0, 0, 0, 1);
     /// m/s

@@ -1,29 +1,51 @@
 //! `analysis:`, `initial: equilibrium`, and what cannot be asked then.
 
-use super::description::{Analysis, Description, Stepping};
+use super::description::{Analysis, Description, Formulation, LinearisedAt, ModesRequest, ResponseRequest, Stepping};
+use super::file;
 use crate::grammar::Symbol;
+use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
-use crate::syntax::suggest::clip;
-use crate::syntax::yaml::{Entry, Node};
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
 
-const ANALYSES: [(&str, Analysis); 3] =
-    [("motion", Analysis::Motion), ("statics", Analysis::Statics), ("kinematics", Analysis::Kinematics)];
+const ANALYSES: [(&str, Analysis); 4] = [
+    ("motion", Analysis::Motion),
+    ("statics", Analysis::Statics),
+    ("kinematics", Analysis::Kinematics),
+    ("modes", Analysis::Modes(LinearisedAt::Start)),
+];
+
+const PLACES: [(&str, LinearisedAt); 3] =
+    [("start", LinearisedAt::Start), ("equilibrium", LinearisedAt::Equilibrium), ("motion", LinearisedAt::Motion)];
+
+/// Modes that are told where the model does not say how many.
+const MODES: usize = 6;
+
+/// Frequencies of a response where the model does not say how many.
+const FREQUENCIES: usize = 60;
+
+/// Most frequencies of a response.
+const MOST_FREQUENCIES: usize = 2000;
 
 /// The word for a start at rest where forces are in equilibrium.
 const EQUILIBRIUM: &str = "equilibrium";
 
 /// Reads what is done with the model, and whether it starts at an equilibrium.
 pub fn read(reader: &mut Reader, fields: &Fields) {
-    let words = ANALYSES.map(|(word, _)| (word, word));
-    if let Some(word) = fields.get("analysis").and_then(|node| reader.choice(node, &words)) {
-        let found = ANALYSES.into_iter().find(|(known, _)| *known == word);
-        reader.model.analysis = found.map(|(_, analysis)| analysis).unwrap_or_default();
+    if let Some(analysis) = fields.get("analysis").and_then(|node| reader.choice(node, &ANALYSES)) {
+        reader.model.analysis = analysis;
     }
-    let analysis = reader.model.analysis.clone();
+    let at = section_of_modes(reader, fields).and_then(|fields| fields.get("at"));
+    if let (Some(node), Analysis::Modes(place)) = (at, &mut reader.model.analysis.clone()) {
+        *place = reader.choice(node, &PLACES).unwrap_or_default();
+        reader.model.analysis = Analysis::Modes(*place);
+    }
+    let analysis = reader.model.analysis;
+    let at_equilibrium = matches!(analysis, Analysis::Statics | Analysis::Modes(LinearisedAt::Equilibrium));
     let initial = fields.get("initial").filter(|node| !node.is_null());
     let word = initial.and_then(Node::scalar);
-    reader.model.starts_at_equilibrium = analysis == Analysis::Statics || word.is_some();
+    reader.model.starts_at_equilibrium = at_equilibrium || word.is_some();
     let Some(node) = initial else { return };
     match (word, &analysis) {
         (Some(word), Analysis::Kinematics) if word.text == EQUILIBRIUM => {
@@ -34,9 +56,9 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
             let message = format!("`initial` has values by name, or is `{EQUILIBRIUM}`, but is `{}`", clip(&word.text));
             reader.error(node.span.clone(), message, format!("write `initial: {EQUILIBRIUM}`"));
         }
-        (None, Analysis::Statics) => {
+        (None, _) if at_equilibrium => {
             let help = "`guess` says near where to look for the equilibrium".to_owned();
-            reader.error(fields.key_span("initial"), "in statics no position is given: forces decide it", help);
+            reader.error(fields.key_span("initial"), "at an equilibrium no position is given: forces decide it", help);
         }
         (None, Analysis::Kinematics) => {
             let help = "`guess` says which of several positions is meant".to_owned();
@@ -46,6 +68,90 @@ pub fn read(reader: &mut Reader, fields: &Fields) {
     }
 }
 
+/// The keys of `modes`; reports the section where it is out of place.
+fn section_of_modes<'n>(reader: &mut Reader, fields: &Fields<'n>) -> Option<Fields<'n>> {
+    let node = fields.get("modes")?;
+    if !matches!(reader.model.analysis, Analysis::Modes(_)) {
+        let help = "write `analysis: modes`, or leave it out".to_owned();
+        reader.error(fields.key_span("modes"), "`modes` belongs to `analysis: modes`", help);
+        return None;
+    }
+    reader.fields::<file::Modes>(node, fields.key_span("modes"))
+}
+
+/// Reads what is asked of small vibrations, when outputs are known.
+pub fn read_modes(reader: &mut Reader, fields: &Fields) {
+    if !matches!(reader.model.analysis, Analysis::Modes(_)) {
+        return;
+    }
+    let mut request = ModesRequest { number: MODES, responses: Vec::new() };
+    // What is wrong with the section itself has been reported.
+    let node = fields.get("modes");
+    let known = node.and_then(|node| match &node.value {
+        Value::Mapping(entries) => Some(entries),
+        _ => None,
+    });
+    let find = |key: &str| known.into_iter().flatten().find(|entry| entry.key == key);
+    if let Some(entry) = find("number") {
+        request.number = reader.count(&entry.value, 1, 1000).unwrap_or(MODES);
+    }
+    if let Some(entry) = find("responses") {
+        let entries = reader.entries(&entry.value, "responses");
+        request.responses = entries.iter().filter_map(|entry| response(reader, entry)).collect();
+    }
+    reader.model.modes = request;
+}
+
+fn response(reader: &mut Reader, entry: &Entry) -> Option<ResponseRequest> {
+    reader.name(entry, "a response");
+    let fields = reader.fields::<file::Response>(&entry.value, entry.key_span.clone())?;
+    let [load, output, from, to] = ["load", "output", "from", "to"].map(|key| reader.required(&fields, key));
+    let load = load.and_then(|node| {
+        let (name, dimension) = known_output(reader, node)?;
+        if !matches!(dimension, Some(Dimension::LENGTH | Dimension::ANGLE)) {
+            let message = format!("a load acts along a length or an angle, and `{}` is neither", clip(&name));
+            reader.error(node.span.clone(), message, "name an output such as `tip: rod.B.y`".to_owned());
+            return None;
+        }
+        Some(name)
+    });
+    let output = output.and_then(|node| known_output(reader, node));
+    let [from, to] = [from, to].map(|node| {
+        let node = node?;
+        let value = reader.number(node, Dimension::FREQUENCY)?;
+        if value <= 0.0 {
+            reader.error(node.span.clone(), format!("a frequency is positive, but this is {value} Hz"), None);
+        }
+        Some(value).filter(|value| *value > 0.0)
+    });
+    let points = match fields.get("points") {
+        Some(node) => reader.count(node, 2, MOST_FREQUENCIES)?,
+        None => FREQUENCIES,
+    };
+    let (from, to) = (from?, to?);
+    if from >= to {
+        let message = format!("frequencies from {from} Hz to {to} Hz are none");
+        reader.error(fields.key_span("to"), message, "`to` is larger than `from`".to_owned());
+        return None;
+    }
+    let factor = symdiff::math::exp(std::f64::consts::LN_2 * symdiff::math::log2(to / from) / (points - 1) as f64);
+    let mut frequencies: Vec<f64> = std::iter::successors(Some(from), |f| Some(f * factor)).take(points).collect();
+    frequencies[points - 1] = to;
+    Some(ResponseRequest { name: entry.key.clone(), load: load?, output: output?.0, frequencies })
+}
+
+/// An output that is named, with its dimension.
+fn known_output(reader: &mut Reader, node: &Node) -> Option<(String, Option<Dimension>)> {
+    let name = reader.scalar(node, "the name of an output")?.text.clone();
+    let found = reader.model.outputs.iter().find(|output| output.name == name);
+    if let Some(output) = found {
+        return Some((name, output.dimension));
+    }
+    let help = suggest::help(&name, "outputs", reader.model.outputs.iter().map(|output| output.name.as_str()));
+    reader.error(node.span.clone(), format!("unknown output `{}`", clip(&name)), help);
+    None
+}
+
 /// The values by name of `initial`, where it has some.
 pub fn values_of_start<'n>(fields: &Fields<'n>) -> Option<&'n Node> {
     fields.get("initial").filter(|node| node.scalar().is_none_or(|scalar| scalar.is_null()))
@@ -53,18 +159,40 @@ pub fn values_of_start<'n>(fields: &Fields<'n>) -> Option<&'n Node> {
 
 /// Whether `simulation` has to say how long.
 pub fn needs_time(model: &Description) -> bool {
-    matches!(model.analysis, Analysis::Motion | Analysis::Kinematics)
+    use LinearisedAt::{Equilibrium, Start};
+    !matches!(model.analysis, Analysis::Statics | Analysis::Modes(Start | Equilibrium))
 }
 
 /// Without steps, rows are all that there is of the time; statics has one.
 pub fn fit_time(model: &mut Description) {
     let simulation = &mut model.simulation;
+    // Away from an equilibrium a stiffness depends on the coordinates.
+    if matches!(model.analysis, Analysis::Modes(_)) && simulation.formulation == Formulation::Auto {
+        simulation.formulation = Formulation::Absolute;
+    }
     match model.analysis {
-        Analysis::Motion => return,
+        Analysis::Motion | Analysis::Modes(LinearisedAt::Motion) => return,
         Analysis::Kinematics => {}
-        Analysis::Statics | Analysis::Modes => (simulation.duration, simulation.output_step) = (0.0, 1.0),
+        Analysis::Statics | Analysis::Modes(_) => (simulation.duration, simulation.output_step) = (0.0, 1e-3),
     }
     simulation.stepping = Stepping::Fixed(simulation.output_step);
+}
+
+/// Reports what an analysis does not have: reduced outputs but of a motion, and Taylor bounds of modes.
+pub fn check_requests(reader: &mut Reader, fields: &Fields) {
+    let analysis = reader.model.analysis;
+    let message = || format!("it is taken from the steps of a motion, and `analysis: {}` has none", analysis.name());
+    let help = "with `analysis: motion` it can be asked for";
+    if analysis != Analysis::Motion && !reader.model.requirements.is_empty() {
+        reader.error(fields.key_span("requirements"), format!("a requirement is refused: {}", message()), help.to_owned());
+    } else if analysis != Analysis::Motion && !reader.model.reduced.is_empty() {
+        reader.error(fields.key_span("outputs"), format!("a reduced output is refused: {}", message()), help.to_owned());
+    }
+    if matches!(reader.model.analysis, Analysis::Modes(_)) && reader.model.bounds.taylor.is_some() {
+        let message = "modes have no Taylor bounds: which eigenvalue is which may change over the box";
+        let help = "ask for `chebyshev` or `scan`".to_owned();
+        reader.error(fields.key_span("bounds"), message, help);
+    }
 }
 
 /// Reports outputs that kinematics cannot have: it knows no forces, and bodies may have no masses.

@@ -18,7 +18,7 @@ use crate::elements::effects::EffectKind;
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
-pub use analysis::Analysis;
+pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
@@ -53,6 +53,8 @@ pub struct Description {
     pub effects: Vec<Effect>,
     /// What is done with it.
     pub analysis: Analysis,
+    /// What is asked of small vibrations.
+    pub modes: ModesRequest,
     /// Whether the start is an equilibrium, near where assembly begins to look.
     pub starts_at_equilibrium: bool,
     /// Coordinates and velocities that are kept at the start, with their values.
@@ -176,6 +178,7 @@ impl Description {
             joints: Vec::new(),
             effects: Vec::new(),
             analysis: Analysis::Motion,
+            modes: ModesRequest::default(),
             starts_at_equilibrium: false,
             initial: Vec::new(),
             guess: Vec::new(),

@@ -252,6 +252,7 @@ fn describe(
     requests::outputs(&mut reader, output_entries);
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     analysis::check_outputs(&mut reader, output_entries);
+    analysis::read_modes(&mut reader, &fields);
     let simulation = if analysis::needs_time(&reader.model) {
         reader.required(&fields, "simulation")
     } else {
@@ -271,6 +272,7 @@ fn describe(
     }
     let section = fields.get("statistics").map(|node| (node, fields.key_span("statistics")));
     statistics::read(&mut reader, section);
+    analysis::check_requests(&mut reader, &fields);
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }

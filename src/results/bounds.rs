@@ -1,7 +1,9 @@
 //! What a run yields: bounds of every output over time.
 
 use crate::grammar::display_unit::DisplayUnit;
+use super::analysis::ResponsePoint;
 use crate::methods::Method;
+use crate::model::Analysis;
 use crate::numerics::BandError;
 
 /// Bounds of every output of a model at the output times.
@@ -15,6 +17,17 @@ pub struct Bounds {
     pub contributions: Vec<Vec<Contribution>>,
     /// Share of the box that the bounds are of, in each row; empty where they are of all of it.
     pub covered: Vec<f64>,
+    /// What was done with the mechanism.
+    pub analysis: Analysis,
+    /// Frequency responses, frequency by frequency.
+    pub responses: Vec<ResponsePoint>,
+}
+
+impl Bounds {
+    /// Whether there is one configuration, not many over time.
+    pub fn is_of_one_configuration(&self) -> bool {
+        self.analysis.visits() && self.times.len() == 1
+    }
 }
 
 /// A parameter's part in the spread of an output over the times; NaN where it is not known.

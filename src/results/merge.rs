@@ -102,6 +102,8 @@ impl Bounds {
             outputs: longest.bounds.outputs.iter().enumerate().map(output).collect(),
             contributions: if pieces.len() == 1 { longest.bounds.contributions.clone() } else { Vec::new() },
             covered: (0..rows).map(|row| reach(row).map(|piece| piece.share).sum()).collect(),
+            analysis: longest.bounds.analysis,
+            responses: Vec::new(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a run yields, as data only.
 
+mod analysis;
 mod bounds;
 mod cost;
 mod decisions;
@@ -17,6 +18,7 @@ mod structure;
 mod summary;
 
 pub use crate::methods::Method;
+pub use analysis::{AnalysisSummary, ResponsePoint, ValueSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, foremost};
 #[cfg(test)]
 pub(crate) use cost::tests as cost_tests;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::statistics::StatisticsResult;
-use super::{Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
+use super::{AnalysisSummary, Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
 use crate::grammar::display_unit::DisplayUnit;
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
@@ -49,6 +49,9 @@ pub struct Summary {
     pub alpha: f64,
     /// Length of the run, s.
     pub duration: f64,
+    /// What was done other than a motion from a given start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub analysis: Option<AnalysisSummary>,
     /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
     /// What each method took.

@@ -20,6 +20,8 @@ mod enclosure;
 mod ensemble;
 mod error;
 mod explicit;
+mod further;
+mod modal;
 mod modes;
 mod sample_run;
 mod simulator;

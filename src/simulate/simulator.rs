@@ -8,11 +8,12 @@ use symdiff::{Expr, Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
+use super::further::further_outputs;
+use super::modal::Vibrations;
 use super::start::{
     Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
 };
 use super::statics::Equilibrium;
-use super::visit::further_outputs;
 use crate::assemble::System;
 use crate::compile::{
     Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
@@ -44,6 +45,8 @@ pub struct Assembled {
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.
     pub equilibrium: Option<Arc<Equilibrium>>,
+    /// Where small vibrations are asked for.
+    pub vibrations: Option<Arc<Vibrations>>,
 }
 
 impl Assembled {
@@ -57,7 +60,6 @@ impl Assembled {
         h: f64,
         operations: Option<usize>,
     ) -> Result<Self, SimulationError> {
-        further_outputs(&mut system);
         system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
@@ -86,7 +88,8 @@ impl Assembled {
         if let Some(error) = no_number(&nominal) {
             return Err(error);
         }
-        let equilibrium = system.start.at_equilibrium.then(|| Arc::new(Equilibrium::new(&system, &mobility.redundant)));
+        let mut equilibrium =
+            system.start.at_equilibrium.then(|| Arc::new(Equilibrium::new(&system, &mobility.redundant)));
         if let Some(equilibrium) = &equilibrium {
             let found = equilibrium.find(&nominal, &parameters);
             nominal = found.map_err(|none| no_equilibrium(&system, &none, &parameters))?;
@@ -111,11 +114,17 @@ impl Assembled {
             }
         }
         let shared = shared_coordinates(&system, &start, &nominal);
+        further_outputs(&mut system, mobility.degrees_of_freedom);
+        let vibrations = matches!(system.analysis, Analysis::Modes(_))
+            .then(|| Arc::new(Vibrations::new(&system, &mobility.redundant, mobility.degrees_of_freedom)));
+        if let (Some(equilibrium), Some(_)) = (&mut equilibrium, system.analysis.is_without_steps().then_some(())) {
+            *equilibrium = Arc::new(Equilibrium::new(&system, &mobility.redundant));
+        }
         if system.analysis == Analysis::Kinematics && mobility.degrees_of_freedom > 0 {
             return Err(not_driven(&system, &start, &nominal));
         }
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
-        Ok(Self { system, start, nominal, mobility, undetermined, shared, equilibrium })
+        Ok(Self { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations })
     }
 
     /// Some outputs in the nominal state, with these parameters in their formulas.
@@ -150,6 +159,8 @@ pub struct Simulator {
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.
     pub equilibrium: Option<Arc<Equilibrium>>,
+    /// Where small vibrations are asked for.
+    pub vibrations: Option<Arc<Vibrations>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
     /// Compiled where rows are closed.
@@ -170,7 +181,7 @@ impl Simulator {
     /// # Errors
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
-        let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium } =
+        let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations } =
             Assembled::within(system, scheme, h, operations)?;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
@@ -185,6 +196,7 @@ impl Simulator {
             undetermined,
             shared,
             equilibrium,
+            vibrations,
             switches: OnceLock::new(),
             free_closure: OnceLock::new(),
         })
@@ -243,7 +255,7 @@ impl Simulator {
     }
 
     /// A tile of samples, each at its equilibrium.
-    fn at_equilibria(
+    pub(super) fn at_equilibria(
         &self,
         equilibrium: &Equilibrium,
         samples: &[Sample],

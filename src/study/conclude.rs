@@ -43,6 +43,8 @@ impl Study<'_> {
             times: (0..rows).map(|row| results.schedule.time(row)).collect(),
             outputs: outputs.collect(),
             covered: Vec::new(),
+            analysis: study.simulator.system.analysis,
+            responses: Vec::new(),
         };
         let notes = || results.outcomes().find_map(|outcome| outcome.result.note.clone());
         let interrupted = || (study.interrupted)().then(|| INTERRUPTED.to_owned());
@@ -195,6 +197,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
+        analysis: study.analysis_summary(),
         parameters: system
             .parameters
             .iter()

@@ -54,7 +54,7 @@ pub(super) struct Motions<'a> {
     pub(super) domain: &'a ParameterBox,
     pub(super) schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
-    tolerance: Option<Controller>,
+    pub(super) tolerance: Option<Controller>,
     pub(super) progress: &'a Progress<'a>,
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
@@ -107,7 +107,7 @@ impl<'a> Motions<'a> {
     pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
-        if self.simulator.system.analysis.is_without_steps() {
+        if self.simulator.system.analysis.visits() {
             let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
             let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
                 for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
@@ -289,7 +289,7 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        if self.simulator.system.analysis.is_without_steps() {
+        if self.simulator.system.analysis.visits() {
             return Ok(self.visit(samples, sampling, reduce)?);
         }
         let mut run = self.start(samples)?;
@@ -300,7 +300,7 @@ impl Ensemble for Motions<'_> {
         let parameters = 0..self.domain.dimension();
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
-        if self.simulator.system.analysis.is_without_steps() {
+        if self.simulator.system.analysis.visits() {
             return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
         }
         let box_of_jet = (&center[..], &half_widths[..]);
@@ -324,7 +324,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {
-        if self.simulator.system.analysis.is_without_steps() {
+        if self.simulator.system.analysis.visits() {
             return Some(format!("`analysis: {}`", self.simulator.system.analysis.name()));
         }
         if self.simulator.equilibrium.is_some() {
@@ -362,7 +362,7 @@ impl Ensemble for Motions<'_> {
 
     fn scales(&self) -> &[f64] {
         // Nothing is composed from coordinates then.
-        if self.simulator.system.analysis.is_without_steps() {
+        if self.simulator.system.analysis.visits() {
             return &[];
         }
         &self.simulator.program.scale

@@ -94,9 +94,9 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         return within_budget(description, MOST_TO_CHECK, &of_system);
     }
     if description.bodies.len() <= FEW_BODIES {
-        let Simulator { system, start, nominal, mobility, undetermined, shared, equilibrium, .. } =
+        let Simulator { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations, .. } =
             compiled(description)?;
-        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium });
+        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations });
     }
     match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
         // Shallow trees are short in joint coordinates.

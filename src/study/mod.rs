@@ -8,6 +8,7 @@
 //! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for whoever
 //! evaluates them after the run, as `statistics` does.
 
+mod analysis;
 mod conclude;
 mod controlled;
 mod cost;

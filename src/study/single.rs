@@ -38,10 +38,10 @@ pub(super) struct Study<'a> {
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
-    let has_steps = !simulator.system.analysis.is_without_steps();
+    let visits = simulator.system.analysis.visits();
     Problem {
         parameters,
-        composes: has_steps && can_compose(parameters, simulator.system.q.len()),
+        composes: !visits && can_compose(parameters, simulator.system.q.len()),
         has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
             && description.simulation.extrapolation.is_none()
             && description.simulation.scheme != SchemeChoice::Explicit,

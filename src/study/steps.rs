@@ -39,7 +39,7 @@ impl Study<'_> {
 
     /// Fast modes that the start excites and a schedule's steps damp. Steps that a tolerance decides follow them.
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
-        let has_steps = !self.simulator.system.analysis.is_without_steps();
+        let has_steps = !self.simulator.system.analysis.visits();
         match self.description.simulation.stepping {
             // The explicit method damps nothing.
             Stepping::Fixed(_)

@@ -11,7 +11,7 @@ use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
-use super::{Options, RunError, feasible, formulation};
+use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
@@ -106,7 +106,7 @@ pub(super) fn run(
     keep: bool,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
-    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
     let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
     let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
@@ -162,7 +162,8 @@ pub(super) fn run(
     }
     let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
-    let (bounds, summary) = Whole::of(description, reduction.left_out).merge(ran);
+    let (mut bounds, mut summary) = Whole::of(description, reduction.left_out).merge(ran);
+    analysis::arrange(description, &mut bounds, &mut summary);
     Ok((bounds, summary, kept))
 }
 
@@ -243,6 +244,8 @@ impl<'a> Whole<'a> {
                 .find_map(|done| Some(&done.bounds.covered).filter(|covered| !covered.is_empty()))
                 .cloned()
                 .unwrap_or_default(),
+            analysis: self.description.analysis,
+            responses: Vec::new(),
         };
         let summary = self.summary(ran, &bounds);
         (bounds, summary)

@@ -36,8 +36,10 @@ impl Motions<'_> {
             if is_over || !stops.is_empty() && sampling.until == Until::FirstStop {
                 break;
             }
-            let found: Vec<Result<Visit, SimulationError>> =
-                samples.par_iter().map(|sample| self.simulator.visit(sample, &times)).collect();
+            let found: Vec<Result<Visit, SimulationError>> = samples
+                .par_iter()
+                .map(|sample| self.simulator.visit(sample, (self.schedule, self.tolerance)))
+                .collect();
             for (place, visit) in found.into_iter().enumerate() {
                 let (visit, sample) = (visit?, block * BLOCK + place);
                 for (line, value) in visit.values.into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! What is done with a mechanism: it moves, or it is looked at in one configuration or in many.
 
 /// What is done with a mechanism.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Analysis {
     /// It moves by its forces.
     #[default]
@@ -10,23 +10,62 @@ pub enum Analysis {
     Statics,
     /// It moves as its motors say; forces and masses are of no interest.
     Kinematics,
-    /// Its small vibrations.
-    Modes,
+    /// It vibrates about a configuration.
+    Modes(LinearisedAt),
+}
+
+/// Where a mechanism's small vibrations are looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LinearisedAt {
+    /// At its start.
+    #[default]
+    Start,
+    /// Where its forces are in equilibrium.
+    Equilibrium,
+    /// In every row of its motion.
+    Motion,
 }
 
 impl Analysis {
     /// The word of a model file.
-    pub fn name(&self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Motion => "motion",
             Self::Statics => "statics",
             Self::Kinematics => "kinematics",
-            Self::Modes => "modes",
+            Self::Modes(_) => "modes",
         }
     }
 
-    /// Whether configurations are looked at one by one, without time steps between them.
-    pub fn is_without_steps(&self) -> bool {
-        *self != Self::Motion
+    /// Whether there are no time steps.
+    pub fn is_without_steps(self) -> bool {
+        !matches!(self, Self::Motion | Self::Modes(LinearisedAt::Motion))
     }
+
+    /// Whether more than the time steps' own rows is found of every sample.
+    pub fn visits(self) -> bool {
+        self != Self::Motion
+    }
+}
+
+/// What is asked of small vibrations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModesRequest {
+    /// How many modes, the slowest first.
+    pub number: usize,
+    /// What harmonic loads do.
+    pub responses: Vec<ResponseRequest>,
+}
+
+/// What a harmonic load does to an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseRequest {
+    /// Its name in files.
+    pub name: String,
+    /// The output along which the load of size one acts: a length or an angle.
+    pub load: String,
+    /// The output that is observed.
+    pub output: String,
+    /// Hz, ascending.
+    pub frequencies: Vec<f64>,
 }

@@ -32,6 +32,8 @@ grammar! {
         effects: Option<IndexMap<String, EffectKind>>,
         /// What is done with the mechanism; by default its `motion`.
         analysis: Option<AnalysisName>,
+        /// What is asked of `analysis: modes`.
+        modes: Option<Modes>,
         /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or `equilibrium`.
         initial: Option<InitialFile>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
@@ -72,6 +74,8 @@ grammar! {
         effects: Option<IndexMap<String, EffectKind>>,
         /// Instead of the model's.
         analysis: Option<AnalysisName>,
+        /// Instead of the model's.
+        modes: Option<Modes>,
         /// Instead of the model's of the same name, or on top; `equilibrium` stands instead of all.
         initial: Option<InitialFile>,
         /// Instead of the model's of the same name, or on top.
@@ -108,6 +112,30 @@ grammar! {
         scheme: Option<SchemeName>,
         /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
         extrapolation: Option<u32>,
+    }
+
+    /// What is asked of `analysis: modes`.
+    Modes is "`modes`" {
+        /// Where; by default at the `start`.
+        at: Option<LinearisedAtName>,
+        /// How many modes are told, the slowest first; by default 6.
+        number: Option<u32>,
+        /// What harmonic loads do, by name.
+        responses: Option<IndexMap<String, Response>>,
+    }
+
+    /// What a harmonic load of 1 N, or 1 N m, does to an output.
+    Response is "a response" {
+        /// The output along which the load acts, a length or an angle: it does work on what the output measures.
+        load: String,
+        /// The output that is observed.
+        output: String,
+        /// Least frequency, Hz.
+        from: Number,
+        /// Largest frequency, Hz.
+        to: Number,
+        /// Number of frequencies, by equal factors; by default 60.
+        points: Option<u32>,
     }
 
     /// Stops at the limits of a robot's joints.

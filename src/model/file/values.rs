@@ -100,6 +100,18 @@ schema_only! {
         Statics,
         /// It moves as its motors say, whatever its forces and masses are.
         Kinematics,
+        /// It vibrates about a configuration: see `modes`.
+        Modes,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum LinearisedAtName {
+        /// As `initial` says.
+        Start,
+        /// Where forces are in equilibrium, near `guess`.
+        Equilibrium,
+        /// In every row of the motion.
+        Motion,
     }
 
     #[schemars(rename_all = "lowercase", inline)]

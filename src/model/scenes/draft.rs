@@ -29,7 +29,7 @@ const BY_NAME: [(&str, &str); 6] = [
 ];
 
 /// Keys whose value in a scene stands instead of the model's.
-const WHOLE: [&str; 5] = ["description", "limits", "bounds", "statistics", "analysis"];
+const WHOLE: [&str; 6] = ["description", "limits", "bounds", "statistics", "analysis", "modes"];
 
 /// What says how far a parameter may be off.
 const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];

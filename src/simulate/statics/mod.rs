@@ -9,4 +9,5 @@ mod equilibrium;
 mod jets;
 mod stability;
 
+pub use configuration::{Configuration, Linearised, reduced, times};
 pub use equilibrium::{Equilibrium, NoEquilibrium};

@@ -25,6 +25,12 @@ impl Simulator {
         row: &mut dyn FnMut(&[f64]),
     ) -> Result<Option<Stop>, SimulationError> {
         match self.system.analysis {
+            // Modes have no jets.
+            Analysis::Modes(_) => {
+                let unknown = vec![f64::NAN; self.system.outputs.len() * space.len()];
+                times.iter().for_each(|_| row(&unknown));
+                Ok(None)
+            }
             Analysis::Kinematics => self.kinematic_jets(space, center, half_width, times, row),
             _ => {
                 self.jets_at_equilibrium(space, center, half_width, row)?;

@@ -2,16 +2,18 @@
 //!
 //! - `statics`: the equilibrium of a sample;
 //! - `kinematics`: positions, velocities and accelerations that follow from motors, row by row;
+//! - `modes`: the small vibrations of a sample;
 //! - `jets`: the same as polynomials in the parameters.
 
 mod jets;
 mod kinematics;
+mod modes;
 mod statics;
 
+use super::control::{Controller, Schedule};
 use super::ensemble::Stop;
 use super::error::SimulationError;
 use super::simulator::Simulator;
-use crate::assemble::{OutputInfo, System};
 use crate::model::Analysis;
 use crate::numerics::Sample;
 
@@ -25,30 +27,20 @@ pub struct Visit {
 }
 
 impl Simulator {
-    /// Goes to every configuration of a sample at these times, s.
+    /// Goes to every configuration of a sample, in the rows of a schedule. Only a motion takes its steps, and its tolerance.
     ///
     /// # Errors
     /// Where it cannot be assembled, or has no equilibrium.
-    pub fn visit(&self, sample: &Sample, times: &[f64]) -> Result<Visit, SimulationError> {
+    pub fn visit(&self, sample: &Sample, steps: (&Schedule, Option<Controller>)) -> Result<Visit, SimulationError> {
+        if let Some(vibrations) = &self.vibrations {
+            return self.visit_modes(vibrations, sample, steps);
+        }
         match self.system.analysis {
-            Analysis::Kinematics => self.visit_kinematics(sample, times),
+            Analysis::Kinematics => {
+                let times: Vec<f64> = (0..steps.0.rows).map(|row| steps.0.time(row)).collect();
+                self.visit_kinematics(sample, &times)
+            }
             _ => self.visit_equilibrium(sample),
         }
-    }
-}
-
-/// The name of the smallest eigenvalue among the outputs.
-const STABILITY: &str = "stability";
-
-/// What an analysis tells besides the model's outputs: their names and units.
-pub(super) fn further_outputs(system: &mut System) {
-    if system.analysis == Analysis::Statics {
-        let taken = |name: &str| system.outputs.iter().any(|output| output.name == name);
-        let mut name = STABILITY.to_owned();
-        while taken(&name) {
-            name.push('_');
-        }
-        let expr = system.graph.constant(0.0);
-        system.outputs.push(OutputInfo { name, unit: "1/s^2".to_owned(), dimension: None, expr });
     }
 }

@@ -1,0 +1,64 @@
+//! What analyses other than a motion yield besides bounds over time.
+
+use serde::Serialize;
+
+use super::OutputBounds;
+
+/// What a harmonic load of size one does to an output at one frequency; vectors run over the times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponsePoint {
+    /// Name of the response in the model.
+    pub name: String,
+    /// Hz
+    pub frequency: f64,
+    /// In the output's unit over that of the load.
+    pub amplitude: OutputBounds,
+    /// rad; of the output behind the load, where it is negative.
+    pub phase: OutputBounds,
+}
+
+/// What kind of analysis it was, and what it says of the nominal configuration.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AnalysisSummary {
+    /// `motion`, `statics`, `kinematics` or `modes`.
+    pub kind: String,
+    /// At an equilibrium: the smallest eigenvalue of its stiffness about its masses, rad²/s²; `null` where nothing can move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stability: Option<f64>,
+    /// Coordinates that may have any value at the equilibrium.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub indifferent: Vec<String>,
+    /// Where there is one configuration: its bounds.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<ValueSummary>,
+}
+
+/// An output of one configuration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ValueSummary {
+    /// Its name.
+    pub output: String,
+    /// SI unit; empty where dimensionless or unknown.
+    pub unit: String,
+    /// With every parameter at its nominal value.
+    pub nominal: f64,
+    /// By every method: its name, lower and upper bound, and error.
+    pub bounds: Vec<(String, f64, f64, f64)>,
+}
+
+impl ValueSummary {
+    /// Of the only time of an output.
+    pub fn of(output: &OutputBounds) -> Self {
+        let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
+        let bounds = output.bands.iter().map(|band| {
+            let error = first(&band.error.total);
+            (band.method.name().to_owned(), first(&band.lower), first(&band.upper), error)
+        });
+        Self {
+            output: output.name.clone(),
+            unit: output.unit.clone(),
+            nominal: first(&output.nominal),
+            bounds: bounds.collect(),
+        }
+    }
+}

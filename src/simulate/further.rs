@@ -1,0 +1,25 @@
+//! What an analysis tells besides the model's outputs: names and units.
+
+use super::modal;
+use crate::assemble::{OutputInfo, System};
+use crate::model::Analysis;
+
+/// The name of the smallest eigenvalue among the outputs.
+const STABILITY: &str = "stability";
+
+/// Adds what is told of a mechanism with so many degrees of freedom, after the model's outputs.
+pub fn further_outputs(system: &mut System, freedom: usize) {
+    match system.analysis {
+        Analysis::Modes(_) => modal::further_outputs(system, freedom),
+        Analysis::Statics => {
+            let taken = |name: &str| system.outputs.iter().any(|output| output.name == name);
+            let mut name = STABILITY.to_owned();
+            while taken(&name) {
+                name.push('_');
+            }
+            let expr = system.graph.constant(0.0);
+            system.outputs.push(OutputInfo { name, unit: "1/s^2".to_owned(), dimension: None, expr });
+        }
+        Analysis::Motion | Analysis::Kinematics => {}
+    }
+}

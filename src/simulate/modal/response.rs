@@ -1,0 +1,70 @@
+//! What a harmonic load of size one does: (K + iω C − ω² M) x = f on the motions that the constraints allow, for a load along an
+//! output u: f = ∂u/∂q.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::numerics::{RowSpace, combined, dot};
+use crate::simulate::statics::{Linearised, reduced, times};
+
+/// The equations about a configuration, ready for loads.
+pub struct Response<'l> {
+    linear: &'l Linearised,
+    space: RowSpace,
+    /// M, C and K there.
+    small: [DMatrix<f64>; 3],
+}
+
+impl<'l> Response<'l> {
+    /// About a configuration.
+    pub fn new(linear: &'l Linearised) -> Self {
+        let space = RowSpace::of(&linear.jacobian, linear.motion.len());
+        let small = [&linear.mass, &linear.damping, &linear.stiffness].map(|matrix| reduced(matrix, &space.null));
+        Self { linear, space, small }
+    }
+
+    /// Real and imaginary part of an output, whose derivatives by q, v, w and λ are given, under the load `force` at ω, rad/s. NaN at the
+    /// frequency of a mode without damping.
+    pub fn of(&self, force: &[f64], output: [&[f64]; 4], omega: f64) -> [f64; 2] {
+        let (k, n) = (self.space.null.len(), force.len());
+        let [mass, damping, stiffness] = &self.small;
+        let mut matrix = DMatrix::zeros(2 * k, 2 * k);
+        for (row, column) in (0..k).flat_map(|row| (0..k).map(move |column| (row, column))) {
+            let real = stiffness[(row, column)] - omega * omega * mass[(row, column)];
+            let imaginary = omega * damping[(row, column)];
+            matrix[(row, column)] = real;
+            matrix[(k + row, k + column)] = real;
+            matrix[(row, k + column)] = -imaginary;
+            matrix[(k + row, column)] = imaginary;
+        }
+        let mut right = DVector::zeros(2 * k);
+        for (place, vector) in self.space.null.iter().enumerate() {
+            right[place] = dot(vector, force);
+        }
+        if k > 0 && !matrix.lu().solve_mut(&mut right) {
+            return [f64::NAN; 2];
+        }
+        let parts = right.as_slice();
+        let [re, im] = [&parts[..k], &parts[k..]].map(|part| combined(&self.space.null, part, n));
+        let [by_q, by_v, by_w, by_lambda] = output;
+        let by_position = |x: &[f64]| dot(by_q, x) - omega * omega * dot(by_w, x);
+        let by_speed = |x: &[f64]| omega * dot(by_v, x);
+        let mut found = [by_position(&re) - by_speed(&im), by_position(&im) + by_speed(&re)];
+        if by_lambda.iter().any(|&value| value != 0.0) {
+            // What the load does not move, constraints hold.
+            let dynamic = |x: &[f64]| {
+                let (held, inertial) = (times(&self.linear.stiffness, x), times(&self.linear.mass, x));
+                held.iter().zip(&inertial).map(|(a, b)| a - omega * omega * b).collect::<Vec<f64>>()
+            };
+            let damped =
+                |x: &[f64]| times(&self.linear.damping, x).iter().map(|part| omega * part).collect::<Vec<f64>>();
+            let (of_re, of_im, damped_re, damped_im) = (dynamic(&re), dynamic(&im), damped(&re), damped(&im));
+            let rest_re: Vec<f64> = (0..n).map(|i| force[i] - of_re[i] + damped_im[i]).collect();
+            let rest_im: Vec<f64> = (0..n).map(|i| -of_im[i] - damped_re[i]).collect();
+            let rows = self.linear.jacobian.len();
+            for (part, rest) in found.iter_mut().zip([rest_re, rest_im]) {
+                *part += dot(by_lambda, &self.space.multipliers(&rest, rows));
+            }
+        }
+        found
+    }
+}

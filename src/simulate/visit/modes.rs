@@ -1,0 +1,131 @@
+//! Modes of a sample: at its start, at its equilibrium, or in every row of its motion.
+
+use super::Visit;
+use crate::compile::Layout;
+use crate::numerics::Sample;
+use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::ensemble::{EnsembleRun, Observed, Stop};
+use crate::simulate::error::{SimulationError, assembly_error};
+use crate::simulate::modal::{ALIKE, Place, Vibrations};
+use crate::simulate::simulator::Simulator;
+use crate::simulate::start::Assembly;
+
+/// Steps from the nominal parameters to those of a sample whose modes are not like the nominal ones.
+const CONTINUATION_STEPS: usize = 8;
+
+/// States in rows (the layout's registers), and where they end.
+type States = (Vec<Vec<f64>>, Option<Stop>);
+
+impl Simulator {
+    pub(super) fn visit_modes(
+        &self,
+        vibrations: &Vibrations,
+        sample: &Sample,
+        steps: (&Schedule, Option<Controller>),
+    ) -> Result<Visit, SimulationError> {
+        let nominal = match vibrations.nominal.get() {
+            Some(nominal) => nominal,
+            None => {
+                let found = self.nominal_places(vibrations, steps)?;
+                vibrations.nominal.get_or_init(|| found)
+            }
+        };
+        let (states, stop) = self.states(sample, steps)?;
+        let lines = self.system.outputs.len();
+        let mut visit = Visit { values: Vec::new(), stop };
+        for (state, nominal) in states.iter().zip(nominal) {
+            match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
+                Some(place) => visit.values.extend(vibrations.tell(state, &place, nominal)),
+                None => visit.values.extend(std::iter::repeat_n(f64::NAN, lines)),
+            }
+        }
+        Ok(visit)
+    }
+
+    /// Those of the nominal sample, each row's in the order of the row before.
+    fn nominal_places(
+        &self,
+        vibrations: &Vibrations,
+        steps: (&Schedule, Option<Controller>),
+    ) -> Result<Vec<Place>, SimulationError> {
+        let nominal: Sample = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let (states, _) = self.states(&nominal, steps)?;
+        let mut places: Vec<Place> = Vec::with_capacity(states.len());
+        for state in &states {
+            let Some((mut place, _)) = vibrations.place(state, None) else { break };
+            if let Some(before) = places.last()
+                && let Some((followed, _)) = vibrations.place(state, Some(before))
+            {
+                place.modes = followed.modes;
+            }
+            places.push(place);
+        }
+        Ok(places)
+    }
+
+    /// The modes of a state that are the nominal ones. Where shapes are not alike, small changes of the parameters lead there.
+    fn followed(
+        &self,
+        vibrations: &Vibrations,
+        state: &[f64],
+        nominal: &Place,
+        sample: &Sample,
+        is_alone: bool,
+    ) -> Option<Place> {
+        let (direct, least) = vibrations.place(state, Some(nominal))?;
+        if least >= ALIKE || !is_alone {
+            return Some(direct);
+        }
+        let mut known = nominal.clone();
+        for step in 1..=CONTINUATION_STEPS {
+            let share = step as f64 / CONTINUATION_STEPS as f64;
+            let of_parameter = |(parameter, value): (&crate::assemble::UncertainParameter, &f64)| {
+                parameter.nominal + share * (value - parameter.nominal)
+            };
+            let between: Sample = self.system.parameters.iter().zip(sample.iter()).map(of_parameter).collect();
+            let state = if step == CONTINUATION_STEPS { state.to_vec() } else { self.state_at_start(&between).ok()? };
+            known = vibrations.place(&state, Some(&known))?.0;
+        }
+        Some(known)
+    }
+
+    fn state_at_start(&self, sample: &Sample) -> Result<Vec<f64>, SimulationError> {
+        let samples = std::slice::from_ref(sample);
+        let (assembly, open) = match &self.equilibrium {
+            Some(equilibrium) => self.at_equilibria(equilibrium, samples)?,
+            None => self.assembly(samples),
+        };
+        match open.first() {
+            Some(worst) => Err(assembly_error(&self.system, worst, sample)),
+            None => Ok(assembly.tile().values()[..self.start.layout.registers()].to_vec()),
+        }
+    }
+
+    /// The states of a sample in all rows.
+    fn states(&self, sample: &Sample, steps: (&Schedule, Option<Controller>)) -> Result<States, SimulationError> {
+        let (schedule, tolerance) = steps;
+        let start = self.state_at_start(sample)?;
+        if schedule.rows == 1 {
+            return Ok((vec![start], None));
+        }
+        let samples = std::slice::from_ref(sample);
+        let mut run = EnsembleRun::start(self, samples, schedule.first_step())?;
+        let mut motion = Vec::new();
+        let stops = run.advance(schedule, 0..schedule.rows, tolerance, Observed::Motion, &mut motion);
+        let stop = stops.first().map(|stop| Stop { open: run.open_constraint(stop, schedule), ..*stop });
+        let reached = stop.as_ref().map_or(schedule.rows, |stop| stop.row);
+        let layout: &Layout = &self.start.layout;
+        let mut assembly = Assembly::new(&self.start, &self.system, 1, |parameter, _| sample[parameter]);
+        assembly.set_state(&start);
+        let of_row = |(row, values): (usize, &[f64])| {
+            for (register, value) in layout.q.clone().chain(layout.v.clone()).zip(values) {
+                assembly.tile_mut().lane_mut(register)[0] = *value;
+            }
+            assembly.tile_mut().lane_mut(layout.time)[0] = schedule.time(row);
+            assembly.accelerate();
+            assembly.tile().values()[..layout.registers()].to_vec()
+        };
+        let lines = Observed::Motion.count(self);
+        Ok((motion.chunks_exact(lines).take(reached).enumerate().map(of_row).collect(), stop))
+    }
+}

@@ -1,0 +1,76 @@
+//! Motions that follow from motors, against closed forms.
+
+use mbint::inner::results::Method;
+use mbint::inner::study::{self, Options};
+
+use crate::common::{nominal, read, run};
+use crate::statics::{close, example};
+
+/// Position, velocity and acceleration of a slider crank's slider at the crank's angle θ = ω t.
+fn slider(r: f64, l: f64, omega: f64, time: f64) -> [f64; 3] {
+    let theta = omega * time;
+    let root = (l * l - (r * theta.sin()).powi(2)).sqrt();
+    let x = r * theta.cos() + root;
+    let slope = -r * r * theta.sin() * theta.cos() / root;
+    let v = omega * (-r * theta.sin() + slope);
+    let second = -r * r * (2.0 * theta).cos() / root - slope * slope / root;
+    [x, v, omega * omega * (-r * theta.cos() + second)]
+}
+
+#[test]
+fn a_slider_crank_moves_as_trigonometry_says_and_so_do_its_bounds() {
+    let bounds = run(&example("kinematics.yaml"));
+    for (row, &time) in bounds.times.iter().enumerate() {
+        let wanted = slider(0.1, 0.3, 10.0, time);
+        for (output, wanted) in bounds.outputs.iter().zip(wanted) {
+            assert!((output.nominal[row] - wanted).abs() < 1e-9 * (1.0 + wanted.abs()), "{} {time}", output.name);
+        }
+        for (r, l) in [(0.099, 0.2985), (0.099, 0.3015), (0.101, 0.2985), (0.101, 0.3015), (0.1003, 0.3002)] {
+            for (output, value) in bounds.outputs.iter().zip(slider(r, l, 10.0, time)) {
+                for band in output.bands.iter().filter(|band| band.method != Method::Scan) {
+                    let error = band.error.total[row] + 1e-10 * (1.0 + value.abs());
+                    let is_inside = band.lower[row] - error <= value && value <= band.upper[row] + error;
+                    assert!(is_inside, "{} {:?} at {time}: {value}", output.name, band.method);
+                    assert!(error < 1e-3, "{} {:?} at {time}: {error}", output.name, band.method);
+                }
+            }
+        }
+    }
+    let page = include_str!("../../docs/guides/kinematics.md");
+    assert!(page.contains(include_str!("../../docs/examples/kinematics.yaml")), "the page shows the example");
+}
+
+#[test]
+fn rows_far_apart_stay_on_their_branch() {
+    let text = include_str!("../../docs/examples/kinematics.yaml").replace("output_step: 0.01", "output_step: 0.21");
+    let bounds = nominal(&read(&text));
+    for (row, &time) in bounds.times.iter().enumerate() {
+        close(bounds.outputs[0].nominal[row], slider(0.1, 0.3, 10.0, time)[0], 1e-10);
+    }
+}
+
+#[test]
+fn what_motors_leave_free_is_named() {
+    let text = "
+analysis: kinematics
+bodies: { rod: { points: { O: [-0.5, 0] } } }
+joints: { hinge: { revolute: [ground, rod.O] } }
+outputs: { angle: rod.angle }
+simulation: { duration: 1 }
+";
+    let message = study::run(&read(text), Options::default()).unwrap_err().to_string();
+    assert!(message.contains("`rod.angle`") || message.contains("`hinge.angle`"), "{message}");
+    assert!(message.contains("motor"), "{message}");
+}
+
+#[test]
+fn a_mechanism_that_locks_says_when() {
+    // The rod is shorter than the crank: it is taut where r sin θ = l.
+    let text = include_str!("../../docs/examples/kinematics.yaml").replace("value: 0.3,", "value: 0.08,");
+    let (bounds, summary) =
+        study::run(&read(&text), Options { methods: Some(Vec::new()), ..Options::default() }).unwrap();
+    let locks = f64::asin(0.8) / 10.0;
+    assert!(summary.failure.unwrap().contains("locks"));
+    let last = *bounds.times.last().unwrap();
+    assert!((locks - 0.011..=locks).contains(&last), "{last} {locks}");
+}

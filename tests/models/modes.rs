@@ -1,0 +1,212 @@
+//! Small vibrations, against closed forms and against equations written by hand.
+
+use mbint::inner::results::{Bounds, Method};
+
+use crate::common::{nominal, read, run};
+use crate::statics::{close, ends, example, value};
+
+const TAU: f64 = std::f64::consts::TAU;
+
+fn frequency(bounds: &Bounds, mode: usize) -> f64 {
+    TAU * value(bounds, &format!("mode{mode}.frequency"))
+}
+
+#[test]
+fn a_chain_of_two_masses_vibrates_as_its_closed_form_says() {
+    let bounds = run(&example("modes.yaml"));
+    let (k, m, c) = (100.0, 2.0, 0.2);
+    for (mode, sign) in [(1, -1.0), (2, 1.0)] {
+        let factor = (3.0 + sign * 5.0_f64.sqrt()) / 2.0;
+        let omega = |k: f64, m: f64| (k / m * factor).sqrt();
+        close(frequency(&bounds, mode), omega(k, m), 1e-11);
+        // Damping in proportion to stiffness.
+        close(value(&bounds, &format!("mode{mode}.damping")), c / k * omega(k, m) / 2.0, 1e-9);
+        // x2/x1 = 2 − ω² m/k.
+        let [x1, x2] = [1, 2].map(|x| value(&bounds, &format!("mode{mode}.shape.x{x}")));
+        close(x2 / x1, 2.0 - factor, 1e-9);
+        for method in [Method::Chebyshev, Method::Scan] {
+            let [lower, upper, error] = ends(&bounds, &format!("mode{mode}.frequency"), method);
+            assert!((TAU * lower - omega(95.0, 2.04)).abs() <= TAU * error + 1e-10, "{mode} {method:?}");
+            assert!((TAU * upper - omega(105.0, 1.96)).abs() <= TAU * error + 1e-10, "{mode} {method:?}");
+            assert!(error < 1e-5);
+        }
+    }
+    assert_eq!(bounds.responses.len(), 25);
+    for point in &bounds.responses {
+        // (K + iωC − ω²M) x = (0, 1) by Cramer's rule; x1 = −K12/det.
+        let omega = TAU * point.frequency;
+        let complex = |k: f64| (k, k * omega * c / 100.0);
+        let (a, b, d) = (complex(200.0), complex(-100.0), complex(100.0));
+        let (a, d) = ((a.0 - omega * omega * m, a.1), (d.0 - omega * omega * m, d.1));
+        let times = |x: (f64, f64), y: (f64, f64)| (x.0 * y.0 - x.1 * y.1, x.0 * y.1 + x.1 * y.0);
+        let (ad, bb) = (times(a, d), times(b, b));
+        let det = (ad.0 - bb.0, ad.1 - bb.1);
+        let amplitude = b.0.hypot(b.1) / det.0.hypot(det.1);
+        close(point.amplitude.nominal[0], amplitude, 1e-9);
+        let phase = (-b.1).atan2(-b.0) - det.1.atan2(det.0);
+        let turns = (point.phase.nominal[0] - phase) / TAU;
+        assert!((turns - turns.round()).abs() < 1e-9, "{turns}");
+    }
+    let page = include_str!("../../docs/guides/modes.md");
+    assert!(page.contains(include_str!("../../docs/examples/modes.yaml")), "the page shows the example");
+}
+
+#[test]
+fn a_double_pendulum_vibrates_about_rest_in_every_formulation() {
+    for formulation in ["absolute", "joint"] {
+        let text = format!(
+            "
+analysis: modes
+modes: {{ at: equilibrium }}
+parameters: {{ l: {{ value: 0.5, tolerance: 4% }} }}
+bodies:
+  upper: {{ mass: 1, inertia: 1e-9, points: {{ O: [0, l] }} }}
+  lower: {{ mass: 1, inertia: 1e-9, points: {{ A: [0, l] }} }}
+joints: {{ top: {{ revolute: [ground, upper.O] }}, middle: {{ revolute: [upper, lower.A] }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+guess: {{ upper.angle: 0.3, lower.angle: -0.2 }}
+outputs: {{ a: upper.angle, b: lower.angle }}
+simulation: {{ duration: 1, formulation: {formulation} }}
+bounds: {{ chebyshev: {{ order: 4 }} }}
+"
+        );
+        let bounds = run(&read(&text));
+        assert!(value(&bounds, "a").abs() < 1e-10);
+        for (mode, sign) in [(1, -1.0), (2, 1.0)] {
+            let omega = |l: f64| (9.81 / l * (2.0 + sign * 2.0_f64.sqrt())).sqrt();
+            // The inertias are not quite nothing.
+            close(frequency(&bounds, mode), omega(0.5), 1e-7);
+            let [lower, upper, error] = ends(&bounds, &format!("mode{mode}.frequency"), Method::Chebyshev);
+            assert!((TAU * lower - omega(0.52)).abs() <= TAU * error + 1e-6, "{formulation} {mode}");
+            assert!((TAU * upper - omega(0.48)).abs() <= TAU * error + 1e-6, "{formulation} {mode}");
+            let [a, b] = ["a", "b"].map(|x| value(&bounds, &format!("mode{mode}.shape.{x}")));
+            close(b / a, -sign * 2.0_f64.sqrt(), 1e-6);
+        }
+    }
+}
+
+/// m ẍ + c ẋ + k x = 0 with m = 2, k = 50 (ω = 5).
+fn oscillator(damping: &str) -> String {
+    format!(
+        "
+analysis: modes
+parameters: {{ c: {damping} }}
+bodies: {{ mass: {{ mass: 2, coordinates: [x] }} }}
+effects: {{ spring: {{ spring_damper: {{ between: [ground, mass], along: x, stiffness: 50, damping: c, free_length: 0 }} }} }}
+outputs: {{ x: mass.x }}
+bounds: {{ chebyshev: {{ order: 4 }} }}
+"
+    )
+}
+
+#[test]
+fn damping_goes_on_smoothly_beyond_the_critical() {
+    for damping in [0.4, 8.0, 19.0, 30.0] {
+        let bounds = nominal(&read(&oscillator(&damping.to_string())));
+        close(frequency(&bounds, 1), 5.0, 1e-9);
+        close(value(&bounds, "mode1.damping"), damping / (2.0 * 2.0 * 5.0), 1e-9);
+    }
+    // Critical damping, 20, lies within.
+    let bounds = run(&read(&oscillator("{ value: 20, tolerance: 4.9 }")));
+    let [lower, upper, error] = ends(&bounds, "mode1.damping", Method::Chebyshev);
+    assert!(
+        (lower - 15.1 / 20.0).abs() < error + 1e-6 && (upper - 24.9 / 20.0).abs() < error + 1e-6,
+        "{lower} {upper} {error}"
+    );
+    assert!(error < 1e-3, "{error}");
+}
+
+#[test]
+fn modes_that_cross_are_followed_by_their_shapes() {
+    let text = "
+analysis: modes
+parameters: { k: { value: 45, interval: [30, 70] } }
+bodies: { a: { mass: 2, coordinates: [x] }, b: { mass: 2, coordinates: [x] } }
+effects:
+  of_a: { spring_damper: { between: [ground, a], along: x, stiffness: k, damping: 0, free_length: 0 } }
+  of_b: { spring_damper: { between: [ground, b], along: x, stiffness: 50, damping: 0, free_length: 0 } }
+outputs: { a: a.x, b: b.x }
+bounds: { chebyshev: { order: 9 }, scan: { points: 31 } }
+";
+    let bounds = run(&read(text));
+    for method in [Method::Chebyshev, Method::Scan] {
+        let [lower, upper, error] = ends(&bounds, "mode1.frequency", method);
+        assert!((TAU * lower - 15.0_f64.sqrt()).abs() < TAU * error + 1e-6, "{method:?} {lower}");
+        assert!((TAU * upper - 35.0_f64.sqrt()).abs() < TAU * error + 1e-6, "{method:?} {upper}");
+        let [lower, upper, error] = ends(&bounds, "mode2.frequency", method);
+        assert!(upper - lower < 1e-9 + error && (TAU * lower - 5.0).abs() < TAU * error + 1e-9, "{method:?}");
+    }
+}
+
+#[test]
+fn determinant_and_trace_of_a_pendulum_on_a_cart_are_those_of_its_equations() {
+    // A cart on a spring with a compound pendulum: M = [m + M, m l; m l, J + m l²], K = [k, 0; 0, m g l] at rest.
+    let text = |formulation: &str| {
+        format!(
+            "
+analysis: modes
+modes: {{ at: equilibrium }}
+bodies:
+  cart: {{ mass: 3, coordinates: [x] }}
+  bar: {{ mass: 2, inertia: 0.1, points: {{ pin: [0, 0.6] }} }}
+joints: {{ pin: {{ revolute: [cart, bar.pin] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  spring: {{ spring_damper: {{ between: [ground, cart], along: x, stiffness: 80, damping: 0, free_length: 0 }} }}
+outputs: {{ x: cart.x, angle: bar.angle }}
+simulation: {{ duration: 1, formulation: {formulation} }}
+"
+        )
+    };
+    let (m11, m12, m22) = (5.0, 2.0 * 0.6, 0.1 + 2.0 * 0.36);
+    let (k11, k22) = (80.0, 2.0 * 9.81 * 0.6);
+    let det = m11 * m22 - m12 * m12;
+    for formulation in ["absolute", "joint"] {
+        let bounds = nominal(&read(&text(formulation)));
+        let squares = [1, 2].map(|mode| frequency(&bounds, mode).powi(2));
+        close(squares[0] * squares[1], k11 * k22 / det, 1e-9);
+        close(squares[0] + squares[1], (m22 * k11 + m11 * k22) / det, 1e-9);
+    }
+}
+
+#[test]
+fn modes_of_a_motion_are_told_in_every_row() {
+    // A pendulum that swings: its stiffness is m g l cos θ, that of its own row.
+    let text = "
+analysis: modes
+modes: { at: motion, number: 1 }
+bodies: { bar: { mass: 2, inertia: 0.1, points: { pin: [0, 0.6] } } }
+joints: { pin: { revolute: [ground, bar.pin] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { bar.angle: 0.8 }
+outputs: { angle: bar.angle }
+simulation: { duration: 0.2, step: 1e-3, output_step: 0.1 }
+";
+    let bounds = nominal(&read(text));
+    let frequencies = &bounds.outputs.iter().find(|output| output.name == "mode1.frequency").unwrap().nominal;
+    assert_eq!(frequencies.len(), 3);
+    for (frequency, angle) in frequencies.iter().zip(&bounds.outputs[0].nominal) {
+        close((TAU * frequency).powi(2), 2.0 * 9.81 * 0.6 * angle.cos() / (0.1 + 2.0 * 0.36), 1e-8);
+    }
+}
+
+#[test]
+fn a_cantilever_of_beam_elements_vibrates_as_a_continuum() {
+    let text = "
+analysis: modes
+modes: { number: 3 }
+bodies:
+  blade:
+    beam: { length: 1.2, mass_per_length: 0.8, axial_stiffness: 2e6, bending_stiffness: 30, damping: 0 s, elements: 8 }
+joints: { root: { fixed: [ground, blade.start] } }
+outputs: { tip: blade.end.y }
+";
+    let bounds = nominal(&read(text));
+    // cos a cosh a = −1.
+    for (mode, (root, tolerance)) in
+        [(1.875_104_069, 1e-3), (4.694_091_133, 2e-3), (7.854_757_438, 1e-2)].into_iter().enumerate()
+    {
+        let omega = (root / 1.2_f64).powi(2) * (30.0 / 0.8_f64).sqrt();
+        close(frequency(&bounds, mode + 1), omega, tolerance);
+    }
+}

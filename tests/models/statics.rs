@@ -1,0 +1,205 @@
+//! Equilibria, against closed forms and against the motion that settles there.
+
+use std::path::Path;
+
+use mbint::inner::results::{Bounds, Method};
+use mbint::inner::study::{self, Options};
+
+use crate::common::{load, nominal, read, run};
+
+/// A model of the guide.
+pub fn example(name: &str) -> mbint::inner::model::Description {
+    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples").join(name))
+}
+
+/// The first nominal value of an output.
+#[track_caller]
+pub fn value(bounds: &Bounds, name: &str) -> f64 {
+    let names: Vec<&str> = bounds.outputs.iter().map(|output| output.name.as_str()).collect();
+    let output = bounds.outputs.iter().find(|output| output.name == name);
+    output.unwrap_or_else(|| panic!("no output {name} among {names:?}")).nominal[0]
+}
+
+/// Lower and upper bound and error of an output in the first row.
+#[track_caller]
+pub fn ends(bounds: &Bounds, name: &str, method: Method) -> [f64; 3] {
+    let output = bounds.outputs.iter().find(|output| output.name == name).unwrap();
+    let band = output.bands.iter().find(|band| band.method == method).unwrap();
+    [band.lower[0], band.upper[0], band.error.total[0]]
+}
+
+#[track_caller]
+pub fn close(found: f64, wanted: f64, tolerance: f64) {
+    assert!((found - wanted).abs() <= tolerance * wanted.abs().max(1e-12), "{found} instead of {wanted}");
+}
+
+fn why_not(text: &str) -> String {
+    study::run(&read(text), Options::default()).unwrap_err().to_string()
+}
+
+/// A bar on a hinge with a torsional spring, its weight m g at the distance c: k θ = −m g c cos θ.
+fn hinged(formulation: &str, stiffness: &str, guess: f64) -> String {
+    format!(
+        "
+analysis: statics
+parameters: {{ k: {stiffness} }}
+bodies: {{ bar: {{ mass: 3, inertia: 0.25, points: {{ hinge: [-0.4, 0] }} }} }}
+joints: {{ hinge: {{ revolute: [ground, bar.hinge] }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81] }} }}
+  spring: {{ torsional_spring_damper: {{ on: hinge, stiffness: k, damping: 0.1 }} }}
+guess: {{ bar.angle: {guess} }}
+outputs: {{ angle: bar.angle, fx: hinge.force.x, fy: hinge.force.y }}
+simulation: {{ duration: 1, formulation: {formulation} }}
+bounds: {{ chebyshev: {{ order: 7 }}, taylor: {{ order: 4 }}, scan: {{ points: 12 }} }}
+"
+    )
+}
+
+/// By bisection.
+fn angle_of(k: f64) -> f64 {
+    let [mut low, mut high] = [-1.5, 0.0];
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        let torque = k * middle + 3.0 * 9.81 * 0.4 * f64::cos(middle);
+        if torque < 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[test]
+fn a_hinged_bar_rests_where_the_torques_are_equal() {
+    for formulation in ["absolute", "joint"] {
+        let bounds = run(&read(&hinged(formulation, "{ value: 20, tolerance: 10% }", 0.0)));
+        close(value(&bounds, "angle"), angle_of(20.0), 1e-12);
+        assert!(value(&bounds, "fx").abs() < 1e-10);
+        close(value(&bounds, "fy").abs(), 3.0 * 9.81, 1e-12);
+        // k − m g c sin θ over the inertia about the hinge.
+        let stiffness = 20.0 - 3.0 * 9.81 * 0.4 * f64::sin(angle_of(20.0));
+        close(value(&bounds, "stability"), stiffness / (0.25 + 3.0 * 0.16), 1e-10);
+        for method in [Method::Chebyshev, Method::Taylor, Method::Scan] {
+            let [lower, upper, error] = ends(&bounds, "angle", method);
+            assert!((lower - angle_of(18.0)).abs() <= error + 1e-12, "{formulation} {method:?} {lower} {error}");
+            assert!((upper - angle_of(22.0)).abs() <= error + 1e-12, "{formulation} {method:?} {upper} {error}");
+            assert!(error < 1e-4, "{method:?} {error}");
+        }
+    }
+}
+
+#[test]
+fn the_guess_chooses_and_instability_is_told() {
+    // Upright, with a spring too weak to hold it: π/2 is not quite it, since the spring pulls.
+    let text = hinged("absolute", "0.5", 1.55);
+    let bounds = nominal(&read(&text));
+    let angle = value(&bounds, "angle");
+    close(0.5 * angle, -3.0 * 9.81 * 0.4 * angle.cos(), 1e-9);
+    assert!((angle - 1.6).abs() < 0.1, "{angle}");
+    assert!(value(&bounds, "stability") < 0.0);
+    // From far above it falls to the stable one.
+    let bounds = nominal(&read(&hinged("absolute", "0.5", 0.9)));
+    assert!(value(&bounds, "stability") > 0.0);
+    let angle = value(&bounds, "angle");
+    close(0.5 * angle, -3.0 * 9.81 * 0.4 * angle.cos(), 1e-9);
+}
+
+#[test]
+fn where_there_is_none_is_told_with_what_pushes() {
+    let text = "
+analysis: statics
+bodies: { ball: { mass: 2, inertia: 1 } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+outputs: { y: ball.y }
+";
+    let message = why_not(text);
+    assert!(
+        message.contains("no equilibrium") && message.contains("1.962e1 N") && message.contains("`ball.y`"),
+        "{message}"
+    );
+    assert!(message.contains("no force changes as it moves"), "{message}");
+}
+
+#[test]
+fn what_is_indifferent_is_named() {
+    let text = "
+analysis: statics
+bodies: { wheel: { mass: 2, inertia: 1 } }
+joints: { axle: { revolute: [ground, wheel] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+outputs: { angle: wheel.angle, fy: axle.force.y }
+simulation: { duration: 1, formulation: absolute }
+";
+    let (bounds, summary) = study::run(&read(text), Options::default()).unwrap();
+    assert_eq!(summary.analysis.unwrap().indifferent, ["wheel.angle"]);
+    close(value(&bounds, "fy").abs(), 2.0 * 9.81, 1e-12);
+}
+
+#[test]
+fn a_motion_from_an_equilibrium_stays_there() {
+    for formulation in ["absolute", "joint"] {
+        let text = hinged(formulation, "{ value: 20, tolerance: 10% }", 0.0)
+            .replace("analysis: statics", "initial: equilibrium")
+            .replace("duration: 1,", "duration: 0.5, step: 1e-3, output_step: 0.1,");
+        let bounds = run(&read(&text));
+        let angle = &bounds.outputs[0];
+        for row in 0..bounds.times.len() {
+            close(angle.nominal[row], angle_of(20.0), 1e-9);
+            for band in &angle.bands {
+                let error = band.error.total[row] + 1e-9;
+                assert!((band.lower[row] - angle_of(18.0)).abs() <= error, "{formulation} {:?} {row}", band.method);
+                assert!((band.upper[row] - angle_of(22.0)).abs() <= error, "{formulation} {:?} {row}", band.method);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_closed_loop_in_space_and_in_the_plane_rests_alike() {
+    // A plate on two links, pulled sideways by a spring: the same in both.
+    let model = |space: &str| {
+        format!(
+            "
+space: {space}
+analysis: statics
+bodies:
+  ground: {{ points: {{ a: [0, 0], c: [1, 0], wall: [2, -0.5] }} }}
+  left: {{ mass: 1, inertia: 0.02, points: {{ a: [0, 0.25], b: [0, -0.25] }} }}
+  right: {{ mass: 1, inertia: 0.02, points: {{ a: [0, 0.25], b: [0, -0.25] }} }}
+  plate: {{ mass: 4, inertia: 0.3, points: {{ a: [-0.5, 0], b: [0.5, 0] }} }}
+joints:
+  a: {{ revolute: [ground.a, left.a] }}
+  c: {{ revolute: [ground.c, right.a] }}
+  b: {{ revolute: [left.b, plate.a] }}
+  d: {{ revolute: [right.b, plate.b] }}
+effects:
+  weight: {{ gravity: {{ acceleration: [0, -9.81{}] }} }}
+  pull: {{ spring_damper: {{ between: [ground.wall, plate.b], stiffness: 40, damping: 1, free_length: 0.2 }} }}
+guess: {{ plate.x: 0.5, plate.y: -0.5 }}
+outputs: {{ x: plate.x, y: plate.y, pull: pull.force }}
+",
+            if space == "spatial" { ", 0" } else { "" }
+        )
+    };
+    let [plane, spatial] = ["planar", "spatial"].map(|space| nominal(&read(&model(space))));
+    for name in ["x", "y", "pull", "stability"] {
+        close(value(&spatial, name), value(&plane, name), 1e-8);
+    }
+    // Horizontal forces: the links take what the spring pulls; by virtual work of the one freedom φ of both links.
+    let (x, y) = (value(&plane, "x"), value(&plane, "y"));
+    let sine = (x - 0.5) / 0.5;
+    let (bx, by) = (x + 0.5, y);
+    let length = ((2.0 - bx).powi(2) + (-0.5 - by).powi(2)).sqrt();
+    let force = 40.0 * (length - 0.2) / length;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let work = force * ((2.0 - bx) * 0.5 * cosine + (-0.5 - by) * 0.5 * sine) - 9.81 * (4.0 + 1.0) * 0.5 * sine;
+    assert!(work.abs() < 1e-8, "{work}");
+}
+
+#[test]
+fn the_guides_example_is_what_it_says() {
+    let bounds = run(&example("statics.yaml"));
+    for (name, wanted) in [("angle", 45.531_592), ("spring", 9.175_084)] {
+        close(value(&bounds, name), wanted, 1e-6);
+    }
+    let page = include_str!("../../docs/guides/statics.md");
+    assert!(page.contains(include_str!("../../docs/examples/statics.yaml")), "the page shows the example");
+}
