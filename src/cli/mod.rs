@@ -16,7 +16,9 @@ mod methods;
 mod new;
 mod overview;
 mod progress;
+mod record;
 mod run;
+mod run_command;
 mod scenes;
 mod show;
 mod snapshot;
@@ -24,6 +26,7 @@ mod status;
 mod structure;
 mod table;
 mod tree;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -47,12 +50,21 @@ enum Failure {
 impl Failure {
     /// Reports it, and tells what it comes to.
     fn report(&self, console: &Console) -> Status {
-        let (message, status) = match self {
-            Self::Wrong(message) => (message, Status::Wrong),
-            Self::Failed(message) => (message, Status::Failed),
-        };
-        console.error(message);
-        status
+        console.error(self.message());
+        self.status()
+    }
+
+    fn message(&self) -> &str {
+        match self {
+            Self::Wrong(message) | Self::Failed(message) => message,
+        }
+    }
+
+    fn status(&self) -> Status {
+        match self {
+            Self::Wrong(_) => Status::Wrong,
+            Self::Failed(_) => Status::Failed,
+        }
     }
 }
 
@@ -85,7 +97,7 @@ pub fn main() -> ExitCode {
 
 fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
-        Command::Run(args) => run::run(args, console),
+        Command::Run(args) => run_command::run(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

@@ -12,6 +12,7 @@ fn errors(errors: &[ErrorSummary]) -> String {
     const MOST: usize = 24;
     let mut table = Table::new([
         ("bounds", Align::Left),
+        ("unit", Align::Left),
         ("largest width", Align::Right),
         ("error", Align::Right),
         ("of the surrogate", Align::Right),
@@ -20,7 +21,8 @@ fn errors(errors: &[ErrorSummary]) -> String {
     for error in errors.iter().take(MOST) {
         let number = |value: f64| if value.is_nan() { "unknown".to_owned() } else { format!("{value:.2e}") };
         let name = format!("{}.{}", error.output, error.method);
-        table.row([name, number(error.width), number(error.error), number(error.surrogate), number(error.time)]);
+        let [width, total, surrogate, steps] = [error.width, error.error, error.surrogate, error.time].map(number);
+        table.row([name, error.unit.clone(), width, total, surrogate, steps]);
     }
     match errors.len() {
         0 => String::new(),
@@ -245,8 +247,8 @@ mod tests {
           nominal            1     2000               4013    0.004
           scan             900  1800000            3611700        –
 
-          bounds   largest width    error  of the surrogate  of the steps
-          x3.scan        2.00e-1  2.00e-3           unknown       1.50e-3
+          bounds   unit  largest width    error  of the surrogate  of the steps
+          x3.scan  m           2.00e-1  2.00e-3           unknown       1.50e-3
 
           scan: passed a singular configuration 12 times
           results/slider_crank: bounds.csv, x3.svg

@@ -8,7 +8,9 @@ use serde::Serialize;
 use crate::export::error::ExportError;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{SCHEMA, SUMMARY, owned};
-use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, plot_svg};
+use crate::export::{
+    bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, plot_svg,
+};
 use crate::results::{Bounds, PeakSummary, Provenance, Summary};
 
 /// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
@@ -31,6 +33,7 @@ pub fn write_results(
     files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
+        files.add("contributions.columns.json", &contribution_columns_json(bounds)?)?;
     }
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));

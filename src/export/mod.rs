@@ -22,7 +22,7 @@ mod snapshot;
 mod view;
 
 pub use self::csv::bounds_csv;
-pub use columns::columns_json;
+pub use columns::{columns_json, contribution_columns_json};
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
 pub use drawing::write_drawing;
@@ -30,7 +30,7 @@ pub use error::ExportError;
 pub use files::{file_stem, write_results};
 pub use folder::{prepare_folder, write_pages};
 pub use overlay::SceneBounds;
-pub use owned::holds_complete_results;
+pub use owned::{SUMMARY, holds_complete_results};
 pub use plot::plot_svg;
 pub use reference::effects as effects_page;
 pub use scenes::write_scenes;

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 /// The summary's file.
-pub(super) const SUMMARY: &str = "summary.json";
+pub const SUMMARY: &str = "summary.json";
 
 /// The file that lists the scenes.
 pub(super) const SCENES: &str = "scenes.json";

@@ -20,6 +20,7 @@ impl Study<'_> {
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
         let mut steps = StepSearch::new(schedule);
+        (self.stage)("nominal motion");
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let (halved, odd) = (schedule.refined(2), schedule.at_odds());

@@ -27,6 +27,8 @@ pub(super) struct Study<'a> {
     /// Whether all samples are simulated with halved steps too.
     certify_time: bool,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    /// Told what is being done.
+    pub(super) stage: &'a (dyn Fn(&str) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
@@ -63,9 +65,9 @@ impl<'a> Study<'a> {
         };
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
-        let Options { certify_time, progress, interrupted, .. } = *options;
+        let Options { certify_time, progress, stage, interrupted, .. } = *options;
         let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
-        Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, interrupted })
+        Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, stage, interrupted })
     }
 
     /// The same over a part of the box.
@@ -108,6 +110,7 @@ impl<'a> Study<'a> {
                 })
             }
             Stepping::Tolerance(tolerance) => {
+                (self.stage)("choosing the steps");
                 let samples = self.controlling_samples();
                 let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
                 // The nominal sample may be of another part of the box.
@@ -131,7 +134,10 @@ impl<'a> Study<'a> {
                 let results = self.methods(&schedule, None)?;
                 Ok(self.conclude(results, None))
             }
-            Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
+            Stepping::Tolerance(tolerance) => {
+                (self.stage)("choosing the steps");
+                Ok(self.run_controlled(tolerance)?)
+            }
         }
     }
 
@@ -168,6 +174,7 @@ impl<'a> Study<'a> {
         };
         let unresolved_from = unresolved_from.into_iter().chain(unmet).min();
         let motions = self.motions(&schedule, tolerance, &progress);
+        (self.stage)("nominal motion");
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some((validation, _)) = &validation {
@@ -192,6 +199,7 @@ impl<'a> Study<'a> {
         tolerance: Option<Controller>,
         progress: &Progress,
     ) -> Result<Balanced, SimulationError> {
+        (self.stage)("validation samples");
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
@@ -224,6 +232,7 @@ impl<'a> Study<'a> {
         if (self.interrupted)() {
             return Ok(None);
         }
+        (self.stage)("searching for switches");
         let found = caught("the search for switches", || {
             unmet_switch(&self.simulator, &self.domain, steps, &validation.points, self.interrupted)
         });
@@ -248,6 +257,7 @@ impl<'a> Study<'a> {
             if (self.interrupted)() {
                 break;
             }
+            (self.stage)(method.name());
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
             let before = motions.over();
             let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {

@@ -100,6 +100,7 @@ fn as_far_as_joints_go<T>(
 /// # Errors
 /// As for any run.
 pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
+    (options.stage)("compiling");
     let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);

@@ -13,6 +13,7 @@ mod faults;
 mod place;
 mod readme;
 mod rooms;
+mod run_modes;
 mod scenes;
 mod schema;
 mod shells;
