@@ -14,6 +14,7 @@
 //! | ã b, a⊥ | a × b;  (−a_y, aₓ), a turned by π/2       |                            |
 
 mod acting;
+mod analysis;
 mod applied_forces;
 mod build;
 mod child;
@@ -44,4 +45,6 @@ mod tree;
 pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
 pub use inventory::Inventory;
-pub use system::{ConditionOf, ConstraintInfo, Distance, FormulationInfo, ResidualUnit, StartCondition, System};
+pub use system::{
+    ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System,
+};

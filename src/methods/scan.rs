@@ -135,11 +135,7 @@ impl BoundingMethod for Scan {
             let sample = |index| ensemble.domain().sample(&grid.sample(index));
             let shard: Vec<Sample> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
             let simulated = ensemble.simulate(&shard, sampling, &mut |rows, values| {
-                for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
-                    for (output, values) in values.chunks_exact(shard.len()).enumerate() {
-                        bounds.observe(row, output, first, values);
-                    }
-                }
+                bounds.observe(rows, (first, shard.len()), values);
             })?;
             total.add(first, simulated);
         }

@@ -5,7 +5,7 @@
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
-//! panic to what panicked.
+//! panic to what panicked, `kept` keeps surrogates for whoever evaluates them after the run.
 
 mod conclude;
 mod controlled;
@@ -19,13 +19,16 @@ mod explain;
 mod feasible;
 mod formulation;
 mod internal;
+mod kept;
 mod outcome;
 mod price;
+mod reduced;
 mod single;
 mod step_search;
 mod steps;
 mod structure;
 mod subsystems;
+mod visits;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;
@@ -43,6 +46,7 @@ pub use effect_costs::language_costs;
 pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
+pub use kept::{Evaluator, Kept};
 pub use price::Price;
 pub use structure::structure;
 
@@ -115,7 +119,22 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| subsystems::run(description, &options))
+    let model = reduced::expanded(description);
+    let (bounds, summary, _) = pool.install(|| subsystems::run(&model, &options, false))?;
+    Ok(reduced::shown(description, (bounds, summary)))
+}
+
+/// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with
+/// `skip_infeasible`, or where a subsystem's method ended at once.
+///
+/// # Errors
+/// As for [`run`].
+pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let model = reduced::expanded(description);
+    let (bounds, summary, kept) = pool.install(|| subsystems::run(&model, &options, true))?;
+    let (bounds, summary) = reduced::shown(description, (bounds, summary));
+    Ok((bounds, summary, kept))
 }
 
 /// A compiled model: of what `run` simulates, all in one.

@@ -7,12 +7,13 @@
 use symdiff::Formula;
 
 use super::internal::caught;
+use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
-use crate::model::{Description, Formulation, ParameterValue};
+use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::{Choices, Reduction, Subsystem, narrow};
 use crate::results::{
@@ -99,9 +100,16 @@ fn as_far_as_joints_go<T>(
 ///
 /// # Errors
 /// As for any run.
-pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
+pub(super) fn run(
+    description: &Description,
+    options: &Options,
+    keep: bool,
+) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     (options.stage)("compiling");
-    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
+    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
+    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
+    let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
     let (reduction, mut prepared) = prepare(description, choices)?;
     share_budget(&mut prepared);
     let count = prepared.len();
@@ -117,6 +125,9 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     let studies = subsystems.iter().zip(studies).map(|(subsystem, (simulator, progress))| {
         let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
+        if keep {
+            study.keep_surrogate()?;
+        }
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
@@ -124,17 +135,18 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     if !options.costly && price.is_costly(description.bounds.budget.simulations) {
         return Err(RunError::Costly(price));
     }
-    let mut ran = Vec::with_capacity(count);
+    let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut lost = 0;
     for (subsystem, study) in subsystems.iter().zip(&studies) {
-        let found = caught("the run", || {
+        let found = caught("the run", || -> Result<_, RunError> {
             if options.skip_infeasible {
-                return feasible::run(study);
+                let (bounds, summary) = feasible::run(study)?;
+                return Ok((bounds, summary, None));
             }
-            let Ran { bounds, summary, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
-            Ok((bounds, summary))
+            let Ran { bounds, summary, kept, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
+            Ok((bounds, summary, kept))
         });
-        let (bounds, summary) = match found {
+        let (bounds, summary, part) = match found {
             Ok(found) => found?,
             Err(error) => {
                 lost += 1;
@@ -142,13 +154,17 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
                 if lost == count {
                     return Err(error.into());
                 }
-                let Ran { bounds, summary, .. } = study.lost(error)?;
-                (bounds, summary)
+                let Ran { bounds, summary, kept, .. } = study.lost(error)?;
+                (bounds, summary, kept)
             }
         };
         ran.push(Done { subsystem, bounds, summary });
+        kept.push(part.map(|part| (part, subsystem.outputs.as_slice(), subsystem.parameters.as_slice())));
     }
-    Ok(Whole::of(description, reduction.left_out).merge(ran))
+    let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
+    let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
+    let (bounds, summary) = Whole::of(description, reduction.left_out).merge(ran);
+    Ok((bounds, summary, kept))
 }
 
 /// The budget is divided evenly among the subsystems with uncertain parameters.
@@ -210,9 +226,18 @@ impl<'a> Whole<'a> {
                 outputs[output] = Some(bounds);
             }
         }
+        // What an analysis adds to the model's outputs comes last.
+        let further = |done: &Done| done.bounds.outputs[done.subsystem.outputs.len()..].to_vec();
+        let outputs = outputs.into_iter().flatten().chain(ran.iter().flat_map(further)).collect();
+        if known {
+            contributions.extend(ran.iter().flat_map(|done| {
+                let own = done.subsystem.outputs.len()..done.bounds.outputs.len();
+                own.map(|place| self.contributions(done, place, &done.bounds.outputs[place])).collect::<Vec<_>>()
+            }));
+        }
         let bounds = Bounds {
             times,
-            outputs: outputs.into_iter().flatten().collect(),
+            outputs,
             contributions: if known { contributions } else { Vec::new() },
             covered: ran
                 .iter()
