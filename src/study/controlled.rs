@@ -37,6 +37,7 @@ const STEADY: f64 = 0.5;
 impl Study<'_> {
     /// The schedule of the controlling samples serves all; a sample that needs shorter steps in between takes its own.
     pub(super) fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
+        (self.stage)("choosing the steps");
         let samples = self.controlling_samples();
         let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
         let failure = controlled.failure.map(|failure| format!("{failure}; what does not need that sample is kept"));

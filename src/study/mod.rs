@@ -29,6 +29,7 @@ mod steps;
 mod structure;
 mod subsystems;
 mod visits;
+mod work;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;

@@ -13,7 +13,7 @@ use crate::methods::{
     Stop, Validation, can_compose,
 };
 use crate::model::{Description, Stepping};
-use crate::numerics::{ParameterBox, Sample, step_validation, validation};
+use crate::numerics::{ParameterBox, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{
     Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance, unmet_switch,
@@ -158,10 +158,7 @@ impl<'a> Study<'a> {
                 let results = self.methods(&schedule.taken(self.integration()), None)?;
                 Ok(self.conclude(results, None))
             }
-            Stepping::Tolerance(tolerance) => {
-                (self.stage)("choosing the steps");
-                Ok(self.run_controlled(tolerance)?)
-            }
+            Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
         }
     }
 
@@ -343,26 +340,6 @@ impl<'a> Study<'a> {
             found: Found::default(),
         };
         Ok(self.conclude(results, None))
-    }
-
-    /// Simulations of the methods whose samples are given; those that a tolerance decides are within the budget.
-    pub(super) fn planned_simulations(&self) -> f64 {
-        let parts = if self.certify_time { 3.0 } else { 1.0 };
-        let methods = self.request.methods();
-        parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
-    }
-
-    /// Samples × rows of all methods.
-    fn total_work(&self, schedule: &Schedule) -> usize {
-        let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
-        let methods: usize = self.request.methods().iter().map(work).sum();
-        let k = self.domain.dimension();
-        let held_out = if self.request.is_empty() {
-            0
-        } else {
-            step_validation(k).len() + validation(k, self.request.degree()).len()
-        };
-        (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }
 
