@@ -117,6 +117,14 @@ pub(super) struct RunArgs {
     /// Let an interrupted run replace the results of a complete one [default: it writes into a folder beside].
     #[arg(long)]
     pub overwrite: bool,
+
+    /// Text for people, or one JSON array with an object for each model and scene, its summary in it; all else goes to standard error.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+
+    /// Run again whenever a model, its URDF or its tables change, and print which bounds moved; Ctrl-C ends it.
+    #[arg(short, long, conflicts_with = "format")]
+    pub watch: bool,
 }
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.

@@ -22,6 +22,7 @@ pub(super) struct Request {
     pub scenes: Vec<String>,
     pub certify: bool,
     pub output: Option<PathBuf>,
+    /// Whether no overview is printed.
     pub quiet: bool,
     /// Whether a report is written.
     pub report: bool,
@@ -73,6 +74,9 @@ pub(super) struct Done {
     /// Where they are; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
 }
+
+/// Told of each job, with its model's file, how it ended.
+pub(super) type Told<'t> = dyn FnMut(&Path, &Job, Result<&Done, &Failure>) + 't;
 
 impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
@@ -150,6 +154,7 @@ pub(super) fn bounds(
         skip_infeasible: settings.skip_infeasible,
         costly: settings.yes,
         progress: &set_progress,
+        stage: &|stage| progress.stage(stage),
         interrupted: &interrupt::asked,
     };
     study::run(model, options).map_err(|error| {

@@ -17,7 +17,9 @@ mod new;
 mod overview;
 mod progress;
 mod report;
+mod record;
 mod run;
+mod run_command;
 mod scenes;
 mod show;
 mod snapshot;
@@ -28,6 +30,7 @@ mod sweep;
 mod table;
 mod tree;
 mod verdicts;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -49,20 +52,23 @@ enum Failure {
 }
 
 impl Failure {
+    /// Reports it, and tells what it comes to.
+    fn report(&self, console: &Console) -> Status {
+        console.error(self.message());
+        self.status()
+    }
+
     fn message(&self) -> &str {
         match self {
             Self::Wrong(message) | Self::Failed(message) => message,
         }
     }
 
-    /// Reports it, and tells what it comes to.
-    fn report(&self, console: &Console) -> Status {
-        let (message, status) = match self {
-            Self::Wrong(message) => (message, Status::Wrong),
-            Self::Failed(message) => (message, Status::Failed),
-        };
-        console.error(message);
-        status
+    fn status(&self) -> Status {
+        match self {
+            Self::Wrong(_) => Status::Wrong,
+            Self::Failed(_) => Status::Failed,
+        }
     }
 }
 
@@ -95,7 +101,7 @@ pub fn main() -> ExitCode {
 
 fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
-        Command::Run(args) => run::run(args, console),
+        Command::Run(args) => run_command::run(args, console),
         Command::Sweep(args) => sweep::sweep(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),

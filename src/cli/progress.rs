@@ -1,10 +1,13 @@
 //! The progress bar; where there is no terminal, a line now and then.
 
+use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::syntax::harmless;
 
@@ -14,62 +17,101 @@ const PARTS: u64 = 10_000;
 /// Between two lines where there is no terminal.
 const BETWEEN: Duration = Duration::from_secs(10);
 
+/// Between two drawings of the bar while nothing is told, so that the time goes on.
+const TICK: Duration = Duration::from_millis(250);
+
 /// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.
 pub(super) struct Progress {
     bar: ProgressBar,
     /// What is being done.
-    name: String,
-    begun: Instant,
-    /// When the last line was written; `None` where there are no lines.
-    last: Option<Mutex<Instant>>,
+    stage: Arc<Mutex<String>>,
+    /// Writes the lines where there is no terminal, until the sender is gone.
+    lines: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
     /// A bar labelled with `name`, or none.
     pub fn new(name: &str, visible: bool) -> Self {
-        let target = if visible { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
+        let terminal = std::io::stderr().is_terminal();
+        let target =
+            if visible && terminal { ProgressDrawTarget::stderr_with_hz(10) } else { ProgressDrawTarget::hidden() };
         let name = harmless(name);
         let bar = ProgressBar::with_draw_target(Some(PARTS), target).with_prefix(name.clone());
-        let style = ProgressStyle::with_template("{prefix}  [{bar:40}] {percent:>3} %  {eta} left");
+        let style = ProgressStyle::with_template("{prefix}: {msg}  [{bar:30}] {percent:>3} %{left}");
         if let Ok(style) = style {
-            bar.set_style(style.progress_chars("=> "));
+            let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+                // What cannot be written is not shown.
+                let _ = text.write_str(&left(f64::from(state.fraction()), state.elapsed()));
+            };
+            bar.set_style(style.progress_chars("=> ").with_key("left", left));
         }
-        let begun = Instant::now();
-        let lines = visible && !std::io::stderr().is_terminal();
-        Self { bar, name, begun, last: lines.then(|| Mutex::new(begun)) }
+        if visible && terminal {
+            bar.enable_steady_tick(TICK);
+        }
+        let stage = Arc::new(Mutex::new(String::new()));
+        let lines = (visible && !terminal).then(|| {
+            let (sender, ended) = channel();
+            let (bar, stage) = (bar.clone(), Arc::clone(&stage));
+            (sender, std::thread::spawn(move || write_lines(&name, &bar, &stage, &ended)))
+        });
+        Self { bar, stage, lines }
     }
 
     /// Shows that this fraction is done. May be called from any thread, in any order: the bar never goes back.
     pub fn set(&self, fraction: f64) {
-        let fraction = fraction.clamp(0.0, 1.0);
-        let parts = (fraction * PARTS as f64) as u64;
+        let parts = (fraction.clamp(0.0, 1.0) * PARTS as f64) as u64;
         if parts > self.bar.position() {
             self.bar.set_position(parts);
         }
-        // Another thread that writes a line does it for all.
-        let Some(Ok(mut last)) = self.last.as_ref().map(Mutex::try_lock) else { return };
-        if last.elapsed() >= BETWEEN {
-            *last = Instant::now();
-            let line = line(&self.name, self.bar.position() as f64 / PARTS as f64, self.begun.elapsed());
-            // If standard error is closed, nobody can be told.
-            let _ = writeln!(std::io::stderr(), "{line}");
-        }
+    }
+
+    /// Shows what is being done.
+    pub fn stage(&self, stage: &str) {
+        stage.clone_into(&mut self.stage.lock().unwrap_or_else(PoisonError::into_inner));
+        self.bar.set_message(stage.to_owned());
     }
 }
 
-/// What is done, and how long the rest takes if it goes on like that.
-fn line(name: &str, fraction: f64, elapsed: Duration) -> String {
+/// A line every ten seconds, until there is nobody to end it.
+fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
+    let begun = Instant::now();
+    while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
+        let done = bar.position() as f64 / PARTS as f64;
+        let line = line(name, &stage.lock().unwrap_or_else(PoisonError::into_inner), done, begun.elapsed());
+        // If standard error is closed, nobody can be told.
+        let _ = writeln!(std::io::stderr(), "{line}");
+    }
+}
+
+/// What is being done, how much is done, and how long the rest takes.
+fn line(name: &str, stage: &str, fraction: f64, elapsed: Duration) -> String {
+    let mut line = name.to_owned();
+    let separator = if stage.is_empty() { ": " } else { ", " };
+    if !stage.is_empty() {
+        line += &format!(": {stage}");
+    }
+    // Writing to a text does not fail.
+    let _ = write!(line, "{separator}{:.0} % done{}", 100.0 * fraction, left(fraction, elapsed));
+    line
+}
+
+/// How long the rest takes if it goes on like that; empty where that is not known yet.
+fn left(fraction: f64, elapsed: Duration) -> String {
     let left = elapsed.as_secs_f64() * (1.0 / fraction.max(1e-6) - 1.0);
-    let left = match fraction > 0.01 && left < 1e6 {
+    match fraction > 0.01 && left < 1e6 {
         true => format!(", about {} left", HumanDuration(Duration::from_secs_f64(left))),
         false => String::new(),
-    };
-    format!("{name}: {:.0} % done{left}", 100.0 * fraction)
+    }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+        if let Some((sender, lines)) = self.lines.take() {
+            drop(sender);
+            // It has nothing to hand over; should it have panicked, the lines were lost and nothing else.
+            let _ = lines.join();
+        }
     }
 }
 
@@ -79,9 +121,9 @@ mod tests {
 
     #[test]
     fn lines_tell_what_is_left() {
-        let line = |fraction| line("crank", fraction, Duration::from_secs(30));
-        assert_eq!(line(0.25), "crank: 25 % done, about 2 minutes left");
-        assert_eq!(line(0.75), "crank: 75 % done, about 10 seconds left");
-        assert_eq!(line(0.0), "crank: 0 % done");
+        let line = |stage, fraction| line("crank", stage, fraction, Duration::from_secs(30));
+        assert_eq!(line("scan", 0.25), "crank: scan, 25 % done, about 2 minutes left");
+        assert_eq!(line("", 0.75), "crank: 75 % done, about 10 seconds left");
+        assert_eq!(line("compiling", 0.0), "crank: compiling, 0 % done");
     }
 }

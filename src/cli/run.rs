@@ -1,11 +1,10 @@
-//! `mbint run`: computes bounds of models and writes them to files.
+//! Runs models: computes their bounds and writes them to files.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::args::RunArgs;
 use super::console::Console;
-use super::job::{Job, Request, report, run_one};
+use super::job::{Job, Request, Told, report, run_one};
 use super::overview::overview;
 use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
@@ -36,13 +35,16 @@ impl Kind {
     }
 }
 
-pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failure> {
-    let request = Request::check(args)?;
+/// Runs every model and writes its results; the errors of some do not end the others.
+///
+/// # Errors
+/// Where a model is wrong as a whole; nothing was run then.
+pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told) -> Result<Status, Failure> {
     let Some(loaded) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
         return Ok(Status::Wrong);
     };
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };
-    let work = work(loaded.models, &request)?;
+    let work = work(loaded.models, request)?;
     // Every model is checked before the first run, which may take hours.
     for Work { path, kind } in &work {
         for job in kind.jobs() {
@@ -67,8 +69,8 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
         }
         // The other models run even if one fails.
         let done = match &work.kind {
-            Kind::Alone(job) => run_and_report(job, &request, console),
-            Kind::Scenes(scenes) => scenes.run(&request, console),
+            Kind::Alone(job) => run_and_report(&work.path, job, request, console, told),
+            Kind::Scenes(scenes) => scenes.run(&work.path, request, console, told),
         };
         status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
@@ -82,8 +84,16 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
     Ok(status)
 }
 
-fn run_and_report(job: &Job, request: &Request, console: &mut Console) -> Result<Status, Failure> {
-    let done = run_one(job, request)?;
+fn run_and_report(
+    path: &Path,
+    job: &Job,
+    request: &Request,
+    console: &mut Console,
+    told: &mut Told,
+) -> Result<Status, Failure> {
+    let done = run_one(job, request);
+    told(path, job, done.as_ref());
+    let done = done?;
     if !request.quiet {
         console.print(&overview(&done.summary, &done.folder, &done.files))?;
     }

@@ -1,10 +1,10 @@
 //! `mbint run` of a model with scenes: one run for each, then files that compare them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::console::{BOLD, Console, count, file_names};
-use super::job::{Done, Job, Request, report, run_one};
+use super::job::{Done, Job, Request, Told, report, run_one};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};
@@ -39,12 +39,20 @@ impl Scenes {
     }
 
     /// Runs all scenes, or those before an interruption. The others run even if one fails.
-    pub fn run(&self, request: &Request, console: &mut Console) -> Result<Status, Failure> {
+    pub fn run(
+        &self,
+        path: &Path,
+        request: &Request,
+        console: &mut Console,
+        told: &mut Told,
+    ) -> Result<Status, Failure> {
         let mut status = Status::Done;
         let mut ran: Vec<Ran> = Vec::new();
         for (scene, job) in &self.jobs {
             let start = Instant::now();
-            let done = match run_one(job, request) {
+            let done = run_one(job, request);
+            told(path, job, done.as_ref());
+            let done = match done {
                 Ok(done) => {
                     report(&done, console);
                     status = status.max(done.status);
@@ -97,12 +105,13 @@ impl Scenes {
 }
 
 /// Coordinates and time of each scene, and the largest width and error of each output's bounds.
-fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) -> Table<6> {
+fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) -> Table<7> {
     let mut table = Table::new([
         ("scene", Align::Left),
         ("coordinates", Align::Right),
         ("seconds", Align::Right),
         ("bounds", Align::Left),
+        ("unit", Align::Left),
         ("largest width", Align::Right),
         ("error", Align::Right),
     ]);
@@ -117,12 +126,12 @@ fn table<'s>(scenes: impl Iterator<Item = (&'s str, f64, Option<&'s Summary>)>) 
         for band in of_outputs {
             let name = format!("{}.{}", band.output, band.method);
             let [scene, size, seconds] = std::mem::take(&mut first);
-            table.row([scene, size, seconds, name, number(band.width), number(band.error)]);
+            table.row([scene, size, seconds, name, band.unit.clone(), number(band.width), number(band.error)]);
         }
         if none {
             let [scene, size, seconds] = first;
             let what = if summary.is_some() { "" } else { "not run, or failed" };
-            table.row([scene, size, seconds, what.to_owned(), String::new(), String::new()]);
+            table.row([scene, size, seconds, what.to_owned(), String::new(), String::new(), String::new()]);
         }
     }
     table

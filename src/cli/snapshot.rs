@@ -133,7 +133,7 @@ impl Job {
             console.print(&format!(
                 "{BOLD}{name}{BOLD:#}: not as recorded in {}\n\n{}\n",
                 shown(&place),
-                table(&found)
+                moves(&found)
             ))?;
         }
         let what = count(found.len(), "curve has moved", "curves have moved");
@@ -142,8 +142,11 @@ impl Job {
     }
 }
 
-/// What moved, with the time at which it did so most.
-fn table(found: &[Moved]) -> String {
+/// What moved, with the time at which it did so most; empty where nothing did.
+pub(super) fn moves(found: &[Moved]) -> String {
+    if found.is_empty() {
+        return String::new();
+    }
     let mut table = Table::new([
         ("output", Align::Left),
         ("time", Align::Right),

@@ -1,11 +1,11 @@
-//! `columns.json`: what the columns of `bounds.csv` are, and their units.
+//! `columns.json` and `contributions.columns.json`: what the columns of `bounds.csv` and `contributions.csv` are, and their units.
 
 use serde::Serialize;
 
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::Bounds;
 
-/// A column of `bounds.csv`.
+/// A column of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Column {
     /// Its heading.
@@ -51,6 +51,40 @@ pub fn columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json::Error> {
     }
     if !bounds.covered.is_empty() {
         columns.push(whole("covered", "covered", ""));
+    }
+    let mut json = serde_json::to_vec_pretty(&columns)?;
+    json.push(b'\n');
+    Ok(json)
+}
+
+/// The columns of `contributions.csv` likewise: the shares `main` and `total` of an output's variance, and `width_without`, in the
+/// output's unit, each of an `output` and a `parameter`.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn contribution_columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json::Error> {
+    #[derive(Serialize)]
+    struct OfParameter<'b> {
+        #[serde(flatten)]
+        column: Column,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        parameter: Option<&'b str>,
+    }
+    let time = Column { column: "t".to_owned(), quantity: "time", unit: "s".to_owned(), output: None, method: None };
+    let mut columns = vec![OfParameter { column: time, parameter: None }];
+    for (output, contributions) in bounds.outputs.iter().zip(&bounds.contributions) {
+        for contribution in contributions {
+            for (quantity, unit) in [("main", "1"), ("total", "1"), ("width_without", output.unit.as_str())] {
+                let column = Column {
+                    column: format!("{}.{}.{quantity}", output.name, contribution.parameter),
+                    quantity,
+                    unit: unit.to_owned(),
+                    output: Some(output.name.clone()),
+                    method: None,
+                };
+                columns.push(OfParameter { column, parameter: Some(&contribution.parameter) });
+            }
+        }
     }
     let mut json = serde_json::to_vec_pretty(&columns)?;
     json.push(b'\n');

@@ -12,7 +12,9 @@ use crate::export::owned::{PAGE, SCHEMA, SUMMARY, owned};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
 use crate::export::stems::unique_stems;
 use crate::export::statistics::statistics_csv;
-use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg, reduced_csv};
+use crate::export::{
+    bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg, reduced_csv,
+};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};
 
@@ -37,6 +39,7 @@ pub fn write_results(
     files.add("columns.json", &columns_json(bounds)?)?;
     if !bounds.contributions.is_empty() {
         files.add("contributions.csv", &contributions_csv(bounds)?)?;
+        files.add("contributions.columns.json", &contribution_columns_json(bounds)?)?;
     }
     if let Some(statistics) = summary.statistics.as_ref().filter(|statistics| !statistics.outputs.is_empty()) {
         files.add("statistics.csv", &statistics_csv(statistics)?)?;

@@ -27,7 +27,7 @@ mod statistics;
 mod sweep_files;
 
 pub use self::csv::bounds_csv;
-pub use columns::columns_json;
+pub use columns::{columns_json, contribution_columns_json};
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
 pub use drawing::write_drawing;
@@ -36,7 +36,7 @@ pub use files::write_results;
 pub use folder::{prepare_folder, write_pages};
 pub use junit::{Suite, write_junit};
 pub use overlay::SceneBounds;
-pub use owned::holds_complete_results;
+pub use owned::{SUMMARY, holds_complete_results};
 pub use plot::{noise, plot_svg};
 pub use reduced::reduced_csv;
 pub use reference::effects as effects_page;

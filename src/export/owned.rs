@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 /// The summary's file.
-pub(super) const SUMMARY: &str = "summary.json";
+pub const SUMMARY: &str = "summary.json";
 
 /// The report's file: of whatever run, it is made of the other files.
 pub(super) const PAGE: &str = "report.html";

@@ -246,7 +246,7 @@ fn describe(
     let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
     match &robot {
         Some(robot) => robot.finish(&mut reader, &variant.robot, limits, output_entries.is_empty()),
-        None => no_limits(&mut reader, limits),
+        None => no_robot(&mut reader, &fields),
     }
     // A robot's own effects have names, too.
     requests::outputs(&mut reader, output_entries);
@@ -316,11 +316,19 @@ fn not_empty(reader: &mut Reader, fields: &Fields, bodies: &[Entry], outputs: &[
     }
 }
 
-/// Reports limits that no robot has.
-fn no_limits(reader: &mut Reader, limits: Option<(&Node, Span)>) {
-    if let Some((_, at)) = limits {
+/// Reports what is said of a robot that the model does not have.
+fn no_robot(reader: &mut Reader, fields: &Fields) {
+    if fields.get("limits").is_some() {
         let message = "`limits` are those of a robot's joints, but the model names no `urdf`";
-        reader.error(at, message, "the effect `stop` limits a joint of the model's own".to_owned());
+        reader.error(
+            fields.key_span("limits"),
+            message,
+            "the effect `stop` limits a joint of the model's own".to_owned(),
+        );
+    }
+    if fields.get("base").is_some() {
+        let message = "`base` says how a robot stands, but the model names no `urdf`";
+        reader.error(fields.key_span("base"), message, "a body that no joint holds is free".to_owned());
     }
 }
 

@@ -203,8 +203,11 @@ fn decay_by_scheme(coefficients: Coefficients, step: f64) -> f64 {
         Vector3::new(-new, v_known + gamma * step * of_new * new, of_new * new + known)
     };
     let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(advance);
-    let radius =
-        Matrix3::from_columns(&columns).complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max);
+    let radius = Matrix3::from_columns(&columns)
+        .complex_eigenvalues()
+        .iter()
+        .map(|root| (root.re * root.re + root.im * root.im).sqrt())
+        .fold(0.0, f64::max);
     (-std::f64::consts::LN_2 * math::log2(radius)).max(0.0)
 }
 

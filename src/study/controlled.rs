@@ -37,6 +37,7 @@ const STEADY: f64 = 0.5;
 impl Study<'_> {
     /// The schedule of the controlling samples serves all; a sample that needs shorter steps in between takes its own.
     pub(super) fn run_controlled(&self, tolerance: f64) -> Result<Ran, SimulationError> {
+        (self.stage)("choosing the steps");
         let samples = self.controlling_samples();
         if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
             match self.explicit_within(tolerance, &samples)? {

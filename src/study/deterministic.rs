@@ -31,6 +31,7 @@ impl Study<'_> {
         };
         let schedule = explicit.as_ref().unwrap_or(schedule);
         let mut steps = StepSearch::new(schedule, self.may_extrapolate());
+        (self.stage)("nominal motion");
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let (halved, odd) = (schedule.refined(2), schedule.at_odds());

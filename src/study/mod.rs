@@ -36,6 +36,7 @@ mod structure;
 mod subsystems;
 mod switches;
 mod visits;
+mod work;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;
@@ -72,6 +73,8 @@ pub struct Options<'a> {
     pub costly: bool,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Told what is being done, in a few words, whenever something else begins.
+    pub stage: &'a (dyn Fn(&str) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
 }
@@ -86,6 +89,7 @@ impl Default for Options<'_> {
             skip_infeasible: false,
             costly: true,
             progress: &|_| (),
+            stage: &|_| (),
             interrupted: &|| false,
         }
     }

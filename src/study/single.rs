@@ -31,6 +31,8 @@ pub(super) struct Study<'a> {
     /// Where outputs are reduced to one number: what is accumulated for that, and what samples were reduced to.
     pub(super) store: OnceLock<Store>,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
+    /// Told what is being done.
+    pub(super) stage: &'a (dyn Fn(&str) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
 }
@@ -67,12 +69,23 @@ impl<'a> Study<'a> {
         };
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
-        let Options { certify_time, progress, interrupted, .. } = *options;
+        let Options { certify_time, progress, stage, interrupted, .. } = *options;
         let has_steps = !simulator.system.analysis.is_without_steps();
         let time_functions =
             if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
         let store = OnceLock::new();
-        Ok(Self { description, simulator, domain, request, time_functions, certify_time, store, progress, interrupted })
+        Ok(Self {
+            description,
+            simulator,
+            domain,
+            request,
+            time_functions,
+            certify_time,
+            store,
+            progress,
+            stage,
+            interrupted,
+        })
     }
 
     /// The same over a part of the box.
@@ -117,6 +130,7 @@ impl<'a> Study<'a> {
                 })
             }
             Stepping::Tolerance(tolerance) => {
+                (self.stage)("choosing the steps");
                 let samples = self.controlling_samples();
                 let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
                 // The nominal sample may be of another part of the box.
@@ -177,6 +191,7 @@ impl<'a> Study<'a> {
             None => None,
         };
         let motions = self.motions(&schedule, tolerance, &progress);
+        (self.stage)("nominal motion");
         let (nominal, singular) = timed(&schedule, "nominal", || motions.nominal())?;
         let (mut methods, mut halved) = (Vec::new(), Vec::new());
         if let Some((validation, _)) = &validation {
@@ -226,6 +241,7 @@ impl<'a> Study<'a> {
             if (self.interrupted)() {
                 break;
             }
+            (self.stage)(method.name());
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
             let before = motions.over();
             let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
@@ -271,26 +287,6 @@ impl<'a> Study<'a> {
             found: Found::default(),
         };
         Ok(self.conclude(results, None))
-    }
-
-    /// Simulations of the methods whose samples are given; those that a tolerance decides are within the budget.
-    pub(super) fn planned_simulations(&self) -> f64 {
-        let parts = if self.certify_time { 3.0 } else { 1.0 };
-        let methods = self.request.methods();
-        parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
-    }
-
-    /// Samples × rows of all methods.
-    fn total_work(&self, schedule: &Schedule) -> usize {
-        let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
-        let methods: usize = self.request.methods().iter().map(work).sum();
-        let k = self.domain.dimension();
-        let held_out = if self.request.is_empty() {
-            0
-        } else {
-            step_validation(k).len() + validation(k, self.request.degree()).len()
-        };
-        (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }
 

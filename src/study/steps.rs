@@ -60,6 +60,7 @@ impl Study<'_> {
         tolerance: Option<Controller>,
         progress: &Progress,
     ) -> Result<Balanced, SimulationError> {
+        (self.stage)("validation samples");
         let problem = problem(self.description, &self.simulator);
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);

@@ -105,6 +105,7 @@ pub(super) fn run(
     options: &Options,
     keep: bool,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    (options.stage)("compiling");
     // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
     let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
     let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();

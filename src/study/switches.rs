@@ -20,6 +20,7 @@ impl Study<'_> {
         if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
+        (self.stage)("searching for switches");
         let begun = Instant::now();
         let at_rows = schedule.ending_at_rows();
         let steps = (&at_rows, tolerance);

@@ -18,6 +18,29 @@ simulation: {{ duration: 2, step: 1e-3, output_step: 0.01 }}
     )))
 }
 
+/// Speeds that are pieces of formulas: the areas under them.
+#[test]
+fn motors_follow_speeds_with_jumps_and_corners() {
+    type Area = fn(f64) -> f64;
+    let jump: Area = |t| if t < 0.75 { 2.0 * t } else { 1.5 - (t - 0.75) };
+    let stairs: Area = |t| if t < 0.5 { 0.0 } else { t - 0.5 + (t - 1.0).max(0.0) + (t - 1.5).max(0.0) };
+    let smooth: Area = |t| {
+        let u = ((t - 0.25) / 0.5).clamp(0.0, 1.0);
+        0.5 * (u.powi(3) - 0.5 * u.powi(4)) + (t - 0.75).max(0.0)
+    };
+    let mut findings = Findings::default();
+    for (speed, area) in [
+        ("if(t < 0.75 s, 2 rad/s, -1 rad/s)", jump),
+        ("floor(t/(0.5 s))*(1 rad/s)", stairs),
+        ("smoothstep(0.25 s, 0.75 s, t)*(1 rad/s)", smooth),
+    ] {
+        let bounds = wheel(&format!("from: 0.3, speed: \"{speed}\""));
+        let angle = distance_from(&bounds.times, curve(&bounds, "angle"), |t| 0.3 + area(t));
+        findings.check(angle < 1e-11, format_args!("{speed}: angle off by {angle:e}"));
+    }
+    findings.none();
+}
+
 /// Moves begin at 0.5 s and take 1 s: by their published laws of motion.
 #[test]
 fn motors_follow_their_profiles() {

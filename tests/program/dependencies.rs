@@ -53,6 +53,13 @@ fn licences_of_all_dependencies_are_allowed() {
     assert!(wrong.is_empty(), "not in deny.toml: {wrong:#?}");
 }
 
+/// Its kernels fuse where the processor can, and give other bits there; nalgebra's feature `std` brings it.
+#[test]
+fn no_dependency_multiplies_matrices_by_kernels_that_fuse() {
+    let lock = fs::read_to_string(Path::new(ROOT).join("Cargo.lock")).unwrap();
+    assert!(lock.contains("name = \"nalgebra\"") && !lock.contains("matrixmultiply"));
+}
+
 /// The evaluation of programs has two functions that the compiler makes twice; nothing else is unsafe.
 #[test]
 fn unsafe_code_is_forbidden_in_every_crate_but_one() {

@@ -14,6 +14,7 @@ mod place;
 mod readme;
 mod report;
 mod rooms;
+mod run_modes;
 mod scenes;
 mod schema;
 mod shells;

@@ -39,9 +39,42 @@ fn antiderivatives_are_right() {
         "min(t/a, 1)",
         "5*max(0, 2*(t - 0.3)) - 4*min(a, 1 - t)",
         "max(a, 0.5) + t",
+        "floor(3*t)",
+        "2*mod(t, 0.3) - abs(1 - 4*t)/a",
+        "if(t < 0.5, 1, 3)",
+        "if(t >= a, t^2*a, sin(2*t))",
+        "if(t < 0.2, 0, if(t < 0.9, 2*(t - 0.2), 1.4))",
+        "a*smoothstep(0.2, 0.8, t)",
+        "clamp(3 - 5*t, -1, 0.5)^3 + max(t, a)^2",
     ] {
         let [slope, start] = integral(text).unwrap_or_else(|| panic!("no integral of {text}"));
         assert!(slope < 1e-12 && start == 0.0, "{text}: {slope:e}, {start:e}");
+    }
+}
+
+/// Between jumps and corners a derivative tells nothing of what lies between two pieces: integrals by hand.
+#[test]
+fn integrals_of_pieces_are_their_areas() {
+    for (text, end, area) in [
+        ("if(t < 0.5, 1, 3)", 2.0, 5.0),
+        ("if(t < 0.5, t^2, 1 - t)", 1.0, 1.0 / 24.0 + 0.125),
+        ("if(0.5 > t, 1, 3)", 0.25, 0.25),
+        ("if(t <= 0.2, 0, if(t < 0.9, 2*(t - 0.2), 1.4))", 1.0, 0.49 + 0.14),
+        ("floor(t)", 2.5, 2.0),
+        ("floor(3*t)", 1.0, 1.0),
+        ("mod(t, 0.3)", 1.0, 0.14),
+        ("abs(t - 0.5)", 1.0, 0.25),
+        ("smoothstep(0.2, 0.8, t)", 1.0, 0.5),
+        ("t*smoothstep(0.2, 0.8, 0.9)", 2.0, 2.0),
+        ("max(t, 0.3)^2", 1.0, 0.027 + (1.0 - 0.027) / 3.0),
+        ("clamp(1 - t, 0.25, 0.5)^2", 1.0, 0.5 * 0.25 + (0.125 - 0.015_625) / 3.0 + 0.25 * 0.0625),
+    ] {
+        let builder = Builder::new();
+        let t = builder.variable("t");
+        let of = Formula::parse(text).unwrap().build(&builder, |_| Ok::<_, ()>(t)).unwrap();
+        let integral = of.integral(t).unwrap_or_else(|| panic!("no integral of {text}"));
+        let found = builder.graph().evaluate(&[integral.expr()], |_| end)[0];
+        assert!((found - area).abs() < 1e-14, "{text}: {found} instead of {area}");
     }
 }
 
@@ -49,6 +82,9 @@ fn antiderivatives_are_right() {
 fn what_has_no_integral_here_is_told() {
     for text in
         ["sin(t^2)", "sin(t)^2", "sin(t)*cos(2*t)", "1/t", "1/(2 + t)^2", "tanh(t)", "max(sin(t), 0)", "t*sqrt(t + 1)"]
+            .into_iter()
+            // Whose derivatives end like a polynomial's.
+            .chain(["t*floor(t)", "sin(2*t + floor(t))", "if(sin(t) > 0, 1, 2)", "t*max(t, 0.5)", "t*abs(t)"])
     {
         assert_eq!(integral(text), None, "{text}");
     }

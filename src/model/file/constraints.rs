@@ -45,7 +45,7 @@ fn of_model(root: &mut Map<String, Value>) {
     });
     root.insert("if".to_owned(), json!({ "not": { "required": ["urdf"] } }));
     root.insert("then".to_owned(), alone);
-    root.insert("dependentRequired".to_owned(), json!({ "limits": ["urdf"] }));
+    root.insert("dependentRequired".to_owned(), json!({ "limits": ["urdf"], "base": ["urdf"] }));
     root.insert("examples".to_owned(), json!([example()]));
     let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) else { return };
     insert(&mut properties["base"], "default", json!("fixed"));

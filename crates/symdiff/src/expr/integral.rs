@@ -6,9 +6,14 @@
 //! uⁿ, √u                        uⁿ⁺¹/((n + 1) u̇), n ≠ −1
 //! max(a, b)                     ∫ b dt + max(u, 0)²/(2 u̇), u = a − b;   min(a, b) = a + b − max(a, b)
 //! p f                           p F₁ − ṗ F₂ + p̈ F₃ − …, F the repeated antiderivatives of sin u, cos u, exp u
+//! ⌊u⌋, |u|                      ⌊u⌋ (u − (⌊u⌋ + 1)/2)/u̇, u |u|/(2u̇)
+//! f where u > 0                 F(max(t, t₀)) or F(min(t, t₀)), u(t₀) = 0, u̇ a number
+//! p(w), w = u within [a, b]     [P(w) + p(a) min(u − a, 0) + p(b) max(u − b, 0)]/u̇
 //! ```
 //!
 //! and sums of these with factors that do not depend on t.
+
+mod pieces;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -54,10 +59,17 @@ impl Graph {
                     let (above, opposite) = (self.sub(a, b), self.neg(factor));
                     parts.push(self.ramp(opposite, above, by)?);
                 }
+                Node::Binary(function @ (Binary::Select | Binary::SelectElse), condition, value) => {
+                    let whole = self.integral_under(function, condition, value, by)?;
+                    parts.push(self.mul(factor, whole));
+                }
                 _ => {
                     let whole = match self.polynomial(term, by) {
                         Some(slopes) => self.integral_of_polynomial(&slopes, by),
-                        None => self.integral_of_product(term, by)?,
+                        None => match self.integral_of_limited(term, by) {
+                            Some(whole) => whole,
+                            None => self.integral_of_product(term, by)?,
+                        },
                     };
                     parts.push(self.mul(factor, whole));
                 }
@@ -81,6 +93,9 @@ impl Graph {
 
     /// u̇ of u = a + b t; `None` where it is not that, or does not depend on t.
     fn steady_slope(&mut self, u: Expr, by: Expr) -> Option<Expr> {
+        if !self.is_algebraic(u, by) {
+            return None;
+        }
         let slope = self.derivative(u, by);
         (!self.is_zero(slope) && self.moving(slope, by).is_empty()).then_some(slope)
     }
@@ -99,8 +114,24 @@ impl Graph {
         Some(self.mul(factor, area))
     }
 
+    /// Whether nothing but sums, products, quotients and powers makes an expression of t: what has jumps or corners may have a
+    /// derivative like a polynomial's between them.
+    fn is_algebraic(&self, of: Expr, by: Expr) -> bool {
+        self.moving(of, by).into_iter().all(|expr| {
+            matches!(
+                self.node(expr),
+                Node::Symbol(_)
+                    | Node::Unary(Unary::Neg, _)
+                    | Node::Binary(Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Pow, ..)
+            )
+        })
+    }
+
     /// A polynomial and its derivatives.
     fn polynomial(&mut self, of: Expr, by: Expr) -> Option<Vec<Expr>> {
+        if !self.is_algebraic(of, by) {
+            return None;
+        }
         let mut slopes = vec![of];
         while slopes.len() <= MOST {
             let slope = self.derivative(slopes[slopes.len() - 1], by);
@@ -187,6 +218,16 @@ impl Graph {
                     Unary::Sqrt => {
                         let cube = self.mul(u, of);
                         self.scale(2.0 / 3.0, cube)
+                    }
+                    Unary::Floor => {
+                        let half = self.scale(0.5, of);
+                        let (middle, shift) = (self.sub(u, half), self.constant(0.5));
+                        let middle = self.sub(middle, shift);
+                        self.mul(of, middle)
+                    }
+                    Unary::Abs => {
+                        let square = self.mul(u, of);
+                        self.scale(0.5, square)
                     }
                     _ => return None,
                 };

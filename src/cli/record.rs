@@ -1,0 +1,57 @@
+//! What `mbint run --format json` prints of each model or scene.
+
+use std::fs;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::Failure;
+use super::job::{Done, Job};
+use crate::export::SUMMARY;
+use crate::model;
+
+/// How a model or a scene ended.
+#[derive(Serialize)]
+pub(super) struct Record {
+    /// The model's file.
+    file: String,
+    /// The model's name, and the scene's after a slash.
+    model: String,
+    /// As the command's, had it run this alone.
+    exit_code: u8,
+    /// Why there are no results.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+    /// Where the results are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    folder: Option<String>,
+    /// What `summary.json` has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    summary: Option<serde_json::Value>,
+}
+
+impl Record {
+    /// Of a job that ended.
+    pub fn of(path: &Path, job: &Job, done: Result<&Done, &Failure>) -> Self {
+        let nothing = Self {
+            file: model::shown(path),
+            model: job.model.name.clone(),
+            exit_code: 0,
+            error: None,
+            folder: None,
+            summary: None,
+        };
+        match done {
+            Ok(done) => {
+                // As it was written, so that both say the same.
+                let summary =
+                    fs::read(done.folder.join(SUMMARY)).ok().and_then(|text| serde_json::from_slice(&text).ok());
+                let folder = Some(done.folder.display().to_string());
+                Self { exit_code: done.status.code(), folder, summary, ..nothing }
+            }
+            Err(failure) => {
+                Self { exit_code: failure.status().code(), error: Some(failure.message().to_owned()), ..nothing }
+            }
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! `mbint run --watch`: runs again when a model's files change, and tells which bounds moved.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, SystemTime};
+
+use super::console::{BOLD, Console, count};
+use super::job::{Done, Job, Request};
+use super::run::run_all;
+use super::snapshot::moves;
+use super::{Failure, Status, interrupt};
+use crate::export::{Snapshot, moved, snapshot_table};
+use crate::model::{self, is_standard_input};
+
+/// Between two looks at the files.
+const BETWEEN: Duration = Duration::from_millis(200);
+
+/// Tells whether a file is as it was: when it was written, and its length; `None` where there is none.
+type Mark = Option<(SystemTime, u64)>;
+
+pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Status, Failure> {
+    if request.models.iter().any(|path| is_standard_input(path)) {
+        return Err(Failure::Wrong("standard input does not change: --watch needs a file".to_owned()));
+    }
+    let is_quiet = request.quiet;
+    let mut known: BTreeMap<String, Snapshot> = BTreeMap::new();
+    interrupt::listen();
+    loop {
+        // Before they are read: what changes meanwhile is seen.
+        let before = marks(&request);
+        let mut changes = String::new();
+        let mut told = |_: &Path, job: &Job, done: Result<&Done, &Failure>| {
+            if let Ok(done) = done
+                && done.summary.failure.is_none()
+                && let Ok(now) = Snapshot::read(&snapshot_table(&done.bounds))
+            {
+                let name = &job.model.name;
+                if let Some(then) = known.insert(name.clone(), now) {
+                    changes += &told_of(name, &moves(&moved(&then, &known[name])));
+                }
+            }
+        };
+        let status = run_all(&request, console, &mut told).unwrap_or_else(|failure| failure.report(console));
+        if !is_quiet {
+            console.print(&changes)?;
+            let files = count(before.len(), "file", "files");
+            console.print(&format!("watching {files}; Ctrl-C ends\n"))?;
+        }
+        if status == Status::Interrupted || !changed(&request, before) {
+            return Ok(Status::Interrupted);
+        }
+        // From now on what changed is enough.
+        request.quiet = true;
+    }
+}
+
+/// What moved of a model or a scene.
+fn told_of(name: &str, moves: &str) -> String {
+    match moves {
+        "" => format!("{BOLD}{name}{BOLD:#}: run again, and no bound moved by more than the stated errors\n"),
+        moves => format!("{BOLD}{name}{BOLD:#}: run again\n\n{moves}\n"),
+    }
+}
+
+/// Waits until a file is not as it was; `false` at an interruption.
+fn changed(request: &Request, before: BTreeMap<PathBuf, Mark>) -> bool {
+    // An interruption ends the waiting here, and not the program wherever it is.
+    interrupt::keep_results(true);
+    while !interrupt::asked() {
+        sleep(BETWEEN);
+        if before.iter().any(|(path, mark)| mark_of(path) != *mark) {
+            settle(request);
+            interrupt::keep_results(false);
+            return !interrupt::asked();
+        }
+    }
+    false
+}
+
+/// Waits until the files stay as they are: an editor may write in parts, or put another file in place.
+fn settle(request: &Request) {
+    let mut last = marks(request);
+    while !interrupt::asked() {
+        sleep(BETWEEN);
+        let now = marks(request);
+        if now == last {
+            return;
+        }
+        last = now;
+    }
+}
+
+/// The models' files with those that they name.
+fn marks(request: &Request) -> BTreeMap<PathBuf, Mark> {
+    let mut marks = BTreeMap::new();
+    for path in &request.models {
+        let reading = model::read(path, &request.overrides);
+        let named = reading.diagnostics.sources.all().iter().map(|source| PathBuf::from(&source.name));
+        // The texts of the command line are no files.
+        let named = named.filter(|path| path.is_file()).chain([path.clone()]);
+        marks.extend(named.map(|path| (path.clone(), mark_of(&path))));
+    }
+    marks
+}
+
+fn mark_of(path: &Path) -> Mark {
+    let data = fs::metadata(path).ok()?;
+    Some((data.modified().ok()?, data.len()))
+}
