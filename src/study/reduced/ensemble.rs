@@ -20,6 +20,9 @@ const MOST_KEPT: usize = 1 << 24;
 /// A schedule: number of its steps, its longest one's bits, and how many are taken for each.
 pub type Steps = (usize, u64, usize);
 
+/// Steps, and the bits of a sample's parameters.
+type Key = (Steps, Vec<u64>);
+
 /// The steps of a schedule.
 pub fn steps_of(schedule: &Schedule) -> Steps {
     (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits(), schedule.integration.steps())
@@ -30,7 +33,7 @@ pub fn steps_of(schedule: &Schedule) -> Steps {
 pub struct Store {
     pub plan: Plan,
     /// By steps and the bits of the parameters.
-    kept: Mutex<BTreeMap<(Steps, Vec<u64>), Vec<f64>>>,
+    kept: Mutex<BTreeMap<Key, Vec<f64>>>,
 }
 
 fn bits(sample: &Sample) -> Vec<u64> {
@@ -63,7 +66,7 @@ impl Store {
     /// All samples of a schedule, in an order that does not depend on that of their simulations.
     pub fn samples(&self, steps: Steps) -> Vec<(Sample, Vec<f64>)> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let of = |((own, sample), channels): (&(Steps, Vec<u64>), &Vec<f64>)| {
+        let of = |((own, sample), channels): (&Key, &Vec<f64>)| {
             (*own == steps).then(|| (sample.iter().map(|&bits| f64::from_bits(bits)).collect(), channels.clone()))
         };
         kept.iter().filter_map(of).collect()

@@ -280,7 +280,7 @@ impl Humps {
     /// Times of the windows in which the event occurs.
     fn occurring(&self, channels: &[f64]) -> impl Iterator<Item = f64> {
         // NaN occurs, and is passed on.
-        let occurs = |&(height, _): &(&usize, &usize)| !(channels[*height] < 0.0);
+        let occurs = |&(height, _): &(&usize, &usize)| channels[*height] >= 0.0 || channels[*height].is_nan();
         self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| channels[time])
     }
 }
