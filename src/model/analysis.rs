@@ -184,9 +184,17 @@ pub fn check_requests(reader: &mut Reader, fields: &Fields) {
     let message = || format!("it is taken from the steps of a motion, and `analysis: {}` has none", analysis.name());
     let help = "with `analysis: motion` it can be asked for";
     if analysis != Analysis::Motion && !reader.model.requirements.is_empty() {
-        reader.error(fields.key_span("requirements"), format!("a requirement is refused: {}", message()), help.to_owned());
+        reader.error(
+            fields.key_span("requirements"),
+            format!("a requirement is refused: {}", message()),
+            help.to_owned(),
+        );
     } else if analysis != Analysis::Motion && !reader.model.reduced.is_empty() {
-        reader.error(fields.key_span("outputs"), format!("a reduced output is refused: {}", message()), help.to_owned());
+        reader.error(
+            fields.key_span("outputs"),
+            format!("a reduced output is refused: {}", message()),
+            help.to_owned(),
+        );
     }
     if matches!(reader.model.analysis, Analysis::Modes(_)) && reader.model.bounds.taylor.is_some() {
         let message = "modes have no Taylor bounds: which eigenvalue is which may change over the box";

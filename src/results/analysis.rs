@@ -4,19 +4,6 @@ use serde::Serialize;
 
 use super::OutputBounds;
 
-/// What a harmonic load of size one does to an output at one frequency; vectors run over the times.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ResponsePoint {
-    /// Name of the response in the model.
-    pub name: String,
-    /// Hz
-    pub frequency: f64,
-    /// In the output's unit over that of the load.
-    pub amplitude: OutputBounds,
-    /// rad; of the output behind the load, where it is negative.
-    pub phase: OutputBounds,
-}
-
 /// What kind of analysis it was, and what it says of the nominal configuration.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AnalysisSummary {

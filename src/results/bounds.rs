@@ -58,6 +58,19 @@ pub struct OutputBounds {
     pub bands: Vec<Band>,
 }
 
+/// What a harmonic load of size one does to an output at one frequency; vectors run over the times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponsePoint {
+    /// Name of the response in the model.
+    pub name: String,
+    /// Hz
+    pub frequency: f64,
+    /// In the output's unit over that of the load.
+    pub amplitude: OutputBounds,
+    /// rad; of the output behind the load, where it is negative.
+    pub phase: OutputBounds,
+}
+
 /// Of one output's bands, the one to look at: the first that is resolved to the end, or else the first.
 pub fn foremost<T>(bands: &[T], is_resolved: impl Fn(&T) -> bool) -> Option<&T> {
     bands.iter().find(|band| is_resolved(band)).or(bands.first())

@@ -18,8 +18,8 @@ mod structure;
 mod summary;
 
 pub use crate::methods::Method;
-pub use analysis::{AnalysisSummary, ResponsePoint, ValueSummary};
-pub use bounds::{Band, Bounds, Contribution, OutputBounds, foremost};
+pub use analysis::{AnalysisSummary, ValueSummary};
+pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
 #[cfg(test)]
 pub(crate) use cost::tests as cost_tests;
 pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};

@@ -210,3 +210,36 @@ outputs: { tip: blade.end.y }
         close(frequency(&bounds, mode + 1), omega, tolerance);
     }
 }
+
+#[test]
+fn a_chain_with_any_damping_vibrates_as_another_solver_says() {
+    let text = "
+analysis: modes
+modes: { responses: { end: { load: x3, output: x1, from: 1.5, to: 6, points: 3 } } }
+bodies:
+  a: { mass: 2, coordinates: [x] }
+  b: { mass: 3, coordinates: [x] }
+  c: { mass: 1.5, coordinates: [x] }
+effects:
+  s1: { spring_damper: { between: [ground, a], along: x, stiffness: 400, damping: 4, free_length: 0 } }
+  s2: { spring_damper: { between: [a, b], along: x, stiffness: 250, damping: 2, free_length: 0 } }
+  s3: { spring_damper: { between: [b, c], along: x, stiffness: 300, damping: 0, free_length: 0 } }
+  s4: { spring_damper: { between: [ground, c], along: x, stiffness: 150, damping: 1, free_length: 0 } }
+outputs: { x1: a.x, x2: b.x, x3: c.x }
+";
+    let bounds = nominal(&read(text));
+    // scipy.linalg.eigvals of [0 I; −M⁻¹K −M⁻¹C], and scipy.linalg.solve at 3 Hz.
+    let modes = [
+        (1.237_608_876_995_198_7, 0.030_727_455_612_764_23),
+        (2.850_661_354_825_539_7, 0.056_503_081_317_016_96),
+        (3.282_149_244_380_440_3, 0.044_402_608_476_486_645),
+    ];
+    for (mode, (frequency, damping)) in modes.into_iter().enumerate() {
+        close(value(&bounds, &format!("mode{}.frequency", mode + 1)), frequency, 1e-11);
+        close(value(&bounds, &format!("mode{}.damping", mode + 1)), damping, 1e-9);
+    }
+    let middle = &bounds.responses[1];
+    close(middle.frequency, 3.0, 1e-12);
+    close(middle.amplitude.nominal[0], 0.007_119_005_606_388_189, 1e-10);
+    close(middle.phase.nominal[0], 0.557_649_985_064_347_9, 1e-9);
+}
