@@ -121,13 +121,16 @@ fn what_older_scenes_left_goes() {
     let run = || place.run("run slides.yaml --method scan -q", 0);
     model("scenes: { one: {}, two: {}, three: { without: [x] } }\n");
     run();
-    let all = ["one", "scenes.csv", "scenes.json", "three", "two", "x.svg", "y.svg"];
+    let all = ["one", "report.html", "scenes.csv", "scenes.json", "three", "two", "x.svg", "y.svg"];
     assert_eq!(place.files("results/slides"), all);
     fs::write(place.path().join("results/slides/two/mine.txt"), "").unwrap();
     // Only one of them has x now, and two are no more: what is not of their runs stays.
     model("scenes: { one: {}, other: { without: [x] } }\n");
     run();
-    assert_eq!(place.files("results/slides"), ["one", "other", "scenes.csv", "scenes.json", "two", "y.svg"]);
+    assert_eq!(
+        place.files("results/slides"),
+        ["one", "other", "report.html", "scenes.csv", "scenes.json", "two", "y.svg"]
+    );
     assert_eq!(place.files("results/slides/two"), ["mine.txt"]);
     // Scenes that were not asked for are kept.
     model("scenes: { one: {}, other: {}, more: {}, last: {} }\n");

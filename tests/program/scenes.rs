@@ -245,7 +245,8 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
     door(&place);
     let (output, errors) = place.run("run door.yaml", 0);
     assert_eq!(errors, "");
-    assert_eq!(place.files("results/door"), ["angle.svg", "friction", "ideal", "long", "scenes.csv", "scenes.json"]);
+    let all = ["angle.svg", "friction", "ideal", "long", "report.html", "scenes.csv", "scenes.json"];
+    assert_eq!(place.files("results/door"), all);
     for text in ["door: 3 scenes", "angle.chebyshev", "lost.chebyshev", "angle.scan", "seconds", "largest width"] {
         assert!(output.contains(text), "{text} in\n{output}");
     }
@@ -312,7 +313,7 @@ fn scenes_are_chosen_by_name() {
     assert!(fs::read_to_string(place.path().join("one/friction/summary.json")).unwrap().contains("\"seconds\""));
     let (output, _) = place.run("run door.yaml --scene long --scene ideal -o two", 0);
     assert!(output.starts_with("door: 2 scenes"), "{output}");
-    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "scenes.csv", "scenes.json"]);
+    assert_eq!(place.files("two"), ["angle.svg", "ideal", "long", "report.html", "scenes.csv", "scenes.json"]);
     place.run("run door.yaml --scene long,ideal -o three -q", 0);
     assert_eq!(place.files("three"), place.files("two"));
     // Scenes of several models have the models' folders.
