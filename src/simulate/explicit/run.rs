@@ -264,6 +264,9 @@ fn reduce(reduction: &mut Option<Reduction>, rows: &mut RowClosure, alive: &[boo
     }
 }
 
+/// What is done after a step, given its end.
+type Stepped<'f, M> = dyn FnMut(&mut RungeKutta, &mut M, f64) + 'f;
+
 /// The state at a time, after those steps of a list that lead to it; a step that passes it stays open. `stepped` is called after each,
 /// before the run goes on from its end.
 fn reach<M: Motion>(
@@ -271,7 +274,7 @@ fn reach<M: Motion>(
     motion: &mut M,
     (steps, ends): (&mut usize, &[f64]),
     time: f64,
-    (state, stepped): (&mut [f64], &mut dyn FnMut(&mut RungeKutta, &mut M, f64)),
+    (state, stepped): (&mut [f64], &mut Stepped<'_, M>),
 ) {
     // `steps` counts the steps that are begun; the last of them is open until a row lies beyond its end.
     while time > run.time {
