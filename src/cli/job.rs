@@ -6,10 +6,13 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
+use super::shards::KeptRun;
 use super::{Failure, Status, interrupt};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
 use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
+use crate::simulate::SimulationError;
+use crate::store::{Missing, Store};
 use crate::study;
 
 /// The arguments of a run, checked.
@@ -24,6 +27,8 @@ pub(super) struct Request {
     timings: bool,
     overwrite: bool,
     settings: Settings,
+    /// Where simulations are kept, if they are.
+    pub store: Option<KeptRun>,
 }
 
 /// How a model is run.
@@ -46,6 +51,10 @@ pub(super) struct Job {
     pub folder: PathBuf,
     /// The files that the model was read from.
     pub files: Vec<ModelFile>,
+    /// Number of the model among those of the command.
+    pub number: usize,
+    /// Name of its scene, where it has some.
+    pub scene: Option<String>,
 }
 
 /// Outcome of a run.
@@ -76,6 +85,7 @@ impl Request {
             quiet: args.quiet,
             timings: args.timings,
             overwrite: args.overwrite,
+            store: args.store.map(|folder| KeptRun::new(folder, Missing::Simulate)),
             settings: Settings {
                 methods: if methods.is_empty() { None } else { Some(methods) },
                 threads: args.threads.map(usize::from),
@@ -90,7 +100,7 @@ impl Request {
 
 impl Request {
     /// What the results depend on.
-    fn asked(&self) -> RunRequest {
+    pub fn asked(&self) -> RunRequest {
         let methods = self.settings.methods.as_ref();
         RunRequest {
             set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
@@ -113,6 +123,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,
+    store: Option<&Store>,
     begun: &(dyn Fn() + Sync),
 ) -> Result<(Bounds, Summary), Failure> {
     let progress = Progress::new(&model.name, !settings.quiet);
@@ -126,19 +137,36 @@ pub(super) fn bounds(
         certify_time: settings.certify_time,
         skip_infeasible: settings.skip_infeasible,
         costly: settings.yes,
+        store,
         progress: &set_progress,
         interrupted: &interrupt::asked,
     };
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
-        if matches!(error, study::RunError::Costly(_)) { Failure::Wrong(message) } else { Failure::Failed(message) }
+        match error {
+            study::RunError::Costly(_) => Failure::Wrong(message),
+            study::RunError::Simulation(SimulationError::Deferred) => Failure::Deferred,
+            _ => Failure::Failed(message),
+        }
     })
 }
 
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
     // From the first rows on there is something to keep.
-    let (bounds, summary) = bounds(&job.model, &request.settings, &|| interrupt::keep_results(true))?;
+    let store = request.store.as_ref().map(|kept| kept.open(job, request)).transpose();
+    let store = store.map_err(|error| failed(&error))?;
+    let found = bounds(&job.model, &request.settings, store.as_ref(), &|| interrupt::keep_results(true));
+    if let (Some(kept), Some(store)) = (&request.store, &store)
+        && !kept.close(job, store)
+    {
+        found.map_or_else(
+            |failure| if matches!(failure, Failure::Deferred) { Ok(()) } else { Err(failure) },
+            |_| Ok(()),
+        )?;
+        return Err(Failure::Deferred);
+    }
+    let (bounds, summary) = found?;
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {

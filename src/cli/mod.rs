@@ -18,6 +18,7 @@ mod overview;
 mod progress;
 mod run;
 mod scenes;
+mod shards;
 mod show;
 mod snapshot;
 mod status;
@@ -41,6 +42,8 @@ enum Failure {
     Wrong(String),
     /// The command was valid and failed.
     Failed(String),
+    /// Simulations are left to shards.
+    Deferred,
 }
 
 impl Failure {
@@ -49,6 +52,8 @@ impl Failure {
         let (message, status) = match self {
             Self::Wrong(message) => (message, Status::Wrong),
             Self::Failed(message) => (message, Status::Failed),
+            // What comes next is said once for all models.
+            Self::Deferred => return Status::Deferred,
         };
         console.error(message);
         status
@@ -90,6 +95,10 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Cost(args) => cost::cost(args, console),
         Command::Explain(args) => explain::explain(&args, console),
         Command::Show(args) => show::show(&args, console),
+        Command::Plan(args) => shards::plan(args, console),
+        Command::Shard(args) => shards::shard(&args, console),
+        Command::Status(args) => shards::status(&args, console),
+        Command::Merge(args) => shards::merge(args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),

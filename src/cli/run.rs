@@ -38,11 +38,16 @@ impl Kind {
 
 pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failure> {
     let request = Request::check(args)?;
+    run_all(&request, console)
+}
+
+/// Runs every model of a request.
+pub(super) fn run_all(request: &Request, console: &mut Console) -> Result<Status, Failure> {
     let Some(loaded) = load::load_all(&request.models, &request.overrides, &request.scenes, console)? else {
         return Ok(Status::Wrong);
     };
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };
-    let work = work(loaded.models, &request)?;
+    let work = work(loaded.models, request)?;
     // Every model is checked before the first run, which may take hours.
     for Work { path, kind } in &work {
         for job in kind.jobs() {
@@ -67,8 +72,8 @@ pub(super) fn run(args: RunArgs, console: &mut Console) -> Result<Status, Failur
         }
         // The other models run even if one fails.
         let done = match &work.kind {
-            Kind::Alone(job) => run_and_report(job, &request, console),
-            Kind::Scenes(scenes) => scenes.run(&request, console),
+            Kind::Alone(job) => run_and_report(job, request, console),
+            Kind::Scenes(scenes) => scenes.run(request, console),
         };
         status = status.max(done.unwrap_or_else(|failure| failure.report(console)));
         if interrupt::asked() {
@@ -97,7 +102,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes, all, files } in models {
+    for (number, load::Model { path, name, scenes, all, files }) in models.into_iter().enumerate() {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -115,7 +120,8 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
                 model.bounds.certified = Some(Certified);
             }
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
-            (scene, Job { model, folder, files: files.clone() })
+            let job = Job { model, folder, files: files.clone(), number, scene: scene.clone() };
+            (scene, job)
         });
         // A single requested scene is run like a model.
         let alone = request.scenes.len() == 1;

@@ -65,7 +65,8 @@ impl Scenes {
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
         let files =
-            if found.is_empty() { Ok(Vec::new()) } else { write_scenes(&self.folder, &self.model, &self.all, &found) };
+            // What compares scenes is written when all are there.
+            if found.is_empty() || status == Status::Deferred { Ok(Vec::new()) } else { write_scenes(&self.folder, &self.model, &self.all, &found) };
         let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", self.model)))?;
         if !request.quiet {
             console.print(&self.overview(&ran, &files))?;

@@ -5,10 +5,11 @@
 
 use std::ops::Range as Rows;
 
+use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{ParameterBox, Sample, ScanBounds};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -17,7 +18,7 @@ pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
 pub const JET_WORK: usize = 5;
 
 /// What is kept of a simulation in each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Observed {
     /// The outputs.
     Outputs,
@@ -26,7 +27,7 @@ pub enum Observed {
 }
 
 /// How long samples are simulated together of which one stops early.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Until {
     /// Until the first stops: without it the others are of no use.
     FirstStop,
@@ -46,7 +47,7 @@ pub struct Sampling {
 }
 
 /// Why a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StopCause {
     /// A step did not converge; the equation with the largest residual.
     NotConverged {
@@ -65,7 +66,7 @@ pub enum StopCause {
 }
 
 /// Where a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Number of the sample.
     pub sample: usize,
@@ -85,7 +86,7 @@ impl Stop {
 }
 
 /// What simulations took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Newton iterations.
     pub iterations: u64,
@@ -101,7 +102,7 @@ impl std::ops::AddAssign for Effort {
 }
 
 /// What came of samples that were simulated together.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulated {
     /// What they took.
     pub effort: Effort,
@@ -175,6 +176,20 @@ pub trait Ensemble: Sync {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
 
+    /// Simulates consecutive samples of a scan's grid to the end, from number `first` on, and bounds the outputs over them. `points` are
+    /// those along each axis.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    fn scan(
+        &self,
+        samples: &[Sample],
+        points: &[usize],
+        first: usize,
+    ) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        scan_by(self, (samples, points, first), |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
+    }
+
     /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of a block
     /// and their coefficients (row, output, monomial).
     ///
@@ -200,6 +215,28 @@ pub trait Ensemble: Sync {
     /// # Errors
     /// Where it cannot be compiled.
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
+}
+
+/// Bounds of the outputs over consecutive samples of a scan's grid, by a simulation of these.
+///
+/// # Errors
+/// The simulation's own.
+pub fn scan_by<E>(
+    ensemble: &(impl Ensemble + ?Sized),
+    (samples, points, first): (&[Sample], &[usize], usize),
+    simulate: impl FnOnce(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
+) -> Result<(ScanBounds, Simulated), E> {
+    let outputs = ensemble.outputs();
+    let mut bounds = ScanBounds::new(ensemble.rows(), outputs, points);
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+    let simulated = simulate(samples, sampling, &mut |rows, values| {
+        for (row, values) in rows.zip(values.chunks_exact(outputs * samples.len())) {
+            for (output, values) in values.chunks_exact(samples.len()).enumerate() {
+                bounds.observe(row, output, first, values);
+            }
+        }
+    })?;
+    Ok((bounds, simulated))
 }
 
 /// Number of values that a row has for each sample.

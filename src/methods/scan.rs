@@ -2,7 +2,7 @@
 //! go beyond them between the samples.
 
 use super::BoundsRequest;
-use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
+use super::ensemble::{Ensemble, EnsembleError, Simulated};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
@@ -122,7 +122,6 @@ impl BoundingMethod for Scan {
         let (outputs, rows) = (ensemble.outputs(), ensemble.rows());
         let mut bounds = ScanBounds::new(rows, outputs, &self.points);
         let mut total = Simulated::default();
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
         // Slabs of the first axis stay together, so that neighbours do.
         let slab = grid.len() / self.points.first().copied().unwrap_or(1);
         let shard_size = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
@@ -134,13 +133,8 @@ impl BoundingMethod for Scan {
             }
             let sample = |index| ensemble.domain().sample(&grid.sample(index));
             let shard: Vec<Sample> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
-            let simulated = ensemble.simulate(&shard, sampling, &mut |rows, values| {
-                for (row, values) in rows.zip(values.chunks_exact(outputs * shard.len())) {
-                    for (output, values) in values.chunks_exact(shard.len()).enumerate() {
-                        bounds.observe(row, output, first, values);
-                    }
-                }
-            })?;
+            let (part, simulated) = ensemble.scan(&shard, &self.points, first)?;
+            bounds.merge(&part);
             total.add(first, simulated);
         }
         let mut bands = BandBuilder::new(outputs, rows);

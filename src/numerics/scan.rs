@@ -6,11 +6,13 @@
 //! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest that any sample
 //! leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
 
+use serde::{Deserialize, Serialize};
+
 use super::range::Range;
 
 /// Running bounds of every output at every time. Parts of a scan can be taken apart and merged in any order, with
 /// the same result to the bit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanBounds {
     outputs: usize,
     /// Points along each axis, the last fastest.
@@ -22,7 +24,7 @@ pub struct ScanBounds {
 }
 
 /// The least or largest value, and how far the response may go between the samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Extreme {
     value: f64,
     reach: f64,
@@ -47,6 +49,20 @@ impl ScanBounds {
             points: points.to_vec(),
             extremes: vec![EMPTY; times * outputs],
             gaps: vec![false; times * outputs],
+        }
+    }
+
+    /// Adds what another part of the same scan found.
+    ///
+    /// # Panics
+    /// If it has other rows or outputs.
+    pub fn merge(&mut self, part: &Self) {
+        assert_eq!(self.extremes.len(), part.extremes.len(), "parts of one scan");
+        for (mine, &theirs) in self.extremes.iter_mut().zip(&part.extremes) {
+            include(mine, theirs);
+        }
+        for (mine, theirs) in self.gaps.iter_mut().zip(&part.gaps) {
+            *mine |= theirs;
         }
     }
 

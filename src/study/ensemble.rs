@@ -7,11 +7,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::kept::Kept;
+use super::price::instructions_of_step;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
 };
-use crate::numerics::{ParameterBox, Range, Sample};
+use crate::numerics::{ParameterBox, Range, Sample, ScanBounds};
 use crate::simulate::{
     Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
     Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
@@ -59,6 +61,8 @@ pub(super) struct Motions<'a> {
     over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
+    /// Where simulations are kept, if they are.
+    kept: Option<Kept<'a>>,
 }
 
 impl<'a> Motions<'a> {
@@ -72,7 +76,59 @@ impl<'a> Motions<'a> {
         interrupted: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
         let over = AtomicUsize::new(0);
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier: OnceLock::new() }
+        let certifier = OnceLock::new();
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier, kept: None }
+    }
+
+    /// The same, whose simulations are kept.
+    #[must_use]
+    pub fn kept(mut self, kept: Option<Kept<'a>>) -> Self {
+        self.kept = kept;
+        self
+    }
+
+    /// Steps, and the tolerance of their local errors.
+    pub fn steps(&self) -> (&Schedule, Option<Controller>) {
+        (self.schedule, self.tolerance)
+    }
+
+    /// Instructions of a step of one sample.
+    pub fn instructions_of_step(&self) -> f64 {
+        instructions_of_step(self.simulator)
+    }
+
+    /// Rows of a block with so many lines of so many samples.
+    pub fn rows_a_block(lines: usize, samples: usize) -> usize {
+        (BLOCK / (lines * samples).max(1)).clamp(1, MOST_ROWS)
+    }
+
+    /// As [`Ensemble::simulate`], whether or not simulations are kept.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn simulate_here(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        Ok(self.advance(&mut run, samples, sampling, reduce))
+    }
+
+    /// As [`Ensemble::scan`], whether or not simulations are kept.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn scan_here(
+        &self,
+        samples: &[Sample],
+        points: &[usize],
+        first: usize,
+    ) -> Result<(ScanBounds, Simulated), SimulationError> {
+        methods::scan_by(self, (samples, points, first), |samples, sampling, reduce| {
+            self.simulate_here(samples, sampling, reduce)
+        })
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -113,7 +169,7 @@ impl<'a> Motions<'a> {
             methods::Observed::Motion => Observed::Motion,
         };
         let Sampling { until, finish, .. } = sampling;
-        let rows_a_block = (BLOCK / (observed.count(self.simulator) * samples.len()).max(1)).clamp(1, MOST_ROWS);
+        let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
         let mut values = Vec::new();
         let mut stop: Option<Stop> = None;
         let mut stopped = Vec::new();
@@ -205,8 +261,22 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
-        Ok(self.advance(&mut run, samples, sampling, reduce))
+        match &self.kept {
+            Some(kept) => Ok(kept.simulate(self, samples, sampling, reduce)?),
+            None => Ok(self.simulate_here(samples, sampling, reduce)?),
+        }
+    }
+
+    fn scan(
+        &self,
+        samples: &[Sample],
+        points: &[usize],
+        first: usize,
+    ) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        match &self.kept {
+            Some(kept) => Ok(kept.scan(self, samples, points, first)?),
+            None => Ok(self.scan_here(samples, points, first)?),
+        }
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {

@@ -19,8 +19,10 @@ mod explain;
 mod feasible;
 mod formulation;
 mod internal;
+mod kept;
 mod outcome;
 mod price;
+mod shard;
 mod single;
 mod step_search;
 mod steps;
@@ -33,6 +35,7 @@ use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
 use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::store::Store;
 
 use subsystems::Prepared;
 
@@ -43,6 +46,7 @@ pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
 pub use price::Price;
+pub use shard::simulate_parts;
 
 /// How to run.
 pub struct Options<'a> {
@@ -56,6 +60,8 @@ pub struct Options<'a> {
     pub skip_infeasible: bool,
     /// Whether to run what takes long without being allowed by the model.
     pub costly: bool,
+    /// Where simulations are kept, if they are.
+    pub store: Option<&'a Store>,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
@@ -71,6 +77,7 @@ impl Default for Options<'_> {
             certify_time: false,
             skip_infeasible: false,
             costly: true,
+            store: None,
             progress: &|_| (),
             interrupted: &|| false,
         }

@@ -2,6 +2,7 @@
 
 use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
+use super::kept::Kept;
 use super::outcome::{Outcome, Ran, Results, Tried};
 use super::step_search::StepSearch;
 use super::{Options, RunError};
@@ -29,6 +30,8 @@ pub(super) struct Study<'a> {
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Where simulations are kept, if they are.
+    pub(super) kept: Option<Kept<'a>>,
 }
 
 /// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
@@ -65,7 +68,17 @@ impl<'a> Study<'a> {
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
         let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
-        Ok(Self { description, simulator, domain, request, time_functions, certify_time, progress, interrupted })
+        Ok(Self {
+            description,
+            simulator,
+            domain,
+            request,
+            time_functions,
+            certify_time,
+            progress,
+            interrupted,
+            kept: None,
+        })
     }
 
     /// The same over a part of the box.
@@ -88,7 +101,8 @@ impl<'a> Study<'a> {
         tolerance: Option<Controller>,
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
-        Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted)
+        let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted);
+        motions.kept(self.kept)
     }
 
     /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
@@ -251,6 +265,8 @@ impl<'a> Study<'a> {
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
             let before = motions.over();
             let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
+                // Others may be complete.
+                Ok(Err(SimulationError::Deferred)) => self.unknown(schedule, method.name())?,
                 Ok(timed) => timed?.0,
                 Err(error) => {
                     internal.push(error);

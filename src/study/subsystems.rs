@@ -7,6 +7,7 @@
 use symdiff::Formula;
 
 use super::internal::caught;
+use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
@@ -113,9 +114,10 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
         studies.push((simulator, progress));
     }
     // All that can be refused is, before the first is run.
-    let studies = subsystems.iter().zip(studies).map(|(subsystem, (simulator, progress))| {
+    let studies = subsystems.iter().zip(studies).enumerate().map(|(number, (subsystem, (simulator, progress)))| {
         let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
+        study.kept = options.store.map(|store| Kept { store, subsystem: number });
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
