@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::listing::Listing;
-use super::shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs};
+use super::shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 use super::{Failure, status};
 use crate::model::Override;
 use crate::results::Method;
@@ -46,6 +46,8 @@ pub(super) enum Command {
     Status(StatusArgs),
     /// Make the results of a plan from its shards, the very files that `mbint run` writes.
     Merge(MergeArgs),
+    /// Submit the shards of a plan, and its merging, to a cluster.
+    Submit(SubmitArgs),
     /// Print the JSON Schema of model files, for editors.
     Schema,
     /// Write a small, commented model as a starting point.

@@ -99,6 +99,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Shard(args) => shards::shard(&args, console),
         Command::Status(args) => shards::status(&args, console),
         Command::Merge(args) => shards::merge(args, console),
+        Command::Submit(args) => shards::submit(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),

@@ -104,6 +104,31 @@ pub(in crate::cli) struct MergeArgs {
     pub quiet: bool,
 }
 
+#[derive(Debug, Args)]
+#[command(after_help = SUBMIT_HELP)]
+pub(in crate::cli) struct SubmitArgs {
+    /// Folder of the study.
+    #[arg(value_name = "DIR")]
+    pub study: PathBuf,
+
+    /// As a job array of Slurm.
+    #[arg(long, required = true)]
+    pub slurm: bool,
+
+    /// Folder for the results, as of `mbint run` [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Options of sbatch, after `--`.
+    #[arg(last = true, value_name = "OPTION")]
+    pub options: Vec<String>,
+}
+
+const SUBMIT_HELP: &str = "\
+Writes the scripts of this round into the study's folder and submits them: a job array of the shards that
+are missing, and a job that merges and submits the next round where there is one. The folder, the models
+and this program must be seen by all nodes. After a failure, submit again: what is there is skipped.";
+
 fn not_negative(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|error| format!("{error}"))?;
     if number >= 0.0 { Ok(number) } else { Err("it must not be negative".to_owned()) }

@@ -2,11 +2,13 @@
 
 mod args;
 mod kept_run;
+mod submit;
 
 use std::fmt::Write;
 
-pub(super) use self::args::{MergeArgs, PlanArgs, ShardArgs, StatusArgs};
+pub(super) use self::args::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use self::kept_run::KeptRun;
+pub(super) use self::submit::submit;
 use super::args::RunArgs;
 use super::console::{Console, count};
 use super::job::Request;
