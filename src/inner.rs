@@ -26,8 +26,8 @@ pub mod methods {
 
 pub mod model {
     pub use crate::model::{
-        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, Stepping, load,
-        load_str, read, read_str, schema,
+        Description, EffectKind, Formulation, Output, Override, Parameter, ParameterValue, Reading, SchemeChoice,
+        Stepping, load, load_str, read, read_str, schema,
     };
 }
 
@@ -46,7 +46,9 @@ pub mod simulate {
 }
 
 pub mod study {
-    pub use crate::study::{CostOptions, Options, cost, explain, language_costs, prepare, run};
+    pub use crate::study::{
+        CostOptions, Evaluator, Kept, Options, cost, explain, language_costs, prepare, run, run_keeping,
+    };
 }
 
 pub mod syntax {

@@ -13,7 +13,7 @@ use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, System};
 use super::tree::Tree;
 use crate::grammar::Sensor;
-use crate::model::{Description, Formulation};
+use crate::model::{Analysis, Description, Formulation};
 use crate::multibody::BuildError;
 
 /// Writes down M w = Q − Φ_qᵀ λ and Φ = 0 for a description, in the formulation that it asks for; `auto` is in absolute
@@ -87,6 +87,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     });
     let coordinates = coordinates.collect();
     let formulation = FormulationInfo { joint: !m.tree.is_absolute(), why: "the model asks for them".to_owned() };
+    let analysis = description.analysis.clone();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let [lambda, constraint] = [&constraints.lambda, &constraints.values].map(|list| Scalar::exprs(list));
@@ -119,11 +120,15 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             outputs,
             length,
             start,
+            analysis,
             effects,
             left_out,
             space,
             formulation,
         };
+        if system.analysis == Analysis::Kinematics {
+            system.forget_forces();
+        }
         system.note_unused_parameters();
         system
     })

@@ -2,7 +2,7 @@
 //!
 //! `build` reads like the derivation on paper: symbols and bodies (`mechanism`, `construction`), constraints
 //! (`joints`), applied forces (`applied_forces`), inertial forces (`recursion`), outputs (`symbols`), and where the motion starts (`start`, `placement` in the plane,
-//! `pose` in space, `nearest` where it is open); how large the model is (`extent`).
+//! `pose` in space, `nearest` where it is open); how large the model is (`extent`), and what can be counted of it (`inventory`).
 //!
 //! | symbol  | meaning                                   | unit                       |
 //! |---------|-------------------------------------------|----------------------------|
@@ -14,6 +14,7 @@
 //! | ã b, a⊥ | a × b;  (−a_y, aₓ), a turned by π/2       |                            |
 
 mod acting;
+mod analysis;
 mod applied_forces;
 mod build;
 mod child;
@@ -23,6 +24,7 @@ mod coordinates;
 mod extent;
 mod flexible;
 mod formulation;
+mod inventory;
 mod joints;
 mod mechanism;
 mod merging;
@@ -42,4 +44,7 @@ mod tree;
 
 pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
-pub use system::{ConditionOf, ConstraintInfo, Distance, FormulationInfo, ResidualUnit, StartCondition, System};
+pub use inventory::Inventory;
+pub use system::{
+    ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System,
+};

@@ -35,7 +35,14 @@ impl<'g> Mechanism<'g, '_> {
         let mut conditions = self.start_of_beams(description)?;
         conditions.extend(self.start_conditions(description)?);
         let exprs = |values: Vec<Option<Scalar>>| values.into_iter().map(|value| value.map(Scalar::expr)).collect();
-        Ok(Start { position: exprs(position), velocity: exprs(velocity), guess, conditions, nearest: None })
+        Ok(Start {
+            position: exprs(position),
+            velocity: exprs(velocity),
+            guess,
+            conditions,
+            at_equilibrium: description.starts_at_equilibrium,
+            nearest: None,
+        })
     }
 
     /// Positions that `guess` names.

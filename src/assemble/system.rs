@@ -5,7 +5,7 @@ use std::sync::Arc;
 use symdiff::{Expr, Graph};
 
 use crate::grammar::quantity::Dimension;
-use crate::model::Space;
+use crate::model::{Analysis, Space};
 
 /// A mechanism's equations of motion over the symbols of `graph`.
 ///
@@ -48,6 +48,8 @@ pub struct System {
     pub length: f64,
     /// What is known at the start.
     pub start: Start,
+    /// What is done with it.
+    pub analysis: Analysis,
     /// What each effect came to, in file order.
     pub effects: Vec<EffectInfo>,
     /// What the model says and no equation holds.
@@ -174,6 +176,8 @@ pub struct Start {
     pub guess: Vec<Expr>,
     /// What must hold then besides the constraints.
     pub conditions: Vec<StartCondition>,
+    /// Whether it is the equilibrium to which all this is near.
+    pub at_equilibrium: bool,
     /// What decides where all this leaves the start open; `None` where nothing does.
     pub nearest: Option<Arc<Nearest>>,
 }

@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, coordinates, count, to_json};
-use super::{Failure, Status, load, tree};
+use super::{Failure, Status, load, structure, tree};
 use crate::model::{self, Description, Override};
 use crate::reduce::{Choices, Reduction};
+use crate::results::Structure;
 use crate::simulate::Assembled;
 use crate::study::{self, RunError};
 use crate::syntax::Diagnostics;
@@ -91,6 +92,9 @@ struct Counts {
     /// Parts that no output depends on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     not_simulated: Vec<String>,
+    /// Of the model with all its parts.
+    #[serde(flatten)]
+    structure: Structure,
 }
 
 #[derive(Clone, Copy, Serialize)]
@@ -116,11 +120,11 @@ pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, F
                     console.error(&format!("{}: {error}", model.file));
                 }
                 if let Some(counts) = &model.counts {
-                    console.print(&counts.line())?;
+                    console.print(&counts.lines())?;
                 }
                 for scene in &model.scenes {
                     match (&scene.counts, &scene.error) {
-                        (Some(counts), _) => console.print(&counts.line())?,
+                        (Some(counts), _) => console.print(&counts.lines())?,
                         (None, error) => {
                             let error = error.as_deref().unwrap_or_default();
                             console.error(&format!("{}: scene {}: {error}", model.file, scene.scene));
@@ -168,7 +172,7 @@ fn check_scene(scene: &model::Scene) -> CheckedScene {
 impl Counts {
     /// Numbers of what is simulated; names of the whole model, parts that will not be simulated included.
     fn of(model: &Description) -> Result<Self, RunError> {
-        let Assembled { system, mobility, undetermined, shared, .. } = study::assemble_whole(model)?;
+        let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;
         let whole = Whole {
             coordinates: system.coordinates.len(),
             constraints: system.constraints.len(),
@@ -200,6 +204,7 @@ impl Counts {
             undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             not_simulated: reduction.left_out,
+            structure,
         })
     }
 }
@@ -221,7 +226,7 @@ impl Whole {
 }
 
 impl Counts {
-    fn line(&self) -> String {
+    fn lines(&self) -> String {
         let redundant = match &self.redundant_constraints[..] {
             [] => "no redundant constraints".to_owned(),
             names => {
@@ -247,12 +252,13 @@ impl Counts {
         let open =
             if self.formulation_is_open { "; a run takes the shorter formulation, which may be the other" } else { "" };
         format!(
-            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}{whole}{open}\n",
+            "ok {BOLD}{}{BOLD:#}: {}, {}, {}, {}, {redundant}{singular}{shared}{undetermined}{left_out}{whole}{open}\n{}",
             self.model,
             coordinates(self.coordinates, &self.formulation),
             count(self.constraints, "constraint", "constraints"),
             count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
+            structure::lines(&self.structure),
         )
     }
 }
@@ -260,9 +266,10 @@ impl Counts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::{KindCount, MassRange, MobilityCount};
 
     #[test]
-    fn counts_on_one_line() {
+    fn counts_come_first() {
         let mut counts = Counts {
             model: "slider_crank".into(),
             formulation: "absolute".into(),
@@ -278,11 +285,31 @@ mod tests {
             undetermined_outputs: vec![],
             outputs: vec![],
             not_simulated: vec![],
+            structure: Structure {
+                mobility: MobilityCount {
+                    spatial: false,
+                    bodies: 4,
+                    joints: 4,
+                    constraints: 8,
+                    held: 0,
+                    drives: 0,
+                    count: 1,
+                    mobility: 1,
+                    over_constrained: 0,
+                },
+                size: [0.5, 0.25, 0.0],
+                mass: MassRange { nominal: 2.0, lower: 1.9, upper: 2.1 },
+                gravity: None,
+                acting: vec![KindCount { kind: "torque", count: 1 }],
+                resisting: vec![],
+                moves_at_start: false,
+            },
         };
-        let plain = |counts: &Counts| crate::cli::console::plain(&counts.line());
-        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
+        let plain = |counts: &Counts| crate::cli::console::plain(&counts.lines());
+        let first = |counts: &Counts| plain(counts).lines().next().unwrap_or_default().to_owned();
+        insta::assert_snapshot!(first(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, 2 uncertain parameters, no redundant constraints");
         counts.redundant_constraints = vec!["pin.x".into(), "pin.y".into()];
         counts.uncertain_parameters.clear();
-        insta::assert_snapshot!(plain(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, no uncertain parameters, 2 redundant constraints (pin.x, pin.y)");
+        insta::assert_snapshot!(first(&counts), @"ok slider_crank: 7 absolute coordinates, 6 constraints, 1 degree of freedom, no uncertain parameters, 2 redundant constraints (pin.x, pin.y)");
     }
 }

@@ -12,7 +12,7 @@ use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
 use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
 use crate::simulate::SimulationError;
-use crate::store::{Missing, Store};
+use crate::store::{Missing, PartStore};
 use crate::study;
 
 /// The arguments of a run, checked.
@@ -123,7 +123,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,
-    store: Option<&Store>,
+    store: Option<&PartStore>,
     begun: &(dyn Fn() + Sync),
 ) -> Result<(Bounds, Summary), Failure> {
     let progress = Progress::new(&model.name, !settings.quiet);

@@ -22,6 +22,7 @@ mod shards;
 mod show;
 mod snapshot;
 mod status;
+mod structure;
 mod table;
 mod tree;
 

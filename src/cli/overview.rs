@@ -170,6 +170,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
         table.render(2),
     );
+    text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     text += &errors(&summary.errors);
     text += &contributions(&summary.contributions);
     for method in summary.methods.iter().filter(|method| method.rank_revealing_solves > 0) {
@@ -215,6 +216,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            integration: None,
             alpha: -0.1,
             duration: 2.0,
             parameters: vec![],
@@ -231,6 +233,8 @@ mod tests {
             }],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,

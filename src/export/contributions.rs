@@ -1,12 +1,15 @@
 //! `contributions.csv` and `NAME.contributions.svg`: the tolerances that matter at each time.
 
 use csv::WriterBuilder;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Drawn, FRAME, GRID, TEXT, fine, pixel, pixels, svg, text_style, text_width};
 use super::csv::number;
+use super::figure::Caption;
+use super::figure::axis::Axis;
+use super::figure::data::{self, FigureData, SeriesData, extremes};
+use super::figure::document::{document, finished, group, heading, metadata, shortened, text_width};
+use super::figure::legend::{Entry, ROW, Sign};
+use super::figure::panel::{Named, Panel};
+use super::figure::style::{Color, Hue};
 use crate::results::{Bounds, Contribution};
 
 /// The table of all contributions as CSV.
@@ -35,115 +38,103 @@ pub fn contributions_csv(bounds: &Bounds) -> Result<Vec<u8>, csv::Error> {
 }
 
 /// Size on the page, px.
-const SIZE: (u32, u32) = (900, 380);
-/// Space on the four sides, px.
-const LEFT: f64 = 64.0;
-const RIGHT: f64 = 20.0;
-const TOP: f64 = 40.0;
+const SIZE: (f64, f64) = (900.0, 380.0);
+/// Space on three sides, px; on the right is the legend.
+const LEFT: f64 = 74.0;
+const TOP: f64 = 36.0;
 const BOTTOM: f64 = 50.0;
 
-/// Colours that every colour vision distinguishes; further parameters share the last.
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(240, 160, 20),
-    RGBColor(0, 158, 115),
-    RGBColor(130, 25, 80),
-    RGBColor(86, 180, 233),
-    RGBColor(213, 94, 0),
-    RGBColor(150, 150, 150),
-];
-/// The share of interactions of parameters.
-const TOGETHER: RGBColor = RGBColor(215, 215, 215);
+/// Most parameters that have a layer of their own.
+const MOST: usize = 6;
+/// The layer of what parameters have together.
+const TOGETHER: Color = Color([190, 190, 190]);
+/// The layer of all other parameters.
+const OTHERS: Color = Color([120, 120, 120]);
 
-/// The parameters' shares of one output's variance over time, one upon the other, the largest lowest.
+/// A layer of the stack.
+struct Layer {
+    /// As the groups and the legend have it.
+    group: String,
+    label: String,
+    color: Color,
+    /// Per cent.
+    share: Vec<f64>,
+}
+
+/// The parameters' shares of one output's variance over time, one upon the other, the largest lowest, and the legend beside them in
+/// the same order.
 ///
 /// # Errors
-/// plotters' own, as text; none is known to occur.
-pub fn contributions_svg(times: &[f64], name: &str, contributions: &[Contribution]) -> Result<String, String> {
-    svg(SIZE, |canvas| draw(canvas, times, name, contributions).map_err(|error| error.to_string()))
-}
-
-fn draw(canvas: &Canvas, times: &[f64], name: &str, contributions: &[Contribution]) -> Drawn {
-    canvas.fill(&WHITE)?;
-    let (right, bottom) = (f64::from(SIZE.0) - RIGHT, f64::from(SIZE.1) - BOTTOM);
-    let time = Axis::fit(times.iter().copied(), 9, 0.0);
-    let across = |t: f64| LEFT + time.place(t) * (right - LEFT);
-    let up = |share: f64| bottom - share.clamp(0.0, 1.0) * (bottom - TOP);
-    let line = |points: &[(f64, f64)], color: RGBColor| {
-        canvas.draw(&PathElement::new(pixels(points), color.stroke_width(fine(1.0))))
-    };
-    let text = |text: &str, at: (f64, f64), horizontal, vertical| {
-        canvas.draw_text(text, &text_style(horizontal, vertical), pixel(at))
-    };
-
-    let mut ranked: Vec<(usize, &Contribution)> = contributions.iter().enumerate().collect();
-    let mean = |contribution: &Contribution| contribution.main.iter().filter(|share| share.is_finite()).sum::<f64>();
-    ranked.sort_by(|a, b| mean(b.1).total_cmp(&mean(a.1)));
-    // Rows without variance or without known shares stay white.
-    let known = |row: usize| contributions.iter().any(|contribution| contribution.main[row] > 0.0);
-    let mut below = vec![0.0; times.len()];
-    let mut entry = LEFT;
-    for (place, (_, contribution)) in ranked.iter().enumerate() {
-        let color = COLORS[place.min(COLORS.len() - 1)];
-        let above: Vec<f64> = below.iter().zip(&contribution.main).map(|(below, share)| below + share).collect();
-        fill(canvas, times, &below, &above, color, (&known, &across, &up))?;
-        below = above;
-        if place < COLORS.len() {
-            let label = if place + 1 == COLORS.len() && ranked.len() > COLORS.len() {
-                "others"
-            } else {
-                &contribution.parameter
-            };
-            entry = key(canvas, entry, color, label)?;
-        }
-    }
-    fill(canvas, times, &below, &vec![1.0; times.len()], TOGETHER, (&known, &across, &up))?;
-    key(canvas, entry, TOGETHER, "together")?;
-
-    for (at, label) in time.ticks() {
-        let x = LEFT + at * (right - LEFT);
-        line(&[(x, bottom), (x, bottom + 4.0)], FRAME)?;
-        text(&label, (x, bottom + 8.0), HPos::Center, VPos::Top)?;
-    }
-    for percent in [0, 25, 50, 75, 100] {
-        let y = up(f64::from(percent) / 100.0);
-        line(&[(LEFT, y), (right, y)], GRID)?;
-        text(&format!("{percent} %"), (LEFT - 7.0, y), HPos::Right, VPos::Center)?;
-    }
-    line(&[(LEFT, TOP), (right, TOP), (right, bottom), (LEFT, bottom), (LEFT, TOP)], FRAME)?;
-    text(&time.title("t", "s"), ((LEFT + right) / 2.0, bottom + 27.0), HPos::Center, VPos::Top)?;
-    text(&format!("share of {name}'s variance"), (right, TOP - 19.0), HPos::Right, VPos::Center)
-}
-
-/// Rows of which something is known, and where times and shares lie.
-type Places<'a> = (&'a dyn Fn(usize) -> bool, &'a dyn Fn(f64) -> f64, &'a dyn Fn(f64) -> f64);
-
-/// The area between two curves.
-fn fill(
-    canvas: &Canvas,
+/// Only if memory cannot be written to.
+pub fn contributions_svg(
+    caption: Caption,
     times: &[f64],
-    below: &[f64],
-    above: &[f64],
-    color: RGBColor,
-    (known, across, up): Places,
-) -> Drawn {
-    let rows: Vec<usize> = (0..times.len()).collect();
-    for piece in rows.split(|&row| !known(row)).filter(|piece| piece.len() > 1) {
-        let upper = piece.iter().map(|&row| (across(times[row]), up(above[row])));
-        let lower = piece.iter().rev().map(|&row| (across(times[row]), up(below[row])));
-        let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
-        canvas.draw(&Polygon::new(pixels(&outline), color.filled()))?;
+    name: &str,
+    contributions: &[Contribution],
+) -> Result<String, serde_json::Error> {
+    let layers = layers(contributions, times.len());
+    let width = layers.iter().map(|layer| text_width(&layer.label)).fold(0.0, f64::max);
+    let right = (SIZE.0 - 50.0 - width).max(0.5 * SIZE.0);
+    let time = Axis::fit(times.iter().copied(), "s", 9, 0.0, 0.0);
+    let percent = Axis::fit([0.0, 100.0].into_iter(), "%", 5, 0.0, 0.0);
+    let id = format!("{}-shares", caption.prefix);
+    let panel = Panel { id, left: LEFT, right, top: TOP, bottom: SIZE.1 - BOTTOM, x: &time, y: &percent };
+
+    let mut series = Vec::new();
+    let (mut drawn, mut legend) = (Vec::new(), group("legend"));
+    let mut below = vec![0.0; times.len()];
+    for (place, layer) in layers.iter().enumerate() {
+        let above: Vec<f64> =
+            below.iter().zip(&layer.share).map(|(below, share)| (below + share).clamp(0.0, 100.0)).collect();
+        let id = format!("{}-{}", panel.id, layer.group);
+        let named = Named { id: &id, group: &layer.group, title: &layer.label };
+        drawn.push(panel.layer(named, times, [&below, &above], layer.color));
+        let [lower, upper] = extremes(&below, &above, &percent);
+        let (group, label, panel) = (layer.group.clone(), layer.label.clone(), panel.id.clone());
+        series.push(SeriesData { id, group, label, kind: "share", panel, time: None, lower, upper });
+        // The lowest layer's entry stands lowest.
+        let at = (right + 14.0, TOP + 12.0 + ROW * (layers.len() - 1 - place) as f64);
+        let (group, label) = (layer.group.clone(), layer.label.clone());
+        legend = legend.add(Entry { group, label, sign: Sign::Area(Hue::Color(layer.color)) }.drawn(at));
+        below = above;
     }
-    Ok(())
+    let panels = vec![panel.data(0.01)];
+    let (model, output, unit) = (caption.model.to_owned(), name.to_owned(), "%".to_owned());
+    let data = FigureData { model, output, unit, time: data::times(times), panels, series };
+    let title = format!("{}: tolerances that matter for {}", shortened(caption.model, 60), shortened(name, 60));
+    let figure = document(SIZE, &format!("{}: tolerances that matter for {name}", caption.model))
+        .add(metadata(&data)?)
+        .add(heading(&title, (LEFT, 15.0)))
+        .add(panel.framed(name, &percent.title("share of the variance"), drawn))
+        .add(panel.time_axis("t"))
+        .add(legend);
+    Ok(finished(&figure))
 }
 
-/// An entry of the legend; where the next begins.
-fn key(canvas: &Canvas, x: f64, color: RGBColor, label: &str) -> Result<f64, DrawingAreaErrorKind<std::io::Error>> {
-    let (top, bottom) = (TOP - 19.0 - 0.5 * TEXT, TOP - 19.0 + 0.5 * TEXT);
-    let square = [(x, top), (x + TEXT, top), (x + TEXT, bottom), (x, bottom)];
-    canvas.draw(&Polygon::new(pixels(&square), color.filled()))?;
-    canvas.draw_text(label, &text_style(HPos::Left, VPos::Center), pixel((x + TEXT + 6.0, TOP - 19.0)))?;
-    Ok(x + TEXT + 6.0 + text_width(label) + 18.0)
+/// From the lowest to the highest: the parameters by their mean share, all others, and what they have together. Rows without
+/// variance or without known shares stay free.
+fn layers(contributions: &[Contribution], rows: usize) -> Vec<Layer> {
+    let mut ranked: Vec<&Contribution> = contributions.iter().collect();
+    let mean = |contribution: &Contribution| contribution.main.iter().filter(|share| share.is_finite()).sum::<f64>();
+    ranked.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
+    let is_known = |row: usize| contributions.iter().any(|contribution| contribution.main[row] > 0.0);
+    let sum = |of: &[&Contribution]| -> Vec<f64> {
+        let share = |row: usize| of.iter().map(|contribution| 100.0 * contribution.main[row]).sum();
+        (0..rows).map(|row| if is_known(row) { share(row) } else { f64::NAN }).collect()
+    };
+    let own = if ranked.len() > MOST + 1 { MOST } else { ranked.len() };
+    let mut layers = Vec::new();
+    for (place, contribution) in ranked[..own].iter().enumerate() {
+        let (group, label) = (format!("share-{place}"), contribution.parameter.clone());
+        layers.push(Layer { group, label, color: Color::of(place), share: sum(&[contribution]) });
+    }
+    if own < ranked.len() {
+        let label = format!("{} others", ranked.len() - own);
+        layers.push(Layer { group: "others".to_owned(), label, color: OTHERS, share: sum(&ranked[own..]) });
+    }
+    let share = sum(&ranked).iter().map(|share| 100.0 - share.clamp(0.0, 100.0)).collect();
+    layers.push(Layer { group: "together".to_owned(), label: "together".to_owned(), color: TOGETHER, share });
+    layers
 }
 
 #[cfg(test)]
@@ -182,12 +173,19 @@ mod tests {
     fn shares_are_stacked_and_named() {
         let shares: Vec<Contribution> =
             (0..9).map(|place| contribution(&format!("p{place}"), 0.1)).chain([contribution("l1", 0.05)]).collect();
-        let svg = contributions_svg(&[0.0, 0.5, 1.0], "x3", &shares).unwrap();
-        assert!(svg.starts_with("<svg width=\"900\"") && svg.trim_end().ends_with("</svg>"));
-        for text in ["p0", "others", "together", "t [s]", "100 %", "share of x3"] {
-            assert!(svg.contains(text), "{text}");
+        let caption = Caption { model: "crank", prefix: "c" };
+        let svg = contributions_svg(caption, &[0.0, 0.5, 1.0], "x3", &shares).unwrap();
+        for text in ["p0", "4 others", "together", "t [s]", "100", "share of the variance [%]"] {
+            assert!(svg.contains(&format!(">{text}<")), "{text}");
         }
         assert!(!svg.contains("NaN"));
-        assert!(contributions_svg(&[], "x3", &[]).is_ok());
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let height = |text: &str| -> f64 {
+            let found = document.descendants().find(|node| node.has_tag_name("text") && node.text() == Some(text));
+            found.unwrap().attribute("y").unwrap().parse().unwrap()
+        };
+        assert!(height("together") < height("4 others") && height("4 others") < height("p1"), "as the stack");
+        assert!(height("p1") < height("p0"));
+        assert!(contributions_svg(caption, &[], "x3", &[]).is_ok());
     }
 }

@@ -15,10 +15,7 @@ pub enum ExportError {
     /// The table cannot be written as CSV.
     #[error("cannot write the table of bounds: {0}")]
     Csv(#[from] csv::Error),
-    /// The summary cannot be written as JSON.
-    #[error("cannot write the summary: {0}")]
+    /// What is written as JSON cannot be.
+    #[error("cannot write the results as JSON: {0}")]
     Json(#[from] serde_json::Error),
-    /// An output cannot be plotted.
-    #[error("cannot plot `{output}`: {message}")]
-    Plot { output: String, message: String },
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::export::error::ExportError;
+use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{SCHEMA, SUMMARY, owned};
-use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, plot_svg};
+use crate::export::{bounds_csv, columns_json, contributions_csv, contributions_svg, noise, plot_svg};
 use crate::results::{Bounds, PeakSummary, Provenance, Summary};
 
 /// Writes `bounds.csv`, its `columns.json`, an SVG for each output, the parameters' contributions where they are known, and `summary.json` into
@@ -35,12 +36,11 @@ pub fn write_results(
     let names = unique_stems(bounds.outputs.iter().map(|output| output.name.as_str()));
     let contributions = bounds.contributions.iter().map(Some).chain(std::iter::repeat(None));
     for ((output, name), contributions) in bounds.outputs.iter().zip(names).zip(contributions) {
-        let svg = plot_svg(&bounds.times, output)
-            .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
+        let caption = Caption { model: &summary.model, prefix: "figure" };
+        let svg = plot_svg(caption, &bounds.times, output, noise(bounds, output))?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
         if let Some(contributions) = contributions {
-            let svg = contributions_svg(&bounds.times, &output.name, contributions)
-                .map_err(|message| ExportError::Plot { output: output.name.clone(), message })?;
+            let svg = contributions_svg(caption, &bounds.times, &output.name, contributions)?;
             files.add(&format!("{name}.contributions.svg"), svg.as_bytes())?;
         }
     }
@@ -148,6 +148,7 @@ mod tests {
             shared_start: vec![],
             singular_configurations: vec![],
             damped_mode: None,
+            integration: None,
             alpha: -0.1,
             duration: 1.0,
             parameters: vec![],
@@ -155,6 +156,8 @@ mod tests {
             errors: vec![],
             contributions: vec![],
             pieces: vec![],
+            reduced: vec![],
+            requirements: vec![],
             not_simulated: vec![],
             subsystems: vec![],
             failure: None,

@@ -1,10 +1,9 @@
 //! Bounds → files: CSV, summary and plots.
 
-mod axis;
-mod canvas;
 mod columns;
 mod contributions;
 mod cost;
+mod courses;
 mod csv;
 mod drawing;
 mod error;
@@ -13,13 +12,10 @@ mod files;
 mod folder;
 mod overlay;
 mod owned;
-mod panel;
 mod plot;
-mod polyline;
 mod reference;
 mod scenes;
 mod snapshot;
-mod view;
 
 pub use self::csv::bounds_csv;
 pub use columns::columns_json;
@@ -31,7 +27,7 @@ pub use files::{file_stem, write_results};
 pub use folder::{prepare_folder, write_pages};
 pub use overlay::SceneBounds;
 pub use owned::holds_complete_results;
-pub use plot::plot_svg;
+pub use plot::{noise, plot_svg};
 pub use reference::effects as effects_page;
 pub use scenes::write_scenes;
 pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_snapshot};

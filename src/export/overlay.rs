@@ -1,9 +1,10 @@
 //! `x3.svg` beside the scenes' folders: an output's bounds in every scene that has it.
 
-use plotters::prelude::*;
-
-use super::figure::{Course, figure_svg};
-use super::panel::Style;
+use super::courses::{Course, CourseBand, Shown, courses_svg};
+use super::figure::Caption;
+use super::figure::panel::Style;
+use super::figure::style::{Color, Hue, PALETTE};
+use super::plot::noise;
 use crate::results::{Band, Bounds, OutputBounds, foremost};
 
 /// The bounds of a scene.
@@ -15,23 +16,15 @@ pub struct SceneBounds<'a> {
     pub bounds: &'a Bounds,
 }
 
-/// Colours that every colour vision distinguishes; further scenes repeat them, darker.
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(230, 130, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 60, 140),
-    RGBColor(86, 180, 233),
-    RGBColor(150, 40, 20),
-    RGBColor(110, 110, 110),
-];
-const DARKER: f64 = 0.6;
+/// Lengths of dashes and gaps, px: scenes differ in them beside their colours.
+const DASHES: [&[f64]; 5] = [&[], &[9.0, 3.0], &[3.0, 2.0], &[9.0, 3.0, 2.0, 3.0], &[16.0, 4.0]];
 
-/// The bands of one output in several scenes as an SVG document: for each scene the first method that is reliable to the end.
+/// The bands of one output in several scenes as an SVG document: for each scene the edges of the first method that is reliable to
+/// the end.
 ///
 /// # Errors
-/// plotters' own, as text; none is known to occur.
-pub fn overlay_svg(name: &str, scenes: &[SceneBounds]) -> Result<String, String> {
+/// Only if memory cannot be written to.
+pub fn overlay_svg(caption: Caption, name: &str, scenes: &[SceneBounds]) -> Result<String, serde_json::Error> {
     let found: Vec<(usize, &SceneBounds, &OutputBounds, Option<&Band>)> = scenes
         .iter()
         .enumerate()
@@ -40,42 +33,49 @@ pub fn overlay_svg(name: &str, scenes: &[SceneBounds]) -> Result<String, String>
             Some((place, scene, output, best(output)))
         })
         .collect();
-    let Some((_, _, output, first)) = found.first() else { return Err("no scene has it".to_owned()) };
-    let same = found.iter().all(|(.., band)| band.map(|band| band.method) == first.map(|band| band.method));
+    let mut methods = found.iter().map(|(.., band)| band.map(|band| band.method));
+    let first = methods.next();
+    let same = methods.all(|method| Some(method) == first);
     let courses: Vec<Course> = found
         .iter()
         .map(|(place, scene, output, band)| {
-            let color = color(*place);
             let bands = band.map(|band| {
                 let method = if same { String::new() } else { format!(" ({})", band.method.name()) };
-                let style =
-                    Style { label: format!("{}{method}", scene.name), color, edge: 1.6, fill: 0.14, dashes: None };
-                (band, style)
+                let style = style(*place, format!("{}{method}", scene.name));
+                CourseBand { group: format!("scene-{place}"), band, style }
             });
-            let label = if bands.is_some() { "" } else { scene.name };
-            let times = &scene.bounds.times;
-            Course { label, color, times, nominal: &output.nominal, bands: bands.into_iter().collect() }
+            // The bands of a scene tell where its nominal course is, and hide it from the others.
+            let (label, width) = if bands.is_some() { ("", 0.5) } else { (scene.name, 1.4) };
+            let (group, hue) = (format!("scene-{place}-nominal"), Hue::Color(Color::of(*place)));
+            let bands = bands.into_iter().collect();
+            Course { group, label, hue, width, times: &scene.bounds.times, nominal: &output.nominal, bands }
         })
         .collect();
-    figure_svg(name, &output.unit, &courses)
+    let unit = found.first().map_or("", |(_, _, output, _)| output.unit.as_str());
+    let noise = found.iter().map(|(_, scene, output, _)| noise(scene.bounds, output)).fold(0.0, f64::max);
+    courses_svg(caption, &Shown { name, unit, noise, courses: &courses })
+}
+
+fn style(place: usize, label: String) -> Style {
+    let dashes = DASHES[place % DASHES.len()];
+    let dashes = (!dashes.is_empty()).then(|| dashes.to_vec());
+    // Beyond the palette colours are darker; so are the lines' widths.
+    let edge = 1.5 + 0.4 * (place / PALETTE.len()) as f64;
+    let slant = [45.0, -45.0][place % 2];
+    Style { label, color: Color::of(place), edge, fill: 0.0, dashes, slant }
 }
 
 fn best(output: &OutputBounds) -> Option<&Band> {
     foremost(&output.bands, |band| band.error.unresolved_from().is_none())
 }
 
-fn color(place: usize) -> RGBColor {
-    let RGBColor(r, g, b) = COLORS[place % COLORS.len()];
-    let scale = DARKER.powi((place / COLORS.len()) as i32);
-    let part = |part: u8| (f64::from(part) * scale) as u8;
-    RGBColor(part(r), part(g), part(b))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::numerics::BandError;
-    use crate::results::{Bounds, Method};
+    use crate::results::Method;
+
+    const CAPTION: Caption = Caption { model: "door", prefix: "o" };
 
     fn bounds(duration: f64, half: f64, methods: &[Method]) -> Bounds {
         let times: Vec<f64> = (0..101).map(|row| duration * f64::from(row) / 100.0).collect();
@@ -101,19 +101,18 @@ mod tests {
         let names = ["ideal", "with friction", "bare"];
         let scenes: Vec<SceneBounds> =
             names.iter().zip(&all).map(|(name, bounds)| SceneBounds { name, bounds }).collect();
-        let svg = overlay_svg("x3", &scenes).unwrap();
-        assert_eq!(svg, overlay_svg("x3", &scenes).unwrap(), "the same data, the same bytes");
+        let svg = overlay_svg(CAPTION, "x3", &scenes).unwrap();
+        assert_eq!(svg, overlay_svg(CAPTION, "x3", &scenes).unwrap(), "the same data, the same bytes");
         for (place, name) in names.iter().enumerate() {
-            let RGBColor(r, g, b) = color(place);
-            assert!(svg.contains(&format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"")), "{name}");
+            assert!(svg.contains(&format!("color=\"{}\"", Color::of(place).hex())), "{name}");
         }
         // Chebyshev is the method of those that have one, the third has none, and the legend says so.
         for text in ["ideal (chebyshev)", "with friction (chebyshev)", "bare", "x3 [m]", "bound − nominal"] {
             assert!(svg.contains(text), "{text}");
         }
-        let svg = overlay_svg("x3", &scenes[..2]).unwrap();
-        assert!(!svg.contains("(chebyshev)") && svg.contains(">\nideal\n<"), "one method needs no name");
-        assert!(svg.starts_with("<svg width=\"900\" height=\"560\""));
+        let svg = overlay_svg(CAPTION, "x3", &scenes[..2]).unwrap();
+        assert!(!svg.contains("(chebyshev)") && svg.contains(">ideal<"), "one method needs no name");
+        assert!(!svg.contains("fill-opacity=\"0.1"), "edges only");
     }
 
     #[test]
@@ -121,10 +120,8 @@ mod tests {
         let bounds = bounds(1.0, 0.1, &[Method::Scan]);
         let names: Vec<String> = (0..20).map(|place| format!("variant {place}")).collect();
         let scenes: Vec<SceneBounds> = names.iter().map(|name| SceneBounds { name, bounds: &bounds }).collect();
-        let svg = overlay_svg("x3", &scenes).unwrap();
-        assert!(svg.starts_with("<svg width=\"900\" height=\"620\""), "{}", &svg[..60]);
-        let colors: std::collections::HashSet<_> = (0..20).map(|place| format!("{:?}", color(place))).collect();
-        assert_eq!(colors.len(), 20);
+        let svg = overlay_svg(CAPTION, "x3", &scenes).unwrap();
+        assert!(svg.contains("height=\"640\""), "{}", &svg[..160]);
         assert!(names.iter().all(|name| svg.contains(name)));
     }
 

@@ -1,41 +1,52 @@
 //! `x3.svg`: an output's bounds over time, and their distance from the nominal course.
 
-use plotters::prelude::*;
-
-use super::canvas::fine;
-use super::figure::{Course, figure_svg};
-use super::panel::Style;
+use super::courses::{Course, CourseBand, Shown, courses_svg};
+use super::figure::Caption;
+use super::figure::panel::Style;
+use super::figure::style::{Color, Hue};
 use crate::methods::{About, Method};
-use crate::results::OutputBounds;
+use crate::results::{Bounds, OutputBounds};
+
+/// Motion that is smaller than this, relative to the largest output of the same unit, is rounding noise.
+const ROUNDING: f64 = 1e-12;
 
 fn style(method: Method) -> Style {
-    let About { label, color: [red, green, blue], fill, dashes, .. } = *method.about();
-    Style { label: label.to_owned(), color: RGBColor(red, green, blue), edge: 2.0, fill, dashes }
+    let About { label, color, fill, dashes, .. } = *method.about();
+    let place = Method::ALL.iter().position(|known| *known == method).unwrap_or(0);
+    let slant = [45.0, -45.0, 20.0, -20.0][place % 4];
+    let dashes = dashes.map(Vec::from);
+    Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }
 
-/// The plot of one output as an SVG document. The same data give the same bytes.
+/// The plot of one output as an SVG document. The same data give the same bytes. `noise` is as [`noise`] has it.
 ///
 /// # Errors
-/// plotters' own, as text; none is known to occur.
-pub fn plot_svg(times: &[f64], output: &OutputBounds) -> Result<String, String> {
-    let bands = output.bands.iter().map(|band| (band, style(band.method))).collect();
-    let course = Course { label: "Nominal", color: BLACK, times, nominal: &output.nominal, bands };
-    Ok(dashed(&figure_svg(&output.name, &output.unit, &[course])?))
+/// Only if memory cannot be written to.
+pub fn plot_svg(
+    caption: Caption,
+    times: &[f64],
+    output: &OutputBounds,
+    noise: f64,
+) -> Result<String, serde_json::Error> {
+    let bands = output.bands.iter();
+    let bands = bands.map(|band| CourseBand { group: band.method.name().to_owned(), band, style: style(band.method) });
+    let bands = bands.collect();
+    let (group, nominal) = ("nominal".to_owned(), &output.nominal);
+    let course = Course { group, label: "Nominal", hue: Hue::Ink, width: 1.2, times, nominal, bands };
+    courses_svg(caption, &Shown { name: &output.name, unit: &output.unit, noise, courses: &[course] })
 }
 
-/// Gives methods' lines, known by their colours, their dashes: plotters would draw each dash as a line of its own.
-fn dashed(svg: &str) -> String {
-    Method::ALL.map(style).iter().fold(svg.to_owned(), |svg, style| {
-        let Some(dashes) = style.dashes else { return svg };
-        let RGBColor(r, g, b) = style.color;
-        let stroke = format!("stroke=\"#{r:02X}{g:02X}{b:02X}\"");
-        let [dash, gap] = dashes.map(fine);
-        svg.replace(&stroke, &format!("{stroke} stroke-dasharray=\"{dash} {gap}\""))
-    })
+/// What is a constant of an output, for it moves by no more: rounding beside the largest of all outputs of its unit.
+pub fn noise(bounds: &Bounds, output: &OutputBounds) -> f64 {
+    let same = bounds.outputs.iter().filter(|other| other.unit == output.unit);
+    let sizes = same.flat_map(|output| &output.nominal).filter(|x| x.is_finite()).map(|x| x.abs());
+    ROUNDING * sizes.fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::numerics::BandError;
     use crate::results::Band;
@@ -60,32 +71,74 @@ mod tests {
         (times.clone(), OutputBounds { name: "x3".into(), unit: "m".into(), nominal, bands })
     }
 
-    fn check(svg: &str) {
-        assert!(svg.starts_with("<svg width=\"900\" height=\"560\""), "{}", &svg[..200]);
-        assert!(svg.contains("viewBox=\"0 0 9000 5600\""));
-        assert!(svg.trim_end().ends_with("</svg>"));
+    /// The plot, and its scales and data.
+    fn plot(times: &[f64], output: &OutputBounds) -> (String, serde_json::Value) {
+        let caption = Caption { model: "crank", prefix: "p" };
+        let svg = plot_svg(caption, times, output, 0.0).unwrap();
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        assert_eq!(document.root_element().attribute("class"), Some("mbint-figure"));
+        let find = |name: &'static str| document.descendants().filter(move |node| node.has_tag_name(name));
+        let data: serde_json::Value = serde_json::from_str(find("metadata").next().unwrap().text().unwrap()).unwrap();
+        // What stands in the data has a group with a title, and the other way round.
+        let series: Vec<&str> = document.descendants().filter_map(|node| node.attribute("data-series")).collect();
+        let listed: Vec<&str> =
+            data["series"].as_array().unwrap().iter().map(|series| series["id"].as_str().unwrap()).collect();
+        assert_eq!(BTreeSet::from_iter(&series), BTreeSet::from_iter(&listed));
+        let panels: Vec<&str> = document.descendants().filter_map(|node| node.attribute("data-panel")).collect();
+        for (panel, listed) in panels.iter().zip(data["panels"].as_array().unwrap()) {
+            assert_eq!(listed["id"], **panel);
+        }
+        let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        assert!(ids.iter().all(|id| id.starts_with("p-")) && BTreeSet::from_iter(&ids).len() == ids.len(), "{ids:?}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
-        let off = (i32::MAX.to_string(), i32::MIN.to_string());
-        assert!(!svg.contains(&off.0) && !svg.contains(&off.1), "a point far off the page");
+        let numbers =
+            find("path").filter_map(|path| path.attribute("d")).flat_map(|data| data.split(['M', 'l', 'z', ' ']));
+        assert!(numbers.into_iter().all(|number| number.len() < 20), "a point far off the page");
+        (svg, data)
     }
 
     #[test]
     fn plots_have_axes_a_legend_and_all_curves() {
         let (times, output) = sample(201);
-        let svg = plot_svg(&times, &output).unwrap();
-        check(&svg);
-        for text in ["x3 [m]", "t [s]", "bound − nominal [10⁻³ m]", "Nominal", "Chebyshev", "Taylor", "Scan"] {
-            assert!(svg.contains(text), "{text}");
+        let (svg, data) = plot(&times, &output);
+        for text in ["crank: x3", "x3 [m]", "t [s]", "bound − nominal [mm]", "Nominal", "Chebyshev", "Taylor", "Scan"]
+        {
+            assert!(svg.contains(&format!(">{text}<")), "{text}");
         }
-        assert_eq!(svg, plot_svg(&times, &output).unwrap(), "the same data, the same bytes");
+        assert_eq!(svg, plot(&times, &output).0, "the same data, the same bytes");
+        assert_eq!((data["output"].as_str(), data["unit"].as_str()), (Some("x3"), Some("m")));
+        assert_eq!((data["panels"][0]["si"].as_f64(), data["panels"][1]["si"].as_f64()), (Some(1.0), Some(1e-3)));
+        assert_eq!(data["series"].as_array().unwrap().len(), 14);
+    }
+
+    /// The data are those of the table, in the panels' units and to the digits that can be seen.
+    #[test]
+    fn the_data_are_the_curves() {
+        let (times, output) = sample(201);
+        let (_, data) = plot(&times, &output);
+        let series = |id: &str| data["series"].as_array().unwrap().iter().find(|series| series["id"] == id).unwrap();
+        let near = |found: &serde_json::Value, wanted: f64, step: f64| (found.as_f64().unwrap() - wanted).abs() <= step;
+        for row in [0, 77, 200] {
+            assert!(near(&data["time"][row], times[row], 1e-12));
+            assert!(near(&series("p-value-nominal")["lower"][row], output.nominal[row], 1e-4));
+            let band = &output.bands[1];
+            assert!(near(&series("p-value-taylor")["upper"][row], band.upper[row], 1e-4));
+            let below = 1e3 * (band.lower[row] - output.nominal[row]);
+            assert!(near(&series("p-deviation-taylor")["lower"][row], below, 1e-3));
+            let error = below - 1e3 * band.error.total[row];
+            assert!(near(&series("p-deviation-taylor-error")["lower"][row], error, 1e-3));
+        }
     }
 
     #[test]
-    fn long_runs_make_small_files() {
-        let (times, output) = sample(200_001);
-        let svg = plot_svg(&times, &output).unwrap();
-        check(&svg);
-        assert!(svg.len() < 400_000, "{} bytes", svg.len());
+    fn long_runs_make_small_files_with_their_extremes() {
+        let (times, mut output) = sample(200_001);
+        output.nominal[123_456] = 0.9;
+        let (svg, data) = plot(&times, &output);
+        assert!(svg.len() < 250_000, "{} bytes", svg.len());
+        let nominal = &data["series"][0];
+        assert!(nominal["upper"].as_array().unwrap().contains(&0.9.into()));
+        assert!(nominal["upper"].as_array().unwrap().len() <= 400);
     }
 
     #[test]
@@ -97,8 +150,7 @@ mod tests {
             output.bands[1].upper[i + 20] = f64::INFINITY;
         }
         output.bands[0].lower.fill(f64::NAN);
-        let svg = plot_svg(&times, &output).unwrap();
-        check(&svg);
+        plot(&times, &output);
 
         for value in [0.0, 5.0, -1e-310, f64::MAX, 1e-9, f64::NAN] {
             let (lower, upper) = (vec![value; 101], vec![value; 101]);
@@ -106,11 +158,11 @@ mod tests {
             flat.error.unresolved[3..].fill(true);
             let nominal = vec![value; 101];
             let constant = OutputBounds { name: "<c & d>".into(), unit: String::new(), nominal, bands: vec![flat] };
-            check(&plot_svg(&times, &constant).unwrap());
+            plot(&times, &constant);
             let alone = OutputBounds { bands: vec![], ..constant };
-            check(&plot_svg(&times, &alone).unwrap());
-            check(&plot_svg(&times[..1], &OutputBounds { nominal: vec![value], ..alone.clone() }).unwrap());
-            check(&plot_svg(&[], &OutputBounds { nominal: vec![], ..alone }).unwrap());
+            plot(&times, &alone);
+            plot(&times[..1], &OutputBounds { nominal: vec![value], ..alone.clone() });
+            plot(&[], &OutputBounds { nominal: vec![], ..alone });
         }
     }
 
@@ -119,21 +171,43 @@ mod tests {
         let (times, mut output) = sample(101);
         output.bands[1].upper[90..].fill(1e12);
         output.bands[1].lower[90..].fill(-1e12);
-        let svg = plot_svg(&times, &output).unwrap();
-        check(&svg);
+        let (svg, _) = plot(&times, &output);
         assert!(svg.contains("Taylor (beyond the plot)") && !svg.contains("Scan (beyond"));
         assert!(svg.contains("x3 [m]"), "an axis for the others");
     }
 
     #[test]
-    fn what_is_not_resolved_is_hatched_from_there_on() {
+    fn what_is_unreliable_is_hatched_there_alone() {
         let (times, mut output) = sample(101);
-        let lines = |svg: &str| svg.matches("<polyline").count();
-        let before = lines(&plot_svg(&times, &output).unwrap());
+        assert!(!plot(&times, &output).0.contains("class=\"hatch\""));
         output.bands[0].error.unresolved[50] = true;
-        let svg = plot_svg(&times, &output).unwrap();
-        check(&svg);
-        assert!(svg.contains("Chebyshev (unresolved from 1 s)"));
-        assert!(lines(&svg) > before + 60, "lines across the second half of both panels");
+        let (svg, _) = plot(&times, &output);
+        assert!(svg.contains("Chebyshev (unreliable from 1 s)"));
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let hatched: Vec<&str> = document
+            .descendants()
+            .filter(|node| node.attribute("class") == Some("hatch"))
+            .filter_map(|node| node.attribute("d"))
+            .collect();
+        assert_eq!(hatched.len(), 2, "in both panels");
+        assert!(hatched.iter().all(|data| data.len() < 60), "{hatched:?}");
+    }
+
+    #[test]
+    fn rounding_beside_others_of_the_unit_is_a_constant() {
+        let (times, mut output) = sample(101);
+        let noise = OutputBounds {
+            name: "noise".into(),
+            nominal: times.iter().map(|t| 1e-14 * (50.0 * t).sin()).collect(),
+            bands: vec![],
+            ..output.clone()
+        };
+        output.nominal.iter_mut().for_each(|x| *x *= 1e3);
+        let bounds = Bounds { times: times.clone(), outputs: vec![output, noise.clone()], ..Bounds::default() };
+        let threshold = super::noise(&bounds, &noise);
+        let svg = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, threshold).unwrap();
+        assert!(svg.contains(">constant<") && svg.contains(">0.5<"), "an axis about zero");
+        let alone = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, 0.0).unwrap();
+        assert!(!alone.contains(">constant<"));
     }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::csv::number;
 use super::error::ExportError;
+use super::figure::Caption;
 use super::files::{file_stem, unique_stems};
 use super::folder::AtomicFiles;
 use super::overlay::{SceneBounds, overlay_svg};
@@ -62,8 +63,7 @@ pub fn write_scenes(
     let mut files = AtomicFiles::in_folder(dir)?;
     let shared = shared(scenes);
     for (name, stem) in shared.iter().zip(unique_stems(shared.iter().copied())) {
-        let svg =
-            overlay_svg(name, scenes).map_err(|message| ExportError::Plot { output: (*name).to_owned(), message })?;
+        let svg = overlay_svg(Caption { model, prefix: "figure" }, name, scenes)?;
         files.add(&format!("{stem}.svg"), svg.as_bytes())?;
     }
     files.add("scenes.csv", &scenes_csv(scenes)?)?;

@@ -8,6 +8,14 @@ pub trait Grammar {
     const KEYS: &'static [&'static str];
 }
 
+/// The key of a field; one that is a word of Rust is written `r#final`.
+pub const fn key(field: &'static str) -> &'static str {
+    match field.as_bytes() {
+        [b'r', b'#', ..] => field.split_at(2).1,
+        _ => field,
+    }
+}
+
 macro_rules! grammar {
     ($(
         $(#[doc = $doc:literal])*
@@ -25,7 +33,7 @@ macro_rules! grammar {
 
         impl $crate::grammar::mapping::Grammar for $name {
             const WHAT: &'static str = $what;
-            const KEYS: &'static [&'static str] = &[$(stringify!($field)),*];
+            const KEYS: &'static [&'static str] = &[$($crate::grammar::mapping::key(stringify!($field))),*];
         }
     )*};
 }

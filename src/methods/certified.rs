@@ -51,8 +51,7 @@ impl BoundingMethod for Certified {
             return Err(Refusal(message));
         }
         if !problem.has_fixed_steps {
-            let message =
-                "certified bounds need a fixed `step`: a `tolerance` chooses steps that depend on the samples";
+            let message = "certified bounds enclose HHT-I3 itself with a fixed `step`: no `tolerance`, which chooses steps that depend on the samples, and no `extrapolation`";
             return Err(Refusal(message.to_owned()));
         }
         Ok(())

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::numerics::{ParameterBox, Sample, ScanBounds};
+use crate::numerics::{ParameterBox, Sample, ScanBounds, ScanGrid};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -114,6 +114,8 @@ pub struct Simulated {
     pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
     pub stopped: Vec<usize>,
+    /// What outputs were reduced to, channel by channel, sample by sample; empty where they are not, and in a sum.
+    pub reduced: Vec<f64>,
     /// Rows at the end that are not known.
     pub missing: usize,
 }
@@ -176,18 +178,12 @@ pub trait Ensemble: Sync {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
 
-    /// Simulates consecutive samples of a scan's grid to the end, from number `first` on, and bounds the outputs over them. `points` are
-    /// those along each axis.
+    /// Simulates all samples of a scan's grid to the end, and bounds the outputs over them.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
-    fn scan(
-        &self,
-        samples: &[Sample],
-        points: &[usize],
-        first: usize,
-    ) -> Result<(ScanBounds, Simulated), EnsembleError> {
-        scan_by(self, (samples, points, first), |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
+    fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
     }
 
     /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of a block
@@ -217,26 +213,41 @@ pub trait Ensemble: Sync {
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
 }
 
-/// Bounds of the outputs over consecutive samples of a scan's grid, by a simulation of these.
+/// Bounds of the outputs over a scan's grid, by simulations of its shards. A part of the grid bounds nothing: after an interruption
+/// all rows are missing.
+///
+/// # Errors
+/// The simulations' own.
+pub fn scan<E>(
+    ensemble: &(impl Ensemble + ?Sized),
+    grid: &ScanGrid,
+    mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
+) -> Result<(ScanBounds, Simulated), E> {
+    let mut bounds = ScanBounds::new(ensemble.rows(), ensemble.outputs(), grid.points());
+    let mut total = Simulated::default();
+    for first in grid.shards() {
+        if ensemble.is_interrupted() {
+            total.missing = ensemble.rows();
+            break;
+        }
+        let samples = grid.samples(first, ensemble.domain());
+        total.add(first, scan_shard(&mut bounds, first, &samples, &mut simulate)?);
+    }
+    Ok((bounds, total))
+}
+
+/// Adds consecutive samples of a scan's grid, from number `first` on, to its bounds.
 ///
 /// # Errors
 /// The simulation's own.
-pub fn scan_by<E>(
-    ensemble: &(impl Ensemble + ?Sized),
-    (samples, points, first): (&[Sample], &[usize], usize),
-    simulate: impl FnOnce(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
-) -> Result<(ScanBounds, Simulated), E> {
-    let outputs = ensemble.outputs();
-    let mut bounds = ScanBounds::new(ensemble.rows(), outputs, points);
+pub fn scan_shard<E>(
+    bounds: &mut ScanBounds,
+    first: usize,
+    samples: &[Sample],
+    mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
+) -> Result<Simulated, E> {
     let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
-    let simulated = simulate(samples, sampling, &mut |rows, values| {
-        for (row, values) in rows.zip(values.chunks_exact(outputs * samples.len())) {
-            for (output, values) in values.chunks_exact(samples.len()).enumerate() {
-                bounds.observe(row, output, first, values);
-            }
-        }
-    })?;
-    Ok((bounds, simulated))
+    simulate(samples, sampling, &mut |rows, values| bounds.observe(rows, (first, samples.len()), values))
 }
 
 /// Number of values that a row has for each sample.

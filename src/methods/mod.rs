@@ -5,6 +5,8 @@
 //! [`Ensemble`] and knows neither mechanics nor who runs it.
 
 mod ensemble;
+mod expansion;
+mod kept;
 mod registry;
 mod request;
 mod result;
@@ -19,8 +21,9 @@ pub use certified::Certified;
 pub use chebyshev::{Chebyshev, Degree, Expand, can_compose};
 pub use ensemble::{
     Closure, Effort, Ensemble, EnsembleError, JET_WORK, Lost, Observed, Sampling, Simulated, Stop, StopCause, Until,
-    lines, scan_by,
+    lines, scan, scan_shard,
 };
+pub use kept::KeptSurrogate;
 pub use registry::{About, BoundingMethod, Curve, Refusal, Registered, Varied};
 pub use request::{Budget, MOST_SIMULATIONS, Problem};
 pub use result::{BandBuilder, MethodResult, Sensitivity};

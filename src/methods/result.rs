@@ -3,6 +3,7 @@
 use std::ops::Range as Rows;
 
 use super::ensemble::Simulated;
+use super::kept::KeptSurrogate;
 use super::validation::Validation;
 use crate::numerics::{Range, largest, surrogate_error};
 
@@ -42,6 +43,8 @@ pub struct MethodResult {
     pub expanded: Vec<usize>,
     /// What came of the simulations.
     pub simulated: Simulated,
+    /// The surrogate, where it is to be kept.
+    pub kept: Option<KeptSurrogate>,
 }
 
 /// What is estimated of one output in one row.
@@ -57,6 +60,8 @@ pub struct Estimate {
     pub sensitivity: Option<Sensitivity>,
     /// Whether the output does not follow from the coordinates there and was expanded itself.
     pub is_expanded: bool,
+    /// Whether it is the polynomial through its own samples.
+    pub is_own: bool,
 }
 
 /// An output's polynomial in a row: its range, how much too wide that may be, how large the terms are that it lacks, as far as they are
@@ -66,6 +71,8 @@ pub(super) struct PolynomialEstimate {
     pub excess: f64,
     pub truncation: f64,
     pub at_validation: Vec<f64>,
+    /// Of the polynomial, where they are to be kept.
+    pub coefficients: Vec<f64>,
 }
 
 /// Collects a method's bands row by row.
@@ -133,6 +140,7 @@ impl BandBuilder {
             boxes: None,
             expanded: (0..self.expanded.len()).filter(|&output| self.expanded[output]).collect(),
             simulated,
+            kept: None,
         }
     }
 }

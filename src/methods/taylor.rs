@@ -132,7 +132,8 @@ impl BoundingMethod for Taylor {
                         let at_point = |xi: &Vec<f64>| range.monomials().evaluate(coefficients, xi);
                         let at_validation = validation.points.iter().map(at_point).collect();
                         let (range, excess) = range.enclose(coefficients);
-                        PolynomialEstimate { range, excess, truncation: 0.0, at_validation }
+                        let coefficients = Vec::new();
+                        PolynomialEstimate { range, excess, truncation: 0.0, at_validation, coefficients }
                     },
                 )
                 .collect();

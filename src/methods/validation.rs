@@ -2,7 +2,8 @@
 
 use super::ensemble::{Effort, Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::numerics::{
-    BandError, Correction, Differences, Range, Sample, corrections, largest, step_validation, time_error, validation,
+    BandError, Correction, Differences, Range, Sample, TimeShift, Turning, corrections, largest, step_validation,
+    time_error, validation,
 };
 
 /// Width of an output's range, relative to its values, that is rounding.
@@ -56,6 +57,18 @@ impl ValidationTable {
     /// One line of the motions in one row that was reached.
     pub fn line(&self, row: usize, line: usize) -> &[f64] {
         &self.motion(row)[line * self.samples..][..self.samples]
+    }
+
+    /// What of a coordinate's error, by the first of the samples with halved steps, is a shift in time in this row; none where that cannot be told.
+    pub fn time_shift(&self, halved: &Self, row: usize, coordinate: usize) -> Option<TimeShift> {
+        let velocity = self.motions / 2 + coordinate;
+        let window = TimeShift::window(row, self.rows().min(halved.rows()));
+        let at = |row: usize, sample: usize| Turning {
+            direct: self.line(row, coordinate)[sample],
+            halved: halved.line(row, coordinate)[sample],
+            velocity: self.line(row, velocity)[sample],
+        };
+        TimeShift::of((0..halved.samples).map(|sample| window.clone().map(|row| at(row, sample)).collect()))
     }
 
     /// Rows that were reached.

@@ -4,7 +4,7 @@ use crate::grammar::{Coordinate, Rotation};
 use symdiff::Formula;
 
 use super::beams;
-use super::description::{Body, FlexibleBeam, Inertia, Point};
+use super::description::{Analysis, Body, FlexibleBeam, Inertia, Point};
 use super::file;
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
@@ -101,7 +101,9 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     let translates = coordinates.iter().any(|coordinate| coordinate.is_length());
     let off_center = fields.get("center_of_mass").is_some();
 
+    let has_forces = reader.model.analysis != Analysis::Kinematics;
     let positive = |reader: &mut Reader, key: &str, dimension: Dimension, needed: bool| {
+        let needed = needed && has_forces;
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) }?;
         if needed {
             reader.formula_that(node, Context::Constant, dimension, |value| value > 0.0, "must be positive")

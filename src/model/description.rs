@@ -1,7 +1,9 @@
 //! The typed model: what a file says, checked, with every name resolved and every number in SI units.
 
+mod analysis;
 mod body;
 mod index;
+mod reduced;
 mod robot;
 mod simulation;
 mod start;
@@ -12,10 +14,12 @@ use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
+pub use analysis::Analysis;
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
+pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, TreeJoint, TreeLink};
-pub use simulation::{Formulation, Simulation, Stepping};
+pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
 
 /// A mechanism, its uncertain parameters and what is asked of it.
@@ -42,12 +46,20 @@ pub struct Description {
     pub joints: Vec<Joint>,
     /// In file order.
     pub effects: Vec<Effect>,
+    /// What is done with it.
+    pub analysis: Analysis,
+    /// Whether the start is an equilibrium, near where assembly begins to look.
+    pub starts_at_equilibrium: bool,
     /// Coordinates and velocities that are kept at the start, with their values.
     pub initial: Vec<StartValue>,
     /// Where assembly begins to look for the others.
     pub guess: Vec<StartValue>,
     /// What is observed.
     pub outputs: Vec<Output>,
+    /// What is observed as one number a motion.
+    pub reduced: Vec<ReducedOutput>,
+    /// What is required of outputs.
+    pub requirements: Vec<Requirement>,
     /// How time is stepped.
     pub simulation: Simulation,
     /// Which bounds are asked for.
@@ -154,15 +166,21 @@ impl Description {
             beams: Vec::new(),
             joints: Vec::new(),
             effects: Vec::new(),
+            analysis: Analysis::Motion,
+            starts_at_equilibrium: false,
             initial: Vec::new(),
             guess: Vec::new(),
             outputs: Vec::new(),
+            reduced: Vec::new(),
+            requirements: Vec::new(),
             simulation: Simulation {
                 duration: 1.0,
                 stepping: Stepping::Fixed(1e-3),
                 alpha: -0.1,
                 output_step: 0.01,
                 formulation: Formulation::Auto,
+                scheme: SchemeChoice::Auto,
+                extrapolation: None,
             },
             bounds: BoundsRequest::default(),
             places: Places::default(),

@@ -9,7 +9,7 @@ use super::overrides::Override;
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
-use super::{bodies, bounds, effects, joints, parameters, requests, space, tables, teeth};
+use super::{analysis, bodies, bounds, effects, joints, parameters, requests, requirements, space, tables, teeth};
 use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
@@ -221,7 +221,9 @@ fn describe(
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
     let output_entries = section(&mut reader, fields.get("outputs"), "outputs");
-    let initial_entries = section(&mut reader, fields.get("initial"), "start values");
+    let requirement_entries = section(&mut reader, fields.get("requirements"), "requirements");
+    analysis::read(&mut reader, &fields);
+    let initial_entries = section(&mut reader, analysis::values_of_start(&fields), "start values");
     let guess_entries = section(&mut reader, fields.get("guess"), "start values");
 
     let table_entries = section(&mut reader, fields.get("tables"), "tables");
@@ -247,9 +249,17 @@ fn describe(
     // A robot's own effects have names, too.
     requests::outputs(&mut reader, output_entries);
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
-    if let Some(node) = reader.required(&fields, "simulation") {
+    analysis::check_outputs(&mut reader, output_entries);
+    let simulation = if analysis::needs_time(&reader.model) {
+        reader.required(&fields, "simulation")
+    } else {
+        fields.get("simulation")
+    };
+    if let Some(node) = simulation {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
+    analysis::fit_time(&mut reader.model);
+    requirements::read(&mut reader, requirement_entries);
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }

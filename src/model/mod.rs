@@ -10,6 +10,7 @@ mod references;
 
 mod file;
 
+mod analysis;
 mod beams;
 mod bodies;
 mod bounds;
@@ -18,8 +19,11 @@ mod joints;
 mod load;
 mod overrides;
 mod parameters;
+mod reduced;
 mod requests;
+mod requirements;
 mod scenes;
+mod scheme;
 mod space;
 mod tables;
 mod teeth;

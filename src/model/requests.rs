@@ -1,7 +1,7 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
-use super::file;
+use super::{file, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
 use crate::grammar::motions::{
@@ -132,7 +132,8 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 
 /// Reads `outputs:`.
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
-    for entry in entries {
+    let (mappings, formulas): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| reduced::is_one(entry));
+    for entry in formulas {
         reader.name_of_output(entry);
         match parts(reader, entry) {
             Some(parts) => {
@@ -146,6 +147,11 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
                 }
             }
         }
+    }
+    // These may be of outputs that stand behind them.
+    for entry in mappings {
+        reader.name_of_output(entry);
+        reduced::read(reader, entry);
     }
 }
 
@@ -254,6 +260,7 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
         Some(node) => reader.choice(node, &FORMULATIONS),
         None => Some(Formulation::Auto),
     };
+    let integration = super::scheme::read(reader, fields);
     if fields.get("step").is_some() && fields.get("tolerance").is_some() {
         let place = fields.key_span("tolerance");
         let diagnostic = Diagnostic::error(place, "`step` and `tolerance` exclude each other");
@@ -275,17 +282,20 @@ pub fn simulation(reader: &mut Reader, fields: &Fields) -> Option<Simulation> {
         }
         (None, None) => Stepping::Fixed(1e-3_f64.min(duration / 10.0)),
     };
+    // Without steps, rows stand by themselves.
+    let spaced_by = if reader.model.analysis.is_without_steps() { Stepping::Tolerance(1.0) } else { stepping };
     let output_step = match output_step {
         Some((output_step, node)) => {
-            check_output_step(reader, node, output_step, duration, stepping);
+            check_output_step(reader, node, output_step, duration, spaced_by);
             output_step
         }
-        None => match stepping {
+        None => match spaced_by {
             Stepping::Fixed(step) => step * (duration / 200.0 / step).round().max(1.0),
             Stepping::Tolerance(_) => duration / 200.0,
         },
     };
-    Some(Simulation { duration, stepping, alpha: alpha?, output_step, formulation: formulation? })
+    let (formulation, (scheme, extrapolation)) = (formulation?, integration?);
+    Some(Simulation { duration, stepping, alpha: alpha?, output_step, formulation, scheme, extrapolation })
 }
 
 fn alpha(reader: &mut Reader, node: &Node) -> Option<f64> {

@@ -22,6 +22,12 @@ impl FromIterator<f64> for Sample {
     }
 }
 
+impl AsRef<[f64]> for Sample {
+    fn as_ref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
 impl Deref for Sample {
     type Target = [f64];
 

@@ -17,7 +17,7 @@ use super::range::Range;
 const CARRIES: f64 = 0.25;
 
 /// Error at step h over what halving h changes: 1/(1 − 2⁻²) for a second-order scheme.
-const RICHARDSON: f64 = 4.0 / 3.0;
+pub const RICHARDSON: f64 = 4.0 / 3.0;
 
 /// What the estimates themselves may be wrong by.
 const SAFETY_OF_STEPS: f64 = 1.25;

@@ -7,7 +7,10 @@ use symdiff::math;
 
 use super::envelope::envelope;
 
-/// Orders below this are not that of the scheme.
+/// Order of the scheme. Where steps are not quite short enough, it looks a little lower.
+const SCHEME: f64 = 2.0;
+
+/// Orders below this are not that of the scheme at all.
 const LEAST_ORDER: f64 = 1.5;
 
 /// Below this order nothing converges, and the difference of two steps tells nothing of their error.
@@ -53,11 +56,15 @@ pub fn corrections(rows: &[Differences], ratio: f64) -> Vec<Correction> {
     let (halved, finer, all) = (pick(|row| row.halved), pick(|row| row.finer), pick(|row| row.all));
     let of_row = |row: usize| {
         let order = order(finer[row] / halved[row], ratio);
-        if order.is_nan() || order >= LEAST_ORDER {
+        if order.is_nan() || order >= SCHEME {
             return Correction::NONE;
         }
         let factor = (1.0 - 0.25) / (1.0 - math::pow(0.5, order.max(NO_ORDER)));
-        Correction { factor, least: OF_DIFFERENCES * halved[row].max(finer[row]).max(all[row]) }
+        let disagree = order < LEAST_ORDER;
+        Correction {
+            factor,
+            least: if disagree { OF_DIFFERENCES * halved[row].max(finer[row]).max(all[row]) } else { 0.0 },
+        }
     };
     (0..rows.len()).map(of_row).collect()
 }

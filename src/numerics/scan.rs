@@ -1,14 +1,65 @@
 //! Least and largest values over a grid of samples, as they come.
 //!
 //! Between two samples a response can go beyond both. Past an extreme along an axis, a smooth one by at most an eighth of the second
-//! difference (that of the parabola through it and its neighbours). Where second differences stand out against those beside them,
+//! difference (that of the parabola through it and its neighbours); past an extreme at an axis' end, if it bends back before it gets
+//! there. Where second differences stand out against those beside them,
 //! it is not smooth there: at a kink between two samples it goes as far as the lines from both sides lead, at most a quarter of what
 //! their second differences have too much; beside a jump, where these have either sign, half of the jump. The furthest that any sample
 //! leads to in this way is the error stated of a scan. Where a sample is NaN, the others are bounded, and the error is NaN.
 
+use std::ops::Range as Rows;
+
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::domain::{ParameterBox, Sample};
 use super::range::Range;
+use super::samples::TensorGrid;
+
+/// Fewest and most samples that are simulated at once.
+const SHARD: usize = 2048;
+const LARGEST_SHARD: usize = 16384;
+
+/// The samples of a scan, in shards of consecutive ones.
+#[derive(Clone, Debug)]
+pub struct ScanGrid {
+    grid: TensorGrid,
+    points: Vec<usize>,
+    shard: usize,
+}
+
+impl ScanGrid {
+    /// With so many points along each axis, both ends included.
+    pub fn new(points: &[usize]) -> Self {
+        let grid = TensorGrid::full_factorial(points);
+        // Slabs of the first axis stay together, so that neighbours do.
+        let slab = grid.len() / points.first().copied().unwrap_or(1);
+        let shard = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
+        Self { grid, points: points.to_vec(), shard }
+    }
+
+    /// Points along each axis, the last fastest.
+    pub fn points(&self) -> &[usize] {
+        &self.points
+    }
+
+    /// Number of samples.
+    #[allow(clippy::len_without_is_empty)] // every axis has a point
+    pub fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// Number of the first sample of each shard.
+    pub fn shards(&self) -> std::iter::StepBy<Rows<usize>> {
+        (0..self.grid.len()).step_by(self.shard)
+    }
+
+    /// The samples of the shard that begins with number `first`.
+    pub fn samples(&self, first: usize, domain: &ParameterBox) -> Vec<Sample> {
+        let end = (first + self.shard).min(self.grid.len());
+        (first..end).map(|index| domain.sample(&self.grid.sample(index))).collect()
+    }
+}
 
 /// Running bounds of every output at every time. Parts of a scan can be taken apart and merged in any order, with
 /// the same result to the bit.
@@ -66,38 +117,18 @@ impl ScanBounds {
         }
     }
 
-    /// Values of an output at a time for the grid's samples from number `first` on.
-    pub fn observe(&mut self, time: usize, output: usize, first: usize, values: &[f64]) {
-        let line = time * self.outputs + output;
-        self.gaps[line] |= values.iter().any(|value| value.is_nan());
-        for (place, &value) in values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
-            let [below, above] = self.beyond(first, values, place);
-            let least = Extreme { value, reach: value - below };
-            include(&mut self.extremes[line], [least, Extreme { value, reach: value + above }]);
+    /// Values in some rows (row, output, sample) of so many of the grid's samples, from number `first` on.
+    pub fn observe(&mut self, rows: Rows<usize>, (first, count): (usize, usize), values: &[f64]) {
+        if count == 0 {
+            return;
         }
-    }
-
-    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each axis. Along an axis
-    /// whose neighbours are in another part of the scan, as far as along the others.
-    fn beyond(&self, first: usize, values: &[f64], place: usize) -> [f64; 2] {
-        let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);
-        let mut stride = 1;
-        for &count in self.points.iter().rev() {
-            if count > 2 {
-                let at = (first + place) / stride % count;
-                let along = Along { values, place, stride, at, count };
-                let smooth = along.smooth();
-                if smooth.is_none() && at > 0 && at + 1 < count {
-                    unknown += 1.0;
-                }
-                let (smooth, before, after) = (smooth.unwrap_or_default(), along.irregular(-1), along.irregular(1));
-                let further = [0, 1].map(|end| smooth[end].max(before[end]).max(after[end]));
-                known = [known[0] + further[0], known[1] + further[1]];
-                largest = largest.max(further[0]).max(further[1]);
-            }
-            stride *= count;
-        }
-        known.map(|known| known + unknown * largest)
+        let lines = rows.start * self.outputs..rows.end * self.outputs;
+        let points = &self.points;
+        let extremes = self.extremes[lines.clone()].par_iter_mut().zip(&mut self.gaps[lines]);
+        extremes.zip(values.par_chunks_exact(count)).for_each(|((extremes, gap), values)| {
+            *gap |= values.iter().any(|value| value.is_nan());
+            Line { points, first, values }.include_in(extremes);
+        });
     }
 
     /// Bounds of an output at a time, over the samples that are numbers; unknown where none is.
@@ -116,6 +147,76 @@ impl ScanBounds {
     }
 }
 
+/// An output's values at some of the grid's samples.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    /// Points of the grid along each axis.
+    points: &'a [usize],
+    /// Number of the first sample.
+    first: usize,
+    values: &'a [f64],
+}
+
+impl Line<'_> {
+    /// Widens extremes by these samples, and by how far the response may go beyond them.
+    fn include_in(&self, extremes: &mut [Extreme; 2]) {
+        for &value in self.values.iter().filter(|value| !value.is_nan()) {
+            include(extremes, [Extreme { value, reach: value }; 2]);
+        }
+        // Few samples are so near to an end that it matters how far the response goes beyond them.
+        let most = self.most_beyond();
+        for (place, &value) in self.values.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+            if value - most <= extremes[0].reach || value + most >= extremes[1].reach {
+                let [below, above] = self.beyond(place);
+                include(extremes, [Extreme { value, reach: value - below }, Extreme { value, reach: value + above }]);
+            }
+        }
+    }
+
+    /// More than [`beyond`](Self::beyond) can be anywhere: along each axis that is at most the largest second difference.
+    fn most_beyond(&self) -> f64 {
+        let (mut sum, mut largest, mut stride) = (0.0, 0.0_f64, 1);
+        for &count in self.points.iter().rev() {
+            if count > 2 {
+                let values = self.values;
+                let ends = values.get(2 * stride..).unwrap_or_default();
+                // Some of these go around an axis' end, and only make the result larger.
+                let bends = values.iter().zip(&values[stride.min(values.len())..]).zip(ends);
+                let most = bends.map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
+                (sum, largest) = (sum + most, largest.max(most));
+            }
+            stride *= count;
+        }
+        // Rounding of the sums apart.
+        1.001 * (sum + self.points.len() as f64 * largest)
+    }
+
+    /// How far the response may go below and above the sample at `place`, between it and its neighbours along each axis. Along an axis
+    /// whose neighbours are in another part of the scan, as far as along the others.
+    fn beyond(&self, place: usize) -> [f64; 2] {
+        let Self { first, values, .. } = *self;
+        let (mut known, mut largest, mut unknown) = ([0.0; 2], 0.0_f64, 0.0);
+        let mut stride = 1;
+        for &count in self.points.iter().rev() {
+            if count > 2 {
+                let at = (first + place) / stride % count;
+                let along = Along { values, place, stride, at, count };
+                let smooth = along.smooth();
+                if smooth.is_none() && at > 0 && at + 1 < count {
+                    unknown += 1.0;
+                }
+                let (smooth, before, after) = (smooth.unwrap_or_default(), along.irregular(-1), along.irregular(1));
+                let at_end = along.bending_back();
+                let further = [0, 1].map(|end| smooth[end].max(before[end]).max(after[end]).max(at_end[end]));
+                known = [known[0] + further[0], known[1] + further[1]];
+                largest = largest.max(further[0]).max(further[1]);
+            }
+            stride *= count;
+        }
+        known.map(|known| known + unknown * largest)
+    }
+}
+
 /// A sample among those along one axis.
 struct Along<'a> {
     values: &'a [f64],
@@ -129,6 +230,9 @@ struct Along<'a> {
 /// grow, as far as that goes.
 const GROWTH: f64 = 1.5;
 const MOST_GROWTH: f64 = 8.0;
+
+/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is the second difference of three.
+const UNSURE: f64 = 0.25;
 
 impl Along<'_> {
     /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
@@ -146,10 +250,34 @@ impl Along<'_> {
     /// How far a smooth response may go below and above an inner sample; `None` at the ends.
     fn smooth(&self) -> Option<[f64; 2]> {
         let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
-        let height = (before - 2.0 * here + after).abs() / 8.0;
+        // Three samples do not tell how the second difference changes between them.
+        let unsure = if self.count == 3 { 1.0 + UNSURE } else { 1.0 };
+        let height = unsure * (before - 2.0 * here + after).abs() / 8.0;
         let lowest = here <= before && here <= after;
         let highest = here >= before && here >= after;
         Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])
+    }
+
+    /// How far below and above a sample at the axis' end a response may go that bends back between it and its neighbour: the parabola through it
+    /// and the two next to it, as far as that may turn by what is not known of its slope.
+    fn bending_back(&self) -> [f64; 2] {
+        let side = match self.at {
+            0 => 1,
+            last if last + 1 == self.count => -1,
+            _ => return [0.0; 2],
+        };
+        let (Some(here), Some(there), Some(bend)) = (self.value(0), self.value(side), self.bend(side)) else {
+            return [0.0; 2];
+        };
+        // Differences forwards: Δ − Δ²/2 + Δ³/3.
+        let third = self.bend(2 * side).map(|next| next - bend);
+        let slope = there - here - bend / 2.0 + third.unwrap_or_default() / 3.0;
+        let unsure = third.map_or(f64::INFINITY, |third| third.abs() / 3.0).min(UNSURE * bend.abs());
+        // Towards the neighbour it rises if it bends upwards, and falls if it bends downwards.
+        let back = unsure - slope * bend.signum();
+        let is_end = (there - here) * bend >= 0.0;
+        let depth = if is_end && back > 0.0 { 0.5 * bend.abs() * (back / bend.abs()).min(1.0).powi(2) } else { 0.0 };
+        if bend > 0.0 { [depth, 0.0] } else { [0.0, depth] }
     }
 
     /// How far below and above the sample and its neighbour on one side a response that is not smooth between them may go.
@@ -205,11 +333,10 @@ mod tests {
     fn what_is_not_a_number_leaves_the_others_and_no_error() {
         let mut scan = ScanBounds::new(1, 3, &[6]);
         assert!(scan.range(0, 0).lower.is_nan());
-        scan.observe(0, 0, 0, &[1.0, f64::NAN, 2.0]);
-        scan.observe(0, 1, 0, &[3.0]);
-        scan.observe(0, 2, 0, &[f64::NAN; 3]);
-        scan.observe(0, 0, 3, &[-1.0, 5.0]);
-        scan.observe(0, 0, 5, &[9.0]);
+        let nan = f64::NAN;
+        scan.observe(0..1, (0, 3), &[1.0, nan, 2.0, 3.0, 3.0, 3.0, nan, nan, nan]);
+        scan.observe(0..1, (3, 2), &[-1.0, 5.0, 3.0, 3.0, nan, nan]);
+        scan.observe(0..1, (5, 1), &[9.0, 3.0, nan]);
         assert_eq!(scan.range(0, 0), Range { lower: -1.0, upper: 9.0 });
         assert!(scan.error(0, 0).is_nan() && scan.error(0, 1) == 0.0);
         assert_eq!(scan.range(0, 1), Range { lower: 3.0, upper: 3.0 });
@@ -226,7 +353,7 @@ mod tests {
             };
             let values: Vec<f64> = (0..121).map(|index| value(index / 11, index % 11)).collect();
             let mut scan = ScanBounds::new(1, 1, &[11, 11]);
-            scan.observe(0, 0, 0, &values);
+            scan.observe(0..1, (0, values.len()), &values);
             let (missed, error) = (1.0 - scan.range(0, 0).upper, scan.error(0, 0));
             assert!(missed <= error + 1e-12, "{shift}: {missed} of {error}");
             assert!(error < 0.041);
@@ -236,7 +363,7 @@ mod tests {
     fn of_line(f: impl Fn(f64) -> f64, count: usize) -> (Range, f64) {
         let values: Vec<f64> = (0..count).map(|i| f(2.0 * i as f64 / (count - 1) as f64 - 1.0)).collect();
         let mut scan = ScanBounds::new(1, 1, &[count]);
-        scan.observe(0, 0, 0, &values);
+        scan.observe(0..1, (0, values.len()), &values);
         (scan.range(0, 0), scan.error(0, 0))
     }
 
@@ -272,11 +399,46 @@ mod tests {
         }
     }
 
+    /// The peak lies nearer to the axis' end than to the next sample.
+    #[test]
+    fn a_peak_beside_an_end_is_within_the_error() {
+        for (at, count) in [(-0.9, 3), (-0.6, 3), (-0.95, 5), (0.87, 5), (-0.99, 9)] {
+            let (range, error) = of_line(|x| -(x - at).powi(2) + 0.1 * (x - at).powi(3), count);
+            // The safety of errors is twofold.
+            assert!(-range.upper <= 2.0 * error + 1e-12 && error < 0.4, "{at}: {range:?}, {error}");
+        }
+        // What leaves the box with a slope has none.
+        let (_, error) = of_line(|x| (x + 2.0).powi(2), 5);
+        assert_eq!(error, 0.0);
+    }
+
+    /// Every sample's reach, without a look at which of them may matter.
+    #[test]
+    fn no_sample_that_matters_is_passed_over() {
+        for shift in [0.0, 0.3, 1.1] {
+            let value = |i: usize, j: usize| {
+                let (x, y) = (0.25 * i as f64 - 1.0, 0.2 * j as f64 - 1.0);
+                (5.0 * x + shift).sin() * (3.0 * y).cos() + (x - shift * y).abs()
+            };
+            let values: Vec<f64> = (0..99).map(|index| value(index / 11, index % 11)).collect();
+            let mut scan = ScanBounds::new(1, 1, &[9, 11]);
+            scan.observe(0..1, (0, 99), &values);
+            let line = Line { points: &[9, 11], first: 0, values: &values };
+            let mut all = EMPTY;
+            for (place, &value) in values.iter().enumerate() {
+                let [below, above] = line.beyond(place);
+                assert!(below.max(above) <= line.most_beyond());
+                include(&mut all, [Extreme { value, reach: value - below }, Extreme { value, reach: value + above }]);
+            }
+            assert_eq!(scan.extremes[0], all);
+        }
+    }
+
     #[test]
     fn the_ends_of_the_axes_are_exact() {
         let values: Vec<f64> = (0..25).map(|index| (0.3 * index as f64).exp()).collect();
         let mut scan = ScanBounds::new(1, 1, &[5, 5]);
-        scan.observe(0, 0, 0, &values);
+        scan.observe(0..1, (0, values.len()), &values);
         assert_eq!(scan.error(0, 0), 0.0);
     }
 
@@ -286,9 +448,9 @@ mod tests {
             let cut = cut.min(values.len());
             let empty = || ScanBounds::new(1, 1, &[values.len()]);
             let (mut whole, mut parts) = (empty(), empty());
-            whole.observe(0, 0, 0, &values);
-            parts.observe(0, 0, 0, &values[..cut]);
-            parts.observe(0, 0, cut, &values[cut..]);
+            whole.observe(0..1, (0, values.len()), &values);
+            parts.observe(0..1, (0, cut), &values[..cut]);
+            parts.observe(0..1, (cut, values.len() - cut), &values[cut..]);
             prop_assert_eq!(whole.range(0, 0), parts.range(0, 0));
             prop_assert!(values.iter().all(|&value| whole.range(0, 0).contains(value)));
         }

@@ -9,6 +9,9 @@ mod explanation;
 mod merge;
 mod peaks;
 mod provenance;
+mod reduced;
+mod requirement;
+mod structure;
 mod summary;
 
 pub use crate::methods::Method;
@@ -23,6 +26,9 @@ pub use explanation::{EffectExplanation, Explanation, InstructionCounts, LeftOut
 pub use merge::Piece;
 pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
+pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
+pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
+pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
     ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
     SubsystemSummary, Summary,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Band, Bounds, Contribution, OutputBounds};
+use super::{Band, Bounds, Contribution, OutputBounds, ReducedSummary, RequirementSummary};
 
 /// What a run did; serialised as it stands. Holds nothing that differs between two runs of one command, except
 /// `seconds`, which are there only when asked for.
@@ -37,6 +37,9 @@ pub struct Summary {
     /// A fast mode that the start excites and the steps damp, where that moves an output.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damped_mode: Option<DampedMode>,
+    /// By what the motion was integrated, where that was not HHT-I3 alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub integration: Option<String>,
     /// The parameter α of HHT-I3.
     pub alpha: f64,
     /// Length of the run, s.
@@ -50,6 +53,12 @@ pub struct Summary {
     /// Which tolerance matters: output by output, the parameters that contribute most first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<ContributionSummary>,
+    /// Outputs that are one number a motion.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reduced: Vec<ReducedSummary>,
+    /// What is required, and whether it is fulfilled.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<RequirementSummary>,
     /// Where only a part of the box is bounded: the pieces that are, with how far in time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub pieces: Vec<PieceSummary>,

@@ -1,8 +1,11 @@
 //! Reasons why a mechanism cannot be simulated, in words for the user.
 
-use super::start::ConstraintResidual;
+use nalgebra::DMatrix;
+
+use super::start::{ConstraintResidual, free_columns, jacobian_rows};
+use super::statics::NoEquilibrium;
 use crate::assemble::{ConditionOf, ConstraintInfo, ResidualUnit, System};
-use crate::compile::{ClosureRow, Equation, NoFactors};
+use crate::compile::{ClosureRow, Equation, NoFactors, StartProgram};
 
 /// Parameters of a sample: name and value in SI units.
 pub type NamedValues = Vec<(String, f64)>;
@@ -31,6 +34,27 @@ pub enum SimulationError {
     Singular {
         /// Names of the equations without a pivot.
         equations: Vec<String>,
+    },
+    /// No static equilibrium was found.
+    #[error("{}", equilibrium_message(coordinate, force, *is_free, parameters))]
+    NoEquilibrium {
+        /// Name of the coordinate that is pushed most.
+        coordinate: String,
+        /// By how much, with its unit.
+        force: String,
+        /// Whether nothing holds it, wherever it is.
+        is_free: bool,
+        /// The sample.
+        parameters: NamedValues,
+    },
+    /// Motors leave freedom in kinematics.
+    #[error(
+        "motors leave {} free, and without forces nothing moves {}: add a `motor` for each, or ask for `analysis: motion`",
+        names(coordinates), if coordinates.len() == 1 { "it" } else { "them" }
+    )]
+    NotDriven {
+        /// Names of coordinates that are left free.
+        coordinates: Vec<String>,
     },
     /// A term of the equations has no finite value.
     #[error("{term} is not a finite number at t = {time} s ({})", parameter_list(parameters))]
@@ -140,6 +164,49 @@ fn assembly_message(
     } else {
         let advice = cause.unwrap_or("check lengths, initial positions and joint kinds");
         format!("{owner} cannot be closed{with}: {residual} remain in `{constraint}`; {advice}")
+    }
+}
+
+fn equilibrium_message(coordinate: &str, force: &str, is_free: bool, parameters: &[(String, f64)]) -> String {
+    let with = if parameters.is_empty() { String::new() } else { format!(" with {}", parameter_list(parameters)) };
+    let advice = if is_free {
+        "and no force changes as it moves: hold it by a joint or a spring"
+    } else {
+        "say in `guess` near where it is to rest, or hold it by a spring or a stop"
+    };
+    format!("there is no equilibrium near the start{with}: {force} still push `{coordinate}`, {advice}")
+}
+
+fn names(coordinates: &[String]) -> String {
+    coordinates.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" and ")
+}
+
+/// Which coordinates motors leave free in a state.
+pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -> SimulationError {
+    let rows = jacobian_rows(system, start, state);
+    let mut matrix = DMatrix::zeros(rows.len(), system.q.len());
+    for (row, entries) in rows.iter().enumerate() {
+        entries.iter().for_each(|&(column, value)| matrix[(row, column)] += value);
+    }
+    // An angle is what people would drive.
+    let weight: Vec<f64> =
+        system.coordinates.iter().map(|coordinate| if coordinate.is_angle { 1e-3 } else { 1.0 }).collect();
+    let free = free_columns(&matrix, &weight);
+    SimulationError::NotDriven {
+        coordinates: free.into_iter().map(|place| system.coordinates[place].name.clone()).collect(),
+    }
+}
+
+/// Why a sample with these parameters has no equilibrium.
+pub(super) fn no_equilibrium(system: &System, none: &NoEquilibrium, parameters: &[f64]) -> SimulationError {
+    let names = system.parameters.iter().map(|parameter| parameter.name.clone());
+    let coordinate = &system.coordinates[none.coordinate];
+    let unit = if coordinate.is_angle { "N m" } else { "N" };
+    SimulationError::NoEquilibrium {
+        coordinate: coordinate.name.clone(),
+        force: format!("{:.3e} {unit}", none.force.abs()),
+        is_free: none.is_free,
+        parameters: names.zip(parameters.iter().copied()).collect(),
     }
 }
 

@@ -1,21 +1,24 @@
 //! A mechanism ready to run: assembled at its nominal parameters, its rank known, its programs compiled.
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use rustc_hash::FxHashMap;
 use symdiff::{Expr, Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, over_constrained, undetermined_outputs};
-use super::error::{SimulationError, assembly_error, equation_name, no_factors};
+use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
 use super::start::{
     Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
 };
+use super::statics::Equilibrium;
+use super::visit::further_outputs;
 use crate::assemble::System;
 use crate::compile::{
-    Equation, Layout, NoFactors, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start,
-    compile_start, compile_switches,
+    Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
+    compile_switches,
 };
+use crate::model::Analysis;
 use crate::numerics::Sample;
 
 /// Samples that are assembled together where nothing else is asked.
@@ -39,6 +42,8 @@ pub struct Assembled {
     pub undetermined: Vec<usize>,
     /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
+    /// Where the start is an equilibrium.
+    pub equilibrium: Option<Arc<Equilibrium>>,
 }
 
 impl Assembled {
@@ -52,6 +57,7 @@ impl Assembled {
         h: f64,
         operations: Option<usize>,
     ) -> Result<Self, SimulationError> {
+        further_outputs(&mut system);
         system.graph.limit(operations.map(|operations| system.graph.len() + operations));
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let layout = Layout::new(parameters.len(), system.q.len(), system.lambda.len());
@@ -62,7 +68,6 @@ impl Assembled {
             let term = not_finite(&system, &layout, state, 0.0)?;
             Some(SimulationError::NotFinite { term, time: 0.0, parameters: named() })
         };
-        let singular = |none: NoFactors<Equation>| no_factors(&system, &none);
         let assembled = |start: &StartProgram| {
             let mut assembly = Assembly::new(start, &system, 1, |parameter, _| parameters[parameter]);
             assembly.assemble_nominal().map_err(|worst| {
@@ -71,19 +76,33 @@ impl Assembled {
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
             Ok(assembly.tile().values()[..layout.registers()].to_vec())
         };
-        let mut start = compile_start(&system, &[], &guess).map_err(singular)?;
+        let mut start = compile_start(&system, &[], &guess).map_err(|none| no_factors(&system, &none))?;
         let mut nominal = assembled(&start)?;
         let mobility = mobility(&system, &start, &nominal);
         if !mobility.redundant.is_empty() {
-            start = compile_start(&system, &mobility.redundant, &guess).map_err(singular)?;
+            start = compile_start(&system, &mobility.redundant, &guess).map_err(|none| no_factors(&system, &none))?;
             nominal = assembled(&start)?;
         }
         if let Some(error) = no_number(&nominal) {
             return Err(error);
         }
+        let equilibrium = system.start.at_equilibrium.then(|| Arc::new(Equilibrium::new(&system, &mobility.redundant)));
+        if let Some(equilibrium) = &equilibrium {
+            let found = equilibrium.find(&nominal, &parameters);
+            nominal = found.map_err(|none| no_equilibrium(&system, &none, &parameters))?;
+            system.start.leave_positions();
+            start = compile_start(&system, &mobility.redundant, &nominal).map_err(|none| no_factors(&system, &none))?;
+            let mut assembly = Assembly::new(&start, &system, 1, |parameter, _| parameters[parameter]);
+            if let Some(worst) = assembly.assemble_from(&nominal).first() {
+                return Err(assembly_error(&system, worst, &parameters));
+            }
+            assembly.shift_accelerations(scheme.coefficients().shift() * h);
+            nominal = assembly.tile().values()[..layout.registers()].to_vec();
+        }
         let open = open_start(&system, &start, &nominal);
         if open.is_any() {
-            let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open).map_err(singular)?;
+            let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open)
+                .map_err(|none| no_factors(&system, &none))?;
             let mut assembly = Assembly::new(&nearest, &system, 1, |parameter, _| parameters[parameter]);
             if assembly.assemble_nearest(&nominal).is_ok() {
                 assembly.shift_accelerations(scheme.coefficients().shift() * h);
@@ -92,8 +111,11 @@ impl Assembled {
             }
         }
         let shared = shared_coordinates(&system, &start, &nominal);
+        if system.analysis == Analysis::Kinematics && mobility.degrees_of_freedom > 0 {
+            return Err(not_driven(&system, &start, &nominal));
+        }
         let undetermined = undetermined_outputs(&system, &start, &nominal, &mobility);
-        Ok(Self { system, start, nominal, mobility, undetermined, shared })
+        Ok(Self { system, start, nominal, mobility, undetermined, shared, equilibrium })
     }
 
     /// Some outputs in the nominal state, with these parameters in their formulas.
@@ -126,8 +148,12 @@ pub struct Simulator {
     pub undetermined: Vec<usize>,
     /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
+    /// Where the start is an equilibrium.
+    pub equilibrium: Option<Arc<Equilibrium>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
+    /// Compiled where rows are closed.
+    free_closure: OnceLock<Result<StartProgram, SimulationError>>,
 }
 
 impl Simulator {
@@ -144,13 +170,24 @@ impl Simulator {
     /// # Errors
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
-        let Assembled { mut system, start, nominal, mobility, undetermined, shared } =
+        let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium } =
             Assembled::within(system, scheme, h, operations)?;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;
         system.graph.limit(None);
-        Ok(Self { system, start, program, nominal, mobility, undetermined, shared, switches: OnceLock::new() })
+        Ok(Self {
+            system,
+            start,
+            program,
+            nominal,
+            mobility,
+            undetermined,
+            shared,
+            equilibrium,
+            switches: OnceLock::new(),
+            free_closure: OnceLock::new(),
+        })
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.
@@ -159,7 +196,10 @@ impl Simulator {
     /// The first sample that cannot be assembled, with its parameters.
     pub fn assemble(&self, width: usize, h: f64, sample: impl Fn(usize) -> Sample) -> Result<Tile, SimulationError> {
         let samples: Vec<Sample> = (0..width).map(sample).collect();
-        let (mut assembly, open) = self.assembly(&samples);
+        let (mut assembly, open) = match &self.equilibrium {
+            Some(equilibrium) => self.at_equilibria(equilibrium, &samples)?,
+            None => self.assembly(&samples),
+        };
         if let Some(worst) = open.first() {
             return Err(assembly_error(&self.system, worst, &samples[worst.lane]));
         }
@@ -180,6 +220,10 @@ impl Simulator {
             // Lanes beyond the samples repeat the last one.
             let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
             let lanes: Vec<Sample> = (0..width).map(|lane| samples[lane.min(samples.len() - 1)].clone()).collect();
+            if let Some(equilibrium) = &self.equilibrium {
+                let has_one = |sample: &Sample| self.equilibrium_of(equilibrium, sample).is_ok();
+                return samples.iter().map(has_one).collect();
+            }
             for open in self.assembly(&lanes).1 {
                 can.get_mut(open.lane).into_iter().for_each(|can| *can = false);
             }
@@ -188,10 +232,38 @@ impl Simulator {
         samples.chunks(ASSEMBLED_AT_ONCE).flat_map(of_tile).collect()
     }
 
+    /// The state of a sample's equilibrium, at rest.
+    ///
+    /// # Errors
+    /// Where none is found.
+    pub fn equilibrium_of(&self, equilibrium: &Equilibrium, sample: &Sample) -> Result<Vec<f64>, SimulationError> {
+        let nominal: Vec<f64> = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        let found = equilibrium.near(&self.nominal, &nominal, sample);
+        found.map_err(|none| no_equilibrium(&self.system, &none, sample))
+    }
+
+    /// A tile of samples, each at its equilibrium.
+    fn at_equilibria(
+        &self,
+        equilibrium: &Equilibrium,
+        samples: &[Sample],
+    ) -> Result<(Assembly<'_>, Vec<ConstraintResidual>), SimulationError> {
+        let mut assembly = Assembly::new(&self.start, &self.system, samples.len(), |k, lane| samples[lane][k]);
+        assembly.set_state(&self.nominal);
+        for (lane, sample) in samples.iter().enumerate() {
+            let state = self.equilibrium_of(equilibrium, sample)?;
+            for register in self.start.layout.q.clone() {
+                assembly.tile_mut().lane_mut(register)[lane] = state[register];
+            }
+        }
+        let open = assembly.assemble();
+        Ok((assembly, open))
+    }
+
     /// A tile of samples assembled from the nominal one, and the residuals of those that cannot be assembled. A sample far
     /// from the nominal one is reached by small changes of the parameters (continuation), which keeps it on the same branch
     /// of the linkage.
-    fn assembly(&self, samples: &[Sample]) -> (Assembly<'_>, Vec<ConstraintResidual>) {
+    pub(super) fn assembly(&self, samples: &[Sample]) -> (Assembly<'_>, Vec<ConstraintResidual>) {
         let at = |share: f64| {
             move |parameter: usize, lane: usize| {
                 let (nominal, value) = (self.system.parameters[parameter].nominal, samples[lane][parameter]);
@@ -229,6 +301,23 @@ impl Simulator {
     /// Whether rows of output make their velocities consistent where steps are controlled.
     pub(super) fn projects_row_velocities(&self) -> bool {
         !self.system.lambda.is_empty() && (self.system.observes_velocities() || self.system.observes_accelerations())
+    }
+
+    /// The start's tapes with nothing given: they move any motion onto the constraints.
+    ///
+    /// # Errors
+    /// Where its equations have no factors.
+    pub(super) fn free_closure(&self) -> Result<&StartProgram, SimulationError> {
+        let compiled = self.free_closure.get_or_init(|| {
+            let mut system = self.system.clone();
+            let n = system.q.len();
+            system.start.position = vec![None; n];
+            system.start.velocity = vec![None; n];
+            system.start.conditions.clear();
+            compile_start(&system, &self.mobility.redundant, &self.nominal)
+                .map_err(|none| no_factors(&self.system, &none))
+        });
+        compiled.as_ref().map_err(Clone::clone)
     }
 
     /// Where the equations switch, if they do.

@@ -48,7 +48,7 @@ pub struct Deferred {
 
 /// Parts of one model's run in a folder.
 #[derive(Debug)]
-pub struct Store {
+pub struct PartStore {
     folder: PathBuf,
     /// Hash of what all parts of the run depend on.
     context: [u8; 32],
@@ -58,7 +58,7 @@ pub struct Store {
     simulated: AtomicUsize,
 }
 
-impl Store {
+impl PartStore {
     /// Parts of a run in a folder, which is made where it does not exist. `context` is all that decides the results beside the tasks: the
     /// model's files, overrides and scene, in any unambiguous form.
     ///
@@ -104,6 +104,11 @@ impl Store {
             self.found.fetch_add(1, Ordering::Relaxed);
         }
         Ok(part)
+    }
+
+    /// Whether a file of a part is there.
+    pub fn has(&self, name: &str) -> bool {
+        self.path(PARTS, name, "part").exists()
     }
 
     /// Begins a part.

@@ -9,7 +9,7 @@ use super::error::StoreError;
 use super::part::write_whole;
 use crate::methods::{Observed, Until};
 use crate::numerics::Sample;
-use crate::simulate::{Controller, Schedule};
+use crate::simulate::{Channel, Controller, Schedule};
 
 /// Samples that are simulated together, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +24,8 @@ pub struct Task {
     pub observed: Observed,
     /// When to end.
     pub until: Until,
+    /// By what outputs are reduced to one number.
+    pub channels: Vec<Channel>,
     /// Where these are samples of a scan: its bounds are kept instead of values.
     pub scan: Option<ScanPart>,
     /// Parameters of each sample.

@@ -25,7 +25,7 @@ const RESOLVING: f64 = 0.1;
 
 impl Study<'_> {
     /// Bounds up to the last row of which something is known, and the summary.
-    pub(super) fn conclude(&self, results: Results, note: Option<String>) -> Ran {
+    pub(super) fn conclude(&self, mut results: Results, note: Option<String>) -> Ran {
         let study = self;
         let stop = results.stops().min_by_key(|(stop, _)| (stop.row, stop.sample)).cloned();
         // Where one method cannot go on, its bounds are unknown from there on, and the others' are kept.
@@ -53,13 +53,14 @@ impl Study<'_> {
         let failures: Vec<String> = internal.chain(stopped.or(note).or_else(interrupted).or_else(notes)).collect();
         let failure = (!failures.is_empty()).then(|| failures.join("; "));
         let whole = results.whole().min(rows);
+        let kept = study.kept(&mut results, whole);
         let summary = summary(study, results, &bounds, failure);
-        Ran { bounds, summary, whole }
+        Ran { bounds, summary, whole, kept }
     }
 }
 
 /// Every parameter's contribution to every output's spread, from a method that knows it.
-fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
+pub(super) fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contribution>> {
     let known = |(_, outcome): &&(Method, Outcome)| outcome.result.sensitivities.iter().flatten().any(Option::is_some);
     let Some((_, outcome)) = results.methods.iter().find(known) else { return Vec::new() };
     let of_parameter = |rows_of_output: &[Option<Sensitivity>], place: usize| {
@@ -81,7 +82,7 @@ fn contributions(study: &Study, results: &Results, rows: usize) -> Vec<Vec<Contr
 }
 
 /// An output's band by every method, with its error.
-fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
+pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize) -> Vec<Band> {
     let Some((validation, _)) = &results.validation else { return Vec::new() };
     let nominal: Vec<f64> = results.nominal.result.bands[output][..rows].iter().map(|range| range.lower).collect();
     let corrections = validation.corrections(output, rows);
@@ -188,6 +189,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),
         damped_mode,
+        integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,
         parameters: system
@@ -211,9 +213,12 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
                 method: format!("{} with halved steps", method.name()),
                 ..outcome.summary
             }))
+            .chain(results.found.summary)
             .collect(),
         errors: ErrorSummary::of(bounds),
         contributions: ContributionSummary::of(bounds),
+        reduced: results.found.reduced,
+        requirements: results.found.requirements,
         pieces: Vec::new(),
         not_simulated: Vec::new(),
         subsystems: Vec::new(),

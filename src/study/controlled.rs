@@ -1,5 +1,7 @@
 //! Steps from a tolerance: the error of every output, relative to how far it moves.
 
+use symdiff::math;
+
 use super::ensemble::Progress;
 use super::outcome::Ran;
 use super::single::{Study, simulation_error};
@@ -53,9 +55,17 @@ impl Study<'_> {
         samples: &[Sample],
     ) -> Result<(ToleranceSchedule, Controller), SimulationError> {
         let (duration, output_step) = (self.description.simulation.duration, self.description.simulation.output_step);
-        let mut controller = Controller { tolerance, duration };
-        let schedule = |controller: Controller| {
-            schedule_for_tolerance(&self.simulator, samples, duration, output_step, controller.tolerance)
+        let integration = self.integration();
+        // Plain steps for an error of e are as long as the root of e, extrapolated ones as long as a higher root.
+        let of_plain = |error: f64| match integration.order() {
+            2 => error,
+            order => math::pow(error, 2.0 / order as f64),
+        };
+        let mut controller = Controller { tolerance: of_plain(tolerance), duration };
+        let schedule = |controller: Controller| -> Result<ToleranceSchedule, SimulationError> {
+            let controlled =
+                schedule_for_tolerance(&self.simulator, samples, duration, output_step, controller.tolerance)?;
+            Ok(ToleranceSchedule { schedule: controlled.schedule.taken(integration), ..controlled })
         };
         let mut controlled = schedule(controller)?;
         let steps =
@@ -68,7 +78,7 @@ impl Study<'_> {
             let share = self.steps_error(&controlled, controller, samples)? / tolerance;
             // Steps go with the root of the tolerance.
             let room = (most / steps(&controlled).max(1.0)).powi(2);
-            let factor = (share / AIM).min(room);
+            let factor = of_plain(share / AIM).min(room);
             if share <= 1.0 || factor < 1.5 {
                 break;
             }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::ensemble::Progress;
 use super::outcome::{Outcome, Results};
+use super::reduced::Found;
 use super::single::{Study, simulation_error, timed, validation_summary};
 use super::step_search::StepSearch;
 use crate::methods::{Ensembles, Method, MethodResult, Simulated, Validation};
@@ -19,7 +20,7 @@ impl Study<'_> {
         tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
         let progress = Progress::new(3 * schedule.rows, self.progress);
-        let mut steps = StepSearch::new(schedule);
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
             let (halved, odd) = (schedule.refined(2), schedule.at_odds());
@@ -35,6 +36,7 @@ impl Study<'_> {
                 methods: Vec::new(),
                 halved: Vec::new(),
                 internal: Vec::new(),
+                found: Found::default(),
             };
             if self.request.is_empty() {
                 return Ok(results);
@@ -64,6 +66,7 @@ impl Study<'_> {
                 }
             }
             results.validation = Some((validation, summary));
+            results.found = self.reduced(&results, tolerance, &progress)?;
             return Ok(results);
         }
     }

@@ -7,16 +7,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::kept::Kept;
 use super::price::instructions_of_step;
+use super::reduced::{Store, steps_of};
+use super::stored::Stored;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
 };
-use crate::numerics::{ParameterBox, Range, Sample, ScanBounds};
+use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, EnsembleRun, JetRun, Observed, OpenConstraint,
-    Points, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, ExtrapolatedJets, Integration,
+    JetRun, Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
+    choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -42,7 +44,7 @@ impl<'a> Progress<'a> {
         Self { done: AtomicUsize::new(0), total, report }
     }
 
-    fn advance(&self, work: usize) {
+    pub fn advance(&self, work: usize) {
         let done = self.done.fetch_add(work, Ordering::Relaxed) + work;
         (self.report)((done as f64 / self.total as f64).min(1.0));
     }
@@ -50,19 +52,22 @@ impl<'a> Progress<'a> {
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
-    simulator: &'a Simulator,
-    domain: &'a ParameterBox,
-    schedule: &'a Schedule,
+    pub(super) simulator: &'a Simulator,
+    pub(super) domain: &'a ParameterBox,
+    pub(super) schedule: &'a Schedule,
     /// Of the steps' local errors, where they are controlled.
     tolerance: Option<Controller>,
-    progress: &'a Progress<'a>,
-    interrupted: &'a (dyn Fn() -> bool + Sync),
+    pub(super) progress: &'a Progress<'a>,
+    pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Where outputs are reduced to one number: keeps what samples are reduced to.
+    store: Option<&'a Store>,
+    channels: &'a [Channel],
     /// Simulations that are over: at the end, or where they stopped.
-    over: AtomicUsize,
+    pub(super) over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
-    /// Where simulations are kept, if they are.
-    kept: Option<Kept<'a>>,
+    /// Where simulations are stored, if they are.
+    stored: Option<Stored<'a>>,
 }
 
 impl<'a> Motions<'a> {
@@ -77,14 +82,35 @@ impl<'a> Motions<'a> {
     ) -> Self {
         let over = AtomicUsize::new(0);
         let certifier = OnceLock::new();
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, over, certifier, kept: None }
+        let (store, stored, channels) = (None, None, &[][..]);
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, store, channels, over, certifier, stored }
     }
 
-    /// The same, whose simulations are kept.
-    #[must_use]
-    pub fn kept(mut self, kept: Option<Kept<'a>>) -> Self {
-        self.kept = kept;
-        self
+    /// The same, which also reduces outputs to one number.
+    pub fn keeping(self, store: Option<&'a Store>) -> Self {
+        Self { store, channels: store.map_or(&[], |store| &store.plan.channels), ..self }
+    }
+
+    /// The same, whose simulations are stored.
+    pub fn stored(self, stored: Option<Stored<'a>>) -> Self {
+        Self { stored, ..self }
+    }
+
+    /// The same, which reduces outputs to one number by these channels, for others to keep.
+    pub fn reducing(self, channels: &'a [Channel]) -> Self {
+        Self { channels, ..self }
+    }
+
+    /// By what outputs are reduced to one number.
+    pub fn channels(&self) -> &'a [Channel] {
+        self.channels
+    }
+
+    /// Keeps what outputs of samples were reduced to elsewhere.
+    pub fn keep_reduced(&self, samples: &[Sample], reduced: &[f64]) {
+        if let Some(store) = self.store.filter(|_| !reduced.is_empty()) {
+            store.keep(steps_of(self.schedule), samples, reduced);
+        }
     }
 
     /// Steps, and the tolerance of their local errors.
@@ -102,7 +128,7 @@ impl<'a> Motions<'a> {
         (BLOCK / (lines * samples).max(1)).clamp(1, MOST_ROWS)
     }
 
-    /// As [`Ensemble::simulate`], whether or not simulations are kept.
+    /// As [`Ensemble::simulate`], whether or not simulations are stored.
     ///
     /// # Errors
     /// Where a sample cannot be assembled.
@@ -112,23 +138,17 @@ impl<'a> Motions<'a> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
-        let mut run = EnsembleRun::start(self.simulator, samples, self.schedule.first_step())?;
+        if self.simulator.system.analysis.is_without_steps() {
+            return self.visit(samples, sampling, reduce);
+        }
+        let mut run = self.start(samples)?;
         Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 
-    /// As [`Ensemble::scan`], whether or not simulations are kept.
-    ///
-    /// # Errors
-    /// Where a sample cannot be assembled.
-    pub fn scan_here(
-        &self,
-        samples: &[Sample],
-        points: &[usize],
-        first: usize,
-    ) -> Result<(ScanBounds, Simulated), SimulationError> {
-        methods::scan_by(self, (samples, points, first), |samples, sampling, reduce| {
-            self.simulate_here(samples, sampling, reduce)
-        })
+    /// Samples at their start.
+    fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
+        let run = SampleRun::start(self.simulator, samples, self.schedule)?;
+        Ok(run.reducing(self.channels))
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -144,8 +164,18 @@ impl<'a> Motions<'a> {
     pub fn nominal(&self) -> Result<(MethodResult, Vec<SingularPass>), SimulationError> {
         let outputs = self.outputs();
         let mut bands = BandBuilder::new(outputs, self.schedule.rows);
+        if self.simulator.system.analysis.is_without_steps() {
+            let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
+            let simulated = self.visit(std::slice::from_ref(&self.domain.nominal), sampling, &mut |rows, values| {
+                for (row, output) in rows.flat_map(|row| (0..outputs).map(move |output| (row, output))) {
+                    let value = values[row * outputs + output];
+                    bands.set(row, output, Range { lower: value, upper: value }, 0.0);
+                }
+            })?;
+            return Ok((bands.finish(1, simulated), Vec::new()));
+        }
         let sample = std::slice::from_ref(&self.domain.nominal);
-        let mut run = EnsembleRun::start(self.simulator, sample, self.schedule.first_step())?.watching();
+        let mut run = self.start(sample)?.watching();
         let sampling = Sampling { observed: methods::Observed::Outputs, until: Until::FirstStop, finish: true };
         let simulated = self.advance(&mut run, sample, sampling, &mut |rows, values| {
             for (row, values) in rows.zip(values.chunks_exact(outputs)) {
@@ -159,7 +189,7 @@ impl<'a> Motions<'a> {
 
     fn advance(
         &self,
-        run: &mut EnsembleRun,
+        run: &mut SampleRun,
         samples: &[Sample],
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
@@ -184,6 +214,8 @@ impl<'a> Motions<'a> {
             self.progress.advance(samples.len() * rows.len());
             next = rows.end;
         }
+        let reduced = if next == self.schedule.rows { run.reduced() } else { Vec::new() };
+        self.keep_reduced(samples, &reduced);
         if next == self.schedule.rows || !goes_on(&stop) {
             self.over.fetch_add(samples.len(), Ordering::Relaxed);
         }
@@ -198,7 +230,54 @@ impl<'a> Motions<'a> {
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
+            reduced,
             missing: self.schedule.rows - reached,
+        }
+    }
+}
+
+/// The run of one jet, however the schedule's steps are taken.
+enum SampleJet<'s> {
+    Plain(Box<JetRun<'s>>),
+    Extrapolated(Box<ExtrapolatedJets<'s>>),
+}
+
+impl<'s> SampleJet<'s> {
+    fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_widths): (&[f64], &[f64]),
+        schedule: &Schedule,
+        controlled: bool,
+    ) -> Result<Self, SimulationError> {
+        let first_step = schedule.first_step();
+        Ok(match schedule.integration {
+            Integration::Plain => {
+                let jet = JetRun::start(simulator, space, center, half_widths, first_step)?;
+                Self::Plain(Box::new(if controlled { jet.controlled() } else { jet }))
+            }
+            Integration::Extrapolated { levels } => {
+                let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
+                Self::Extrapolated(Box::new(jets))
+            }
+        })
+    }
+
+    fn advance(&mut self, schedule: &Schedule, rows: Rows<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        match self {
+            Self::Plain(jet) => jet.advance(schedule, rows, into),
+            Self::Extrapolated(jets) => jets.advance(schedule, rows, into),
+        }
+    }
+
+    fn effort(&self) -> Effort {
+        match self {
+            Self::Plain(jet) => effort(jet.counters()),
+            Self::Extrapolated(jets) => {
+                let mut total = Effort::default();
+                jets.levels().iter().for_each(|jet| total += effort(jet.counters()));
+                total
+            }
         }
     }
 }
@@ -207,7 +286,7 @@ fn effort(counters: Counters) -> Effort {
     Effort { iterations: counters.iterations, rank_revealing: counters.rank_revealing }
 }
 
-fn stopped_at(stop: &Stop) -> methods::Stop {
+pub(super) fn stopped_at(stop: &Stop) -> methods::Stop {
     let cause = match stop.open {
         _ if stop.singular => StopCause::SingularJet,
         Some(OpenConstraint { constraint, residual }) => StopCause::Locked { constraint, residual },
@@ -261,21 +340,16 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        match &self.kept {
-            Some(kept) => Ok(kept.simulate(self, samples, sampling, reduce)?),
+        match &self.stored {
+            Some(stored) => Ok(stored.simulate(self, samples, sampling, reduce)?),
             None => Ok(self.simulate_here(samples, sampling, reduce)?),
         }
     }
 
-    fn scan(
-        &self,
-        samples: &[Sample],
-        points: &[usize],
-        first: usize,
-    ) -> Result<(ScanBounds, Simulated), EnsembleError> {
-        match &self.kept {
-            Some(kept) => Ok(kept.scan(self, samples, points, first)?),
-            None => Ok(self.scan_here(samples, points, first)?),
+    fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        match &self.stored {
+            Some(stored) => Ok(stored.scan(self, grid)?),
+            None => methods::scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce)),
         }
     }
 
@@ -283,10 +357,11 @@ impl Ensemble for Motions<'_> {
         let parameters = 0..self.domain.dimension();
         let center: Vec<f64> = parameters.clone().map(|parameter| self.domain.midpoint(parameter)).collect();
         let half_widths: Vec<f64> = parameters.map(|parameter| self.domain.half_width(parameter)).collect();
-        let mut jet = JetRun::start(self.simulator, space, &center, &half_widths, self.schedule.first_step())?;
-        if self.tolerance.is_some() {
-            jet = jet.controlled();
+        if self.simulator.system.analysis.is_without_steps() {
+            return Ok(self.visit_jets(space, &center.into(), &half_widths, reduce)?);
         }
+        let box_of_jet = (&center[..], &half_widths[..]);
+        let mut jet = SampleJet::start(self.simulator, space, box_of_jet, self.schedule, self.tolerance.is_some())?;
         let mut values = Vec::new();
         let mut stop = None;
         let mut next = 0;
@@ -302,10 +377,16 @@ impl Ensemble for Motions<'_> {
         }
         let missing = self.schedule.rows - stop.map_or(next, |stop| stop.row);
         let stop = stop.map(|stop| (stopped_at(&stop), center.into()));
-        Ok(Simulated { effort: effort(jet.counters()), stop, missing, ..Simulated::default() })
+        Ok(Simulated { effort: jet.effort(), stop, missing, ..Simulated::default() })
     }
 
     fn obstacle_to_enclosure(&self) -> Option<String> {
+        if self.simulator.system.analysis.is_without_steps() {
+            return Some(format!("`analysis: {}`", self.simulator.system.analysis.name()));
+        }
+        if self.simulator.equilibrium.is_some() {
+            return Some("a start at an equilibrium".to_owned());
+        }
         let effect = self.simulator.system.effects.iter().find(|effect| !effect.enclosed)?;
         Some(format!("effect {} ({})", effect.name, effect.kind))
     }
@@ -337,6 +418,10 @@ impl Ensemble for Motions<'_> {
     }
 
     fn scales(&self) -> &[f64] {
+        // Nothing is composed from coordinates then.
+        if self.simulator.system.analysis.is_without_steps() {
+            return &[];
+        }
         &self.simulator.program.scale
     }
 

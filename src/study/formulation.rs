@@ -94,8 +94,9 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
         return within_budget(description, MOST_TO_CHECK, &of_system);
     }
     if description.bodies.len() <= FEW_BODIES {
-        let Simulator { system, start, nominal, mobility, undetermined, shared, .. } = compiled(description)?;
-        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared });
+        let Simulator { system, start, nominal, mobility, undetermined, shared, equilibrium, .. } =
+            compiled(description)?;
+        return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium });
     }
     match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
         // Shallow trees are short in joint coordinates.

@@ -1,181 +1,230 @@
-//! Simulations of an ensemble that are kept in a store: read where they are there, simulated or deferred where they are not.
+//! The surrogates of a run, kept after it: outputs at any point of the box, in any row, without simulation.
+//!
+//! Nothing is kept unless [`run_keeping`](super::run_keeping) is asked. What it keeps are coefficients and the compiled mechanism, from
+//! which [`Kept::evaluator`] compiles the loop closures through which outputs follow from expanded coordinates.
 
-use std::ops::Range as Rows;
+use rayon::prelude::*;
 
-use super::ensemble::Motions;
-use super::price::INSTRUCTION_SECONDS;
-use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines};
-use crate::numerics::{Sample, ScanBounds};
-use crate::simulate::SimulationError;
-use crate::store::{PartReader, ScanPart, Store, StoreError, Task};
+use super::outcome::{Outcome, Results};
+use super::single::{Study, problem};
+use crate::methods::{self, KeptSurrogate, Method, Refusal};
+use crate::numerics::{BandError, Sample, SparseBasis, largest, step_error, surrogate_error};
+use crate::simulate::{Closure, SimulationError, Simulator};
 
-/// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest tiles.
-const PART_BYTES: usize = 64 << 20;
-const FEWEST: usize = 32;
-const MOST: usize = 1024;
+/// The method whose surrogate is kept.
+const METHOD: Method = Method::Chebyshev;
 
-/// Where the simulations of a study are kept.
-#[derive(Clone, Copy)]
-pub(super) struct Kept<'a> {
-    pub store: &'a Store,
-    /// Number of the subsystem.
-    pub subsystem: usize,
+/// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
+const CHUNK: usize = 1024;
+
+/// A subsystem's surrogate.
+#[derive(Clone, Debug)]
+pub(super) struct KeptPart {
+    simulator: Simulator,
+    surrogate: KeptSurrogate,
+    /// Errors of the values, by output.
+    errors: Vec<BandError>,
+    /// Output times, s.
+    times: Vec<f64>,
 }
 
-fn of_store(error: StoreError) -> SimulationError {
-    SimulationError::Store { message: error.to_string() }
+/// The surrogates of all subsystems of a run.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    parts: Vec<Placed>,
+    /// By output of the model: its subsystem, and its number there.
+    places: Vec<(usize, usize)>,
+    times: Vec<f64>,
 }
 
-impl Kept<'_> {
-    /// As [`Ensemble::simulate`], by parts of the samples.
-    pub fn simulate(
+/// A subsystem's surrogate among the whole model's parameters.
+#[derive(Clone, Debug)]
+struct Placed {
+    part: KeptPart,
+    /// Numbers of its uncertain parameters among those of the model.
+    parameters: Vec<usize>,
+}
+
+/// Evaluates what is kept of a run.
+pub struct Evaluator<'k> {
+    kept: &'k Kept,
+    /// By subsystem, for each choice of independent coordinates.
+    closures: Vec<Vec<Box<dyn methods::Closure + 'k>>>,
+}
+
+impl Study<'_> {
+    /// Has the surrogate kept, and asks for the method that has one.
+    ///
+    /// # Errors
+    /// Where that method cannot bound the subsystem.
+    pub(super) fn keep_surrogate(&mut self) -> Result<(), Refusal> {
+        let problem = problem(self.description, &self.simulator);
+        self.request.keep = true;
+        self.request.ask(METHOD, &problem);
+        self.request.methods_mut().into_iter().try_for_each(|(_, method)| method.fit(&problem))
+    }
+
+    /// What is kept of a run, with the errors of its values in the first `rows` rows; where it is to be kept and is known.
+    pub(super) fn kept(&self, results: &mut Results, rows: usize) -> Option<KeptPart> {
+        if !self.request.keep {
+            return None;
+        }
+        let times: Vec<f64> = (0..rows).map(|row| results.schedule.time(row)).collect();
+        let (_, outcome) = results.methods.iter_mut().find(|(method, _)| *method == METHOD)?;
+        let surrogate = match outcome.result.kept.take() {
+            Some(kept) => kept,
+            None if self.domain.dimension() == 0 => {
+                let values = |row: usize| outcome.result.bands.iter().map(|ranges| ranges[row].lower).collect();
+                KeptSurrogate::constant(times.iter().enumerate().map(|(row, &time)| (time, values(row))))
+            }
+            None => return None,
+        };
+        let rows = rows.min(surrogate.rows()).min(outcome.result.reached);
+        let part = KeptPart {
+            simulator: self.simulator.clone(),
+            surrogate,
+            errors: Vec::new(),
+            times: times[..rows].to_vec(),
+        };
+        let (_, outcome) = results.methods.iter().find(|(method, _)| *method == METHOD)?;
+        let errors = self.errors_of_values(&part, results, outcome).ok()?;
+        Some(KeptPart { errors, ..part })
+    }
+
+    /// Errors of values anywhere in the box, by output: what the validation samples' differ by and what the method knows of its
+    /// surrogate, and the time steps'.
+    fn errors_of_values(
         &self,
-        motions: &Motions,
-        samples: &[Sample],
-        sampling: Sampling,
-        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
-    ) -> Result<Simulated, SimulationError> {
-        let lines = lines(motions, sampling.observed);
-        let of_sample = (8 * lines * motions.rows()).max(1);
-        let size = (PART_BYTES / of_sample).clamp(FEWEST, MOST) / FEWEST * FEWEST;
-        let tasks: Vec<Task> = samples
-            .chunks(size)
-            .map(|samples| self.task(motions, samples, (sampling.observed, sampling.until), None))
-            .collect();
-        let mut parts = self.parts(motions, &tasks)?;
-        let mut total = Simulated::default();
-        for (number, part) in parts.iter().enumerate() {
-            total.add(number * size, part.simulated.clone());
-        }
-        let counts: Vec<usize> = tasks.iter().map(|task| task.samples.len()).collect();
-        deliver(&mut parts, (&counts, lines), reduce)?;
-        Ok(total)
-    }
-
-    /// As [`Ensemble::scan`].
-    pub fn scan(
-        &self,
-        motions: &Motions,
-        samples: &[Sample],
-        points: &[usize],
-        first: usize,
-    ) -> Result<(ScanBounds, Simulated), SimulationError> {
-        let scan = ScanPart { points: points.to_vec(), first };
-        let task = self.task(motions, samples, (Observed::Outputs, Until::End), Some(scan));
-        let part = self.parts(motions, std::slice::from_ref(&task))?.pop();
-        match part.map(|part| (part.scan, part.simulated)) {
-            Some((Some(bounds), simulated)) => Ok((bounds, simulated)),
-            _ => Err(SimulationError::Store { message: "a part of a scan has no bounds".to_owned() }),
-        }
-    }
-
-    fn task(
-        &self,
-        motions: &Motions,
-        samples: &[Sample],
-        (observed, until): (Observed, Until),
-        scan: Option<ScanPart>,
-    ) -> Task {
-        let (schedule, tolerance) = motions.steps();
-        let (schedule, samples) = (schedule.clone(), samples.to_vec());
-        Task { subsystem: self.subsystem, schedule, tolerance, observed, until, scan, samples }
-    }
-
-    /// The parts of all tasks. Where one is deferred, all that are missing are.
-    fn parts(&self, motions: &Motions, tasks: &[Task]) -> Result<Vec<PartReader>, SimulationError> {
-        let mut parts = Vec::with_capacity(tasks.len());
-        let mut missing = Vec::new();
-        for (place, task) in tasks.iter().enumerate() {
-            let name = self.store.name(task).map_err(of_store)?;
-            let part = self.store.part(&name).map_err(of_store)?;
-            if part.is_none() {
-                missing.push((place, name));
+        part: &KeptPart,
+        results: &Results,
+        outcome: &Outcome,
+    ) -> Result<Vec<BandError>, SimulationError> {
+        let outputs = outcome.result.bands.len();
+        let rows = part.times.len();
+        let Some((validation, _)) = &results.validation else { return Ok(vec![BandError::default(); outputs]) };
+        let closures = part.closures()?;
+        let samples: Vec<Sample> = self.domain.samples(&validation.points);
+        let every: Vec<usize> = (0..outputs).collect();
+        let own: Vec<Vec<f64>> =
+            (0..rows).into_par_iter().map(|row| part.surrogate.values(row, (&every, &samples), &closures)).collect();
+        let of_output = |output: usize| {
+            let corrections = validation.corrections(output, rows);
+            let surrogate = |row: usize| {
+                let values = &own[row][output * samples.len()..][..samples.len()];
+                let found = surrogate_error(values, &validation.direct.at(row, output));
+                largest([found, outcome.result.surrogate[output][row]])
+            };
+            let time = |row: usize| {
+                let halved = validation.halved.at(row, output);
+                let damped: f64 = results.damped.iter().map(|mode| mode.lost(output, part.times[row])).sum();
+                corrections[row].of(step_error(&validation.direct.at(row, output), &halved)) + damped
+            };
+            let (surrogate, time): (Vec<f64>, Vec<f64>) = (0..rows).map(|row| (surrogate(row), time(row))).unzip();
+            let ranges = &outcome.result.bands[output][..rows];
+            let mut error = BandError::new(ranges, &surrogate, &time, validation.spans[output], self.request.tolerance);
+            if let Some(unresolved) = results.unreliable_from().and_then(|row| error.unresolved.get_mut(row..)) {
+                unresolved.fill(true);
             }
-            parts.push(part);
-        }
-        let seconds = |task: &Task| seconds_of(motions, task);
-        let total = missing.iter().map(|(place, _)| seconds(&tasks[*place])).sum();
-        if !self.store.simulates(total) {
-            for (place, name) in missing {
-                let task = &tasks[place];
-                let values = match task.scan {
-                    Some(_) => 5 * motions.outputs(),
-                    None => lines(motions, task.observed) * task.samples.len(),
-                };
-                self.store.defer(&name, task, seconds(task), (8 * values * motions.rows()) as u64).map_err(of_store)?;
-            }
-            return Err(SimulationError::Deferred);
-        }
-        for (place, name) in missing {
-            if motions.is_interrupted() {
-                return Err(SimulationError::Deferred);
-            }
-            simulate_part(motions, self.store, &name, &tasks[place])?;
-            parts[place] = self.store.part(&name).map_err(of_store)?;
-        }
-        let lost = || SimulationError::Store { message: "a part that was just written cannot be read".to_owned() };
-        parts.into_iter().map(|part| part.ok_or_else(lost)).collect()
+            error
+        };
+        Ok((0..outputs).map(of_output).collect())
     }
 }
 
-/// Simulates a task and keeps its part.
-pub(super) fn simulate_part(motions: &Motions, store: &Store, name: &str, task: &Task) -> Result<(), SimulationError> {
-    let mut writer = store.begin(name).map_err(of_store)?;
-    if let Some(ScanPart { points, first }) = &task.scan {
-        let (bounds, simulated) = motions.scan_here(&task.samples, points, *first)?;
-        if motions.is_interrupted() {
-            return Err(SimulationError::Deferred);
-        }
-        return writer.finish(&simulated, Some(&bounds)).map_err(of_store);
+impl KeptPart {
+    fn closures(&self) -> Result<Vec<Box<dyn methods::Closure + '_>>, SimulationError> {
+        let closure = |independent: Vec<usize>| -> Result<Box<dyn methods::Closure + '_>, SimulationError> {
+            Ok(Box::new(Closure::new(&self.simulator, independent)?))
+        };
+        self.surrogate.independent().into_iter().map(closure).collect()
     }
-    let sampling = Sampling { observed: task.observed, until: task.until, finish: false };
-    let mut failed = Ok(());
-    let simulated = motions.simulate_here(&task.samples, sampling, &mut |_, values| {
-        if failed.is_ok() {
-            failed = writer.rows(values);
-        }
-    })?;
-    failed.map_err(of_store)?;
-    if motions.is_interrupted() {
-        // Half of the rows is no part.
-        return Err(SimulationError::Deferred);
-    }
-    writer.finish(&simulated, None).map_err(of_store)
 }
 
-/// Gives the rows that all parts have, in blocks as those of a simulation of all samples.
-fn deliver(
-    parts: &mut [PartReader],
-    (counts, lines): (&[usize], usize),
-    reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
-) -> Result<(), SimulationError> {
-    let all: usize = counts.iter().sum();
-    let rows_of = |(part, count): (&PartReader, &usize)| (part.left() as usize) / (lines * count).max(1);
-    let rows = parts.iter().zip(counts).map(rows_of).min().unwrap_or(0);
-    let block = Motions::rows_a_block(lines, all);
-    let (mut values, mut read) = (Vec::new(), Vec::new());
-    let mut next = 0;
-    while next < rows {
-        let block = next..(next + block).min(rows);
-        values.resize(block.len() * lines * all, 0.0);
-        let mut first = 0;
-        for (part, &count) in parts.iter_mut().zip(counts) {
-            read.resize(block.len() * lines * count, 0.0);
-            part.read(&mut read).map_err(of_store)?;
-            for (line, of_part) in read.chunks_exact(count).enumerate() {
-                values[line * all + first..][..count].copy_from_slice(of_part);
+impl Kept {
+    /// Of all subsystems, with the numbers of their outputs and uncertain parameters in the model of so many outputs.
+    pub(super) fn of_parts(parts: Vec<(KeptPart, &[usize], &[usize])>, outputs: usize) -> Self {
+        let mut places = vec![(0, 0); outputs];
+        for (number, (_, outputs, _)) in parts.iter().enumerate() {
+            outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
+        }
+        let shortest = parts.iter().map(|(part, ..)| &part.times).min_by_key(|times| times.len());
+        let times = shortest.cloned().unwrap_or_default();
+        let placed =
+            |(part, _, parameters): (KeptPart, &[usize], &[usize])| Placed { part, parameters: parameters.to_vec() };
+        Self { parts: parts.into_iter().map(placed).collect(), places, times }
+    }
+
+    /// Output times, s, up to the last row that all samples of all subsystems have reached.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// How far an output's values may be from the truth, in each row, anywhere in the box, and in which rows they cannot be relied on.
+    pub fn error(&self, output: usize) -> &BandError {
+        let (part, place) = self.places[output];
+        &self.parts[part].part.errors[place]
+    }
+
+    /// Numbers of the uncertain parameters on which an output may depend.
+    pub fn parameters(&self, output: usize) -> &[usize] {
+        &self.parts[self.places[output].0].parameters
+    }
+
+    /// Whether an output is one polynomial of the parameters over the whole box in a row: then it takes nanoseconds, else a loop closure.
+    pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
+        let (part, place) = self.places[output];
+        self.parts[part].part.surrogate.is_polynomial(row, place)
+    }
+
+    /// The polynomial through an output's own samples in a row: its terms in ξ ∈ \[−1, 1\] of [`parameters`](Self::parameters), and the
+    /// coefficients before them. `None` where the box was split.
+    pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
+        let (part, place) = self.places[output];
+        self.parts[part].part.surrogate.polynomial(row, place)
+    }
+
+    /// Prepares evaluation: compiles the loop closures that outputs need.
+    ///
+    /// # Errors
+    /// Where a closure's equations have no finite values at the start.
+    pub fn evaluator(&self) -> Result<Evaluator<'_>, SimulationError> {
+        let closures = self.parts.iter().map(|placed| placed.part.closures()).collect::<Result<_, _>>()?;
+        Ok(Evaluator { kept: self, closures })
+    }
+}
+
+impl Evaluator<'_> {
+    /// Outputs in one row at samples of the model's box (values of all its uncertain parameters, in their units), output by output,
+    /// sample by sample; NaN where a closure has no solution. In parallel, with the same bits for any number of threads.
+    pub fn values<P: AsRef<[f64]> + Sync>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
+        let chunks: Vec<Vec<f64>> =
+            samples.par_chunks(CHUNK).map(|samples| self.values_of_chunk(row, outputs, samples)).collect();
+        let mut values = Vec::with_capacity(outputs.len() * samples.len());
+        for place in 0..outputs.len() {
+            for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
+                values.extend_from_slice(&chunk[place * samples.len()..][..samples.len()]);
             }
-            first += count;
         }
-        next = block.end;
-        reduce(block, &values);
+        values
     }
-    Ok(())
-}
 
-/// What a task is expected to take on one core, s.
-fn seconds_of(motions: &Motions, task: &Task) -> f64 {
-    let (schedule, _) = motions.steps();
-    let steps = schedule.steps_before(schedule.rows.saturating_sub(1)) as f64;
-    task.samples.len() as f64 * steps * motions.instructions_of_step() * INSTRUCTION_SECONDS
+    fn values_of_chunk<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; outputs.len() * samples.len()];
+        for (number, (Placed { part, parameters }, closures)) in self.kept.parts.iter().zip(&self.closures).enumerate()
+        {
+            let asked = |place: &usize| self.kept.places[outputs[*place]].0 == number;
+            let places: Vec<usize> = (0..outputs.len()).filter(asked).collect();
+            if places.is_empty() {
+                continue;
+            }
+            let pick = |sample: &P| parameters.iter().map(|&parameter| sample.as_ref()[parameter]).collect();
+            let own: Vec<Vec<f64>> = samples.iter().map(pick).collect();
+            let of_part: Vec<usize> = places.iter().map(|&place| self.kept.places[outputs[place]].1).collect();
+            let found = part.surrogate.values(row, (&of_part, &own), closures);
+            for (&place, found) in places.iter().zip(found.chunks_exact(samples.len().max(1))) {
+                values[place * samples.len()..][..samples.len()].copy_from_slice(found);
+            }
+        }
+        values
+    }
 }

@@ -5,7 +5,7 @@
 //! grow with samples × steps; `deterministic` is the case without uncertain parameters. `conclude` makes bounds and a summary of what
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `internal` keeps a
-//! panic to what panicked.
+//! panic to what panicked, `kept` keeps surrogates for whoever evaluates them after the run.
 
 mod conclude;
 mod controlled;
@@ -22,11 +22,15 @@ mod internal;
 mod kept;
 mod outcome;
 mod price;
+mod reduced;
 mod shard;
 mod single;
 mod step_search;
 mod steps;
+mod stored;
+mod structure;
 mod subsystems;
+mod visits;
 
 use crate::assemble::BuildError;
 use crate::compile::Scheme;
@@ -35,7 +39,7 @@ use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
 use crate::simulate::{Assembled, SimulationError, Simulator};
-use crate::store::Store;
+use crate::store::PartStore;
 
 use subsystems::Prepared;
 
@@ -45,8 +49,10 @@ pub use effect_costs::language_costs;
 pub use explain::explain;
 pub use feasible::Survey;
 pub use internal::{InternalError, caught, record_panics};
+pub use kept::{Evaluator, Kept};
 pub use price::Price;
 pub use shard::simulate_parts;
+pub use structure::structure;
 
 /// How to run.
 pub struct Options<'a> {
@@ -60,8 +66,8 @@ pub struct Options<'a> {
     pub skip_infeasible: bool,
     /// Whether to run what takes long without being allowed by the model.
     pub costly: bool,
-    /// Where simulations are kept, if they are.
-    pub store: Option<&'a Store>,
+    /// Where simulations are stored, if they are.
+    pub store: Option<&'a PartStore>,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Asked now and then whether to stop; methods that are done, and rows of those that are not, are kept.
@@ -117,7 +123,22 @@ pub enum RunError {
 /// Where the mechanism cannot be built, assembled or stepped at all.
 pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summary), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| subsystems::run(description, &options))
+    let model = reduced::expanded(description);
+    let (bounds, summary, _) = pool.install(|| subsystems::run(&model, &options, false))?;
+    Ok(reduced::shown(description, (bounds, summary)))
+}
+
+/// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with
+/// `skip_infeasible`, or where a subsystem's method ended at once.
+///
+/// # Errors
+/// As for [`run`].
+pub fn run_keeping(description: &Description, options: Options) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+    let model = reduced::expanded(description);
+    let (bounds, summary, kept) = pool.install(|| subsystems::run(&model, &options, true))?;
+    let (bounds, summary) = reduced::shown(description, (bounds, summary));
+    Ok((bounds, summary, kept))
 }
 
 /// A compiled model: of what `run` simulates, all in one.
@@ -134,14 +155,6 @@ pub fn prepare(description: &Description) -> Result<Simulator, RunError> {
 /// As for [`run`].
 pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
     formulation::compiled(description)
-}
-
-/// A whole model assembled, with the parts that no output depends on, and nothing merged: for checking it.
-///
-/// # Errors
-/// As for [`run`].
-pub fn assemble_whole(description: &Description) -> Result<Assembled, RunError> {
-    formulation::assembled(description)
 }
 
 /// What is simulated of a model, assembled: a part for each subsystem, as a run has them.

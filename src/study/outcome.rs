@@ -1,6 +1,8 @@
 //! What a subsystem's methods found, before it becomes bounds.
 
 use super::internal::InternalError;
+use super::kept::KeptPart;
+use super::reduced::Found;
 use crate::methods::{Method, MethodResult, Simulated, Stop, Validation};
 use crate::numerics::Sample;
 use crate::results::{Bounds, MethodSummary, Summary};
@@ -30,6 +32,8 @@ pub(super) struct Results {
     pub halved: Vec<(Method, Outcome)>,
     /// What this program did wrong; of what failed nothing is known.
     pub internal: Vec<InternalError>,
+    /// What is one number a motion.
+    pub found: Found,
 }
 
 impl Results {
@@ -75,6 +79,8 @@ pub(super) struct Ran {
     pub summary: Summary,
     /// Rows that every sample of every method has reached.
     pub whole: usize,
+    /// The surrogate, where it is to be kept.
+    pub kept: Option<KeptPart>,
 }
 
 /// How far validation samples of a box came.

@@ -1,14 +1,13 @@
 //! The simulations of a shard.
 
 use super::ensemble::Progress;
-use super::kept::simulate_part;
 use super::single::Study;
-use super::subsystems::{Prepared, prepare};
-use super::{Options, RunError};
+use super::stored::simulate_part;
+use super::subsystems::{Prepared, choices, prepare};
+use super::{Options, RunError, reduced};
 use crate::model::Description;
-use crate::reduce::Choices;
 use crate::simulate::SimulationError;
-use crate::store::{Store, StoreError};
+use crate::store::{PartStore, StoreError};
 
 /// Simulates parts of a model's run that are not in the store yet, by the tasks that are there.
 ///
@@ -17,17 +16,17 @@ use crate::store::{Store, StoreError};
 pub fn simulate_parts(
     description: &Description,
     options: &Options,
-    store: &Store,
+    store: &PartStore,
     names: &[String],
 ) -> Result<(), RunError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
-    pool.install(|| simulate(description, options, store, names))
+    let model = reduced::expanded(description);
+    pool.install(|| simulate(&model, options, store, names))
 }
 
-fn simulate(description: &Description, options: &Options, store: &Store, names: &[String]) -> Result<(), RunError> {
+fn simulate(description: &Description, options: &Options, store: &PartStore, names: &[String]) -> Result<(), RunError> {
     let of_store = |error: StoreError| SimulationError::Store { message: error.to_string() };
-    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
-    let (_, prepared) = prepare(description, choices)?;
+    let (_, prepared) = prepare(description, choices(description, options))?;
     let studies = prepared.into_iter().map(|Prepared { subsystem, simulator }| (subsystem.description, simulator));
     let studies: Vec<_> = studies.collect();
     for name in names {
@@ -47,7 +46,7 @@ fn simulate(description: &Description, options: &Options, store: &Store, names: 
         }
         let study = Study::new(description, simulator.clone(), options)?;
         let progress = Progress::new(task.samples.len() * task.schedule.rows, options.progress);
-        let motions = study.motions(&task.schedule, task.tolerance, &progress);
+        let motions = study.motions(&task.schedule, task.tolerance, &progress).reducing(&task.channels);
         match simulate_part(&motions, store, name, &task) {
             // Interrupted.
             Err(SimulationError::Deferred) => return Ok(()),

@@ -1,10 +1,13 @@
 //! One subsystem's study: the step schedule that all samples share, and the methods under it.
 
+use std::sync::OnceLock;
+
 use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
-use super::kept::Kept;
 use super::outcome::{Outcome, Ran, Results, Tried};
+use super::reduced::{Found, Store};
 use super::step_search::StepSearch;
+use super::stored::Stored;
 use super::{Options, RunError};
 use crate::methods::{
     BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
@@ -26,12 +29,14 @@ pub(super) struct Study<'a> {
     /// Functions of the time in the equations of motion, where there are any.
     pub(super) time_functions: Option<TimeFunctions>,
     /// Whether all samples are simulated with halved steps too.
-    certify_time: bool,
+    pub(super) certify_time: bool,
+    /// Where outputs are reduced to one number: what is accumulated for that, and what samples were reduced to.
+    pub(super) store: OnceLock<Store>,
     pub(super) progress: &'a (dyn Fn(f64) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
-    /// Where simulations are kept, if they are.
-    pub(super) kept: Option<Kept<'a>>,
+    /// Where simulations are stored, if they are.
+    pub(super) stored: Option<Stored<'a>>,
 }
 
 /// A schedule, the tolerance that samples keep under it, and the validation samples with their line in the summary.
@@ -40,10 +45,12 @@ type Balanced = (Divided, Option<Controller>, (Validation, MethodSummary));
 /// What a subsystem is to its bounding methods.
 pub(super) fn problem(description: &Description, simulator: &Simulator) -> Problem {
     let parameters = simulator.system.parameters.len();
+    let has_steps = !simulator.system.analysis.is_without_steps();
     Problem {
         parameters,
-        composes: can_compose(parameters, simulator.system.q.len()),
-        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_)),
+        composes: has_steps && can_compose(parameters, simulator.system.q.len()),
+        has_fixed_steps: matches!(description.simulation.stepping, Stepping::Fixed(_))
+            && description.simulation.extrapolation.is_none(),
         tolerance: description.bounds.tolerance,
     }
 }
@@ -67,7 +74,10 @@ impl<'a> Study<'a> {
         let problem = problem(description, &simulator);
         let request = description.bounds.fitted(options.methods.as_deref(), &problem)?;
         let Options { certify_time, progress, interrupted, .. } = *options;
-        let time_functions = TimeFunctions::of(&simulator, description.simulation.duration);
+        let has_steps = !simulator.system.analysis.is_without_steps();
+        let time_functions =
+            if has_steps { TimeFunctions::of(&simulator, description.simulation.duration) } else { None };
+        let store = OnceLock::new();
         Ok(Self {
             description,
             simulator,
@@ -75,9 +85,10 @@ impl<'a> Study<'a> {
             request,
             time_functions,
             certify_time,
+            store,
             progress,
             interrupted,
-            kept: None,
+            stored: None,
         })
     }
 
@@ -86,7 +97,8 @@ impl<'a> Study<'a> {
         let mut request = self.request.clone();
         request.methods_mut().into_iter().for_each(|(_, method)| method.restrict(part, &self.domain));
         let (simulator, time_functions) = (self.simulator.clone(), self.time_functions.clone());
-        Study { domain: part.clone(), request, progress, simulator, time_functions, ..*self }
+        let store = OnceLock::new();
+        Study { domain: part.clone(), request, progress, simulator, time_functions, store, ..*self }
     }
 
     /// Rows of output that are asked for.
@@ -102,7 +114,7 @@ impl<'a> Study<'a> {
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted);
-        motions.kept(self.kept)
+        motions.keeping(self.store.get()).stored(self.stored)
     }
 
     /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
@@ -111,7 +123,8 @@ impl<'a> Study<'a> {
         let (duration, output_step) = (simulation.duration, simulation.output_step);
         match simulation.stepping {
             Stepping::Fixed(step) => {
-                let Divided { schedule, .. } = self.divided(Schedule::fixed(duration, step, output_step));
+                let fixed = Schedule::fixed(duration, step, output_step).taken(self.integration());
+                let Divided { schedule, .. } = self.divided(fixed);
                 let progress = Progress::new(usize::MAX, self.progress);
                 let validation = self.validation(&schedule, None, Observed::Outputs, &progress)?;
                 let Validation { points, simulated, .. } = validation;
@@ -142,7 +155,7 @@ impl<'a> Study<'a> {
         match simulation.stepping {
             Stepping::Fixed(step) => {
                 let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
-                let results = self.methods(&schedule, None)?;
+                let results = self.methods(&schedule.taken(self.integration()), None)?;
                 Ok(self.conclude(results, None))
             }
             Stepping::Tolerance(tolerance) => Ok(self.run_controlled(tolerance)?),
@@ -156,6 +169,7 @@ impl<'a> Study<'a> {
         schedule: &Schedule,
         mut tolerance: Option<Controller>,
     ) -> Result<Results, SimulationError> {
+        self.plan_reduction(schedule, tolerance)?;
         if self.domain.dimension() == 0 {
             return self.deterministic(schedule, tolerance);
         }
@@ -196,7 +210,23 @@ impl<'a> Study<'a> {
         }
         drop(motions);
         let damped = self.damped_modes(&schedule);
-        Ok(Results { schedule, unresolved_from, damped, nominal, singular, validation, methods, halved, internal })
+        let found = Found::default();
+        let mut results = Results {
+            schedule,
+            unresolved_from,
+            damped,
+            nominal,
+            singular,
+            validation,
+            methods,
+            halved,
+            internal,
+            found,
+        };
+        if !(self.interrupted)() {
+            results.found = self.reduced(&results, tolerance, &progress)?;
+        }
+        Ok(results)
     }
 
     /// The validation samples, and the schedule whose steps take their share of the bounds' tolerance, where there is one.
@@ -210,7 +240,7 @@ impl<'a> Study<'a> {
         let needs_motion = |(_, method): &(Method, &dyn BoundingMethod)| method.observes(&problem) == Observed::Motion;
         let motion = self.request.methods().iter().any(needs_motion);
         let observed = if motion { Observed::Motion } else { Observed::Outputs };
-        let mut steps = StepSearch::new(schedule);
+        let mut steps = StepSearch::new(schedule, self.may_extrapolate());
         loop {
             let begun = std::time::Instant::now();
             let Divided { schedule, unresolved_from } = self.divided(steps.schedule());
@@ -235,7 +265,7 @@ impl<'a> Study<'a> {
         validation: &Validation,
         internal: &mut Vec<InternalError>,
     ) -> Result<Option<usize>, SimulationError> {
-        if (self.interrupted)() {
+        if (self.interrupted)() || self.simulator.system.analysis.is_without_steps() {
             return Ok(None);
         }
         let found = caught("the search for switches", || {
@@ -305,6 +335,7 @@ impl<'a> Study<'a> {
             methods: Vec::new(),
             halved: Vec::new(),
             internal: vec![error],
+            found: Found::default(),
         };
         Ok(self.conclude(results, None))
     }
@@ -381,5 +412,6 @@ pub(super) fn validation_summary(
 
 /// Steps up to where a sample stopped, or to the end.
 fn steps(schedule: &Schedule, stop: Option<&Stop>) -> usize {
-    schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1))
+    let before = schedule.steps_before(stop.map_or(schedule.rows, |stop| stop.row).saturating_sub(1));
+    before * schedule.integration.steps()
 }

@@ -1,6 +1,8 @@
 //! The steps that a tolerance of the bounds asks for.
 
-use crate::simulate::Schedule;
+use symdiff::math;
+
+use crate::simulate::{Integration, Schedule};
 
 /// Share of the tolerance that the steps may take; the surrogate has the rest.
 const SHARE: f64 = 0.5;
@@ -17,8 +19,20 @@ const MOST_PARTS: usize = 32;
 /// Schedules tried at most.
 const MOST_TRIALS: usize = 10;
 
+/// Steps that would have to be divided into more parts are extrapolated instead: three levels take 7 steps for each.
+const WORTH_LEVELS: f64 = 3.0;
+
+/// The levels that are tried first, and those that are taken where steps under them would still have to be divided into more parts
+/// than [`WORTH_FOURTH`]: a fourth level takes twice the steps.
+const LEVELS: usize = 3;
+const WORTH_FOURTH: f64 = 2.0;
+
+/// Extrapolation that divides the error by less than this gains nothing: the motion is not smooth enough, or too stiff.
+const GAIN: f64 = 8.0;
+
 /// Divides or joins a schedule's steps until their error is within its share of the tolerance. The scheme is of second order,
-/// so that the error goes as the step's square.
+/// so that the error goes as the step's square; of higher order where steps are extrapolated, which is tried where it would
+/// take fewer.
 pub(super) struct StepSearch {
     base: Schedule,
     /// Steps between rows, where they are of equal length; then they can be joined too.
@@ -27,21 +41,35 @@ pub(super) struct StepSearch {
     count: usize,
     /// Counts whose error is known.
     tried: Vec<(usize, f64)>,
+    /// Whether levels of extrapolation may be chosen.
+    may_extrapolate: bool,
+    integration: Integration,
+    /// Error of the plain steps that were given up.
+    plain: f64,
 }
 
 impl StepSearch {
     /// Begins with the schedule as it is.
-    pub fn new(base: &Schedule) -> Self {
+    pub fn new(base: &Schedule, may_extrapolate: bool) -> Self {
         let per_row = base.steps_per_row();
-        Self { base: base.clone(), per_row, count: per_row.unwrap_or(1), tried: Vec::new() }
+        Self {
+            base: base.clone(),
+            per_row,
+            count: per_row.unwrap_or(1),
+            tried: Vec::new(),
+            may_extrapolate,
+            integration: base.integration,
+            plain: f64::NAN,
+        }
     }
 
     /// The schedule to try.
     pub fn schedule(&self) -> Schedule {
-        match self.per_row {
+        let steps = match self.per_row {
             Some(_) => self.base.with_steps_per_row(self.count),
             None => self.base.refined(self.count),
-        }
+        };
+        steps.taken(self.integration)
     }
 
     /// Parts that each of the base's steps is divided into; 1 where steps of equal length are counted instead.
@@ -52,8 +80,11 @@ impl StepSearch {
     /// Takes in the error of the schedule tried last, over the tolerance; whether another is to be tried.
     pub fn adjust(&mut self, error: f64) -> bool {
         self.tried.push((self.count, error));
+        if self.choose_levels(error) {
+            return true;
+        }
         let most = MOST_PARTS * self.per_row.unwrap_or(1);
-        let wanted = (self.count as f64 * (error / AIM).sqrt()).ceil().clamp(1.0, most as f64) as usize;
+        let wanted = (self.count as f64 * self.parts_for(error)).ceil().clamp(1.0, most as f64) as usize;
         let next = match error {
             error if error.is_nan() => (4 * self.count).min(most),
             error if error > SHARE => wanted.max(self.count + 1).min(most),
@@ -65,6 +96,42 @@ impl StepSearch {
         self.count = if other { next } else { self.count };
         other
     }
+
+    /// Parts that would bring an error down, or up, to what is aimed at.
+    fn parts_for(&self, error: f64) -> f64 {
+        match self.integration.order() {
+            2 => (error / AIM).sqrt(),
+            order => math::pow(error / AIM, 1.0 / order as f64),
+        }
+    }
+
+    /// Whether the same steps are to be tried on other levels.
+    fn choose_levels(&mut self, error: f64) -> bool {
+        if !self.may_extrapolate {
+            return false;
+        }
+        let parts = self.parts_for(error);
+        match self.integration {
+            Integration::Plain if error > SHARE && parts > WORTH_LEVELS => {
+                self.plain = error;
+                self.integration = Integration::of_levels(LEVELS);
+            }
+            // NaN gains nothing either.
+            Integration::Extrapolated { .. } if !(GAIN * error < self.plain || error <= SHARE) => {
+                self.may_extrapolate = false;
+                self.integration = Integration::Plain;
+                let most = MOST_PARTS * self.per_row.unwrap_or(1);
+                let wanted = self.count as f64 * self.parts_for(self.plain);
+                self.count = wanted.ceil().clamp(1.0, most as f64) as usize;
+            }
+            Integration::Extrapolated { levels: LEVELS } if error > SHARE && parts > WORTH_FOURTH => {
+                self.integration = Integration::of_levels(LEVELS + 1);
+            }
+            _ => return false,
+        }
+        self.tried.clear();
+        true
+    }
 }
 
 #[cfg(test)]
@@ -73,7 +140,7 @@ mod tests {
 
     /// Steps between rows that the search ends with, for an error of c/count².
     fn found(per_row: usize, c: f64) -> usize {
-        let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.1 / per_row as f64, 0.1));
+        let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.1 / per_row as f64, 0.1), false);
         while search.adjust(c / (search.count as f64).powi(2)) {}
         assert_eq!(search.schedule().steps_before(1), search.count);
         search.count
@@ -90,9 +157,26 @@ mod tests {
         assert_eq!(found(1, 1e9), MOST_PARTS);
     }
 
+    /// Levels are chosen where they take fewer steps, and left where they gain nothing.
+    #[test]
+    fn levels_are_chosen_where_they_gain() {
+        let search = |error: &dyn Fn(Integration, f64) -> f64| {
+            let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.01, 0.1), true);
+            while search.adjust(error(search.integration, search.count as f64 / 10.0)) {}
+            (search.integration, search.count)
+        };
+        let smooth = |c: f64| move |how: Integration, parts: f64| c / parts.powi(how.order() as i32);
+        let of_levels = Integration::of_levels;
+        assert_eq!(search(&smooth(2.0)), (of_levels(1), 23), "a few more steps are cheaper");
+        assert_eq!(search(&smooth(5.0)).0, of_levels(3));
+        assert_eq!(search(&smooth(1e3)).0, of_levels(4));
+        let kinked = |_: Integration, parts: f64| 5.0 / parts.powi(2);
+        assert_eq!(search(&kinked), (of_levels(1), 36));
+    }
+
     #[test]
     fn what_fails_is_tried_with_smaller_steps() {
-        let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.1, 0.1));
+        let mut search = StepSearch::new(&Schedule::fixed(1.0, 0.1, 0.1), false);
         let mut tried = 0;
         while search.adjust(f64::NAN) {
             tried += 1;

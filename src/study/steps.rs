@@ -3,10 +3,22 @@
 use super::ensemble::Progress;
 use super::single::{Study, simulation_error};
 use crate::methods::{Ensembles, Observed, Validation};
-use crate::model::Stepping;
-use crate::simulate::{Controller, Divided, ExcitedMode, Schedule, SimulationError, excited_modes};
+use crate::model::{SchemeChoice, Simulation, Stepping};
+use crate::simulate::{Controller, Divided, ExcitedMode, Integration, Schedule, SimulationError, excited_modes};
 
 impl Study<'_> {
+    /// How steps are taken where no tolerance decides it.
+    pub(super) fn integration(&self) -> Integration {
+        Integration::of_levels(self.description.simulation.extrapolation.unwrap_or(1))
+    }
+
+    /// Whether a tolerance may choose levels of extrapolation. Certified bounds enclose the scheme itself.
+    pub(super) fn may_extrapolate(&self) -> bool {
+        let Simulation { scheme, extrapolation, .. } = self.description.simulation;
+        let only_sampled = self.request.methods().iter().all(|(method, _)| method.about().is_sampled);
+        scheme == SchemeChoice::Auto && extrapolation.is_none() && only_sampled
+    }
+
     /// A schedule with those steps divided that do not resolve a function of the time.
     pub(super) fn divided(&self, schedule: Schedule) -> Divided {
         match &self.time_functions {
@@ -17,8 +29,13 @@ impl Study<'_> {
 
     /// Fast modes that the start excites and a schedule's steps damp. Steps that a tolerance decides follow them.
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
+        let has_steps = !self.simulator.system.analysis.is_without_steps();
         match self.description.simulation.stepping {
-            Stepping::Fixed(_) if !self.request.is_empty() => excited_modes(&self.simulator, schedule.longest_step()),
+            Stepping::Fixed(_) if has_steps && !self.request.is_empty() => {
+                // The finest level has the most weight.
+                let halvings = schedule.integration.order() - 2;
+                excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)
+            }
             _ => Vec::new(),
         }
     }

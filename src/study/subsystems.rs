@@ -11,9 +11,10 @@ use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
+use super::stored::Stored;
 use super::{Options, RunError, feasible, formulation};
 use crate::assemble::{self, BuildError};
-use crate::model::{Description, Formulation, ParameterValue};
+use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
 use crate::reduce::{Choices, Reduction, Subsystem, narrow};
 use crate::results::{
@@ -96,13 +97,24 @@ fn as_far_as_joints_go<T>(
     }
 }
 
+/// How a model is reduced to be run.
+pub(super) fn choices(description: &Description, options: &Options) -> Choices {
+    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
+    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes);
+    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
+    Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() }
+}
+
 /// Runs every subsystem and merges the results.
 ///
 /// # Errors
 /// As for any run.
-pub(super) fn run(description: &Description, options: &Options) -> Result<(Bounds, Summary), RunError> {
-    let choices = Choices { part: !options.skip_infeasible, ..Choices::default() };
-    let (reduction, mut prepared) = prepare(description, choices)?;
+pub(super) fn run(
+    description: &Description,
+    options: &Options,
+    keep: bool,
+) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
+    let (reduction, mut prepared) = prepare(description, choices(description, options))?;
     share_budget(&mut prepared);
     let count = prepared.len();
     let report = |place: usize| move |fraction: f64| (options.progress)((place as f64 + fraction) / count as f64);
@@ -117,7 +129,10 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     let studies = subsystems.iter().zip(studies).enumerate().map(|(number, (subsystem, (simulator, progress)))| {
         let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
-        study.kept = options.store.map(|store| Kept { store, subsystem: number });
+        study.stored = options.store.map(|store| Stored { store, subsystem: number });
+        if keep {
+            study.keep_surrogate()?;
+        }
         Ok(study)
     });
     let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
@@ -125,17 +140,18 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
     if !options.costly && price.is_costly(description.bounds.budget.simulations) {
         return Err(RunError::Costly(price));
     }
-    let mut ran = Vec::with_capacity(count);
+    let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut lost = 0;
     for (subsystem, study) in subsystems.iter().zip(&studies) {
-        let found = caught("the run", || {
+        let found = caught("the run", || -> Result<_, RunError> {
             if options.skip_infeasible {
-                return feasible::run(study);
+                let (bounds, summary) = feasible::run(study)?;
+                return Ok((bounds, summary, None));
             }
-            let Ran { bounds, summary, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
-            Ok((bounds, summary))
+            let Ran { bounds, summary, kept, .. } = study.run().map_err(|error| feasible::explained(study, error))?;
+            Ok((bounds, summary, kept))
         });
-        let (bounds, summary) = match found {
+        let (bounds, summary, part) = match found {
             Ok(found) => found?,
             Err(error) => {
                 lost += 1;
@@ -143,13 +159,17 @@ pub(super) fn run(description: &Description, options: &Options) -> Result<(Bound
                 if lost == count {
                     return Err(error.into());
                 }
-                let Ran { bounds, summary, .. } = study.lost(error)?;
-                (bounds, summary)
+                let Ran { bounds, summary, kept, .. } = study.lost(error)?;
+                (bounds, summary, kept)
             }
         };
         ran.push(Done { subsystem, bounds, summary });
+        kept.push(part.map(|part| (part, subsystem.outputs.as_slice(), subsystem.parameters.as_slice())));
     }
-    Ok(Whole::of(description, reduction.left_out).merge(ran))
+    let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
+    let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
+    let (bounds, summary) = Whole::of(description, reduction.left_out).merge(ran);
+    Ok((bounds, summary, kept))
 }
 
 /// The budget is divided evenly among the subsystems with uncertain parameters.
@@ -211,9 +231,18 @@ impl<'a> Whole<'a> {
                 outputs[output] = Some(bounds);
             }
         }
+        // What an analysis adds to the model's outputs comes last.
+        let further = |done: &Done| done.bounds.outputs[done.subsystem.outputs.len()..].to_vec();
+        let outputs = outputs.into_iter().flatten().chain(ran.iter().flat_map(further)).collect();
+        if known {
+            contributions.extend(ran.iter().flat_map(|done| {
+                let own = done.subsystem.outputs.len()..done.bounds.outputs.len();
+                own.map(|place| self.contributions(done, place, &done.bounds.outputs[place])).collect::<Vec<_>>()
+            }));
+        }
         let bounds = Bounds {
             times,
-            outputs: outputs.into_iter().flatten().collect(),
+            outputs,
             contributions: if known { contributions } else { Vec::new() },
             covered: ran
                 .iter()

@@ -118,7 +118,11 @@ fn attack(draw: &Draw, number: u64, findings: &Mutex<Findings>, shown: usize) {
             *so_far += 1;
             *so_far > shown
         };
-        if !enough {
+        if enough {
+            let first = describe(draw, missed, number);
+            let head = first.lines().take_while(|line| line.starts_with('#')).collect::<Vec<_>>().join("\n");
+            println!("{}", if asked::<u64>("MBINT_FALSIFY_ONLY").is_some() { &first } else { &head });
+        } else {
             let (small, missed) = shrink::shrink(draw, missed);
             show(&small, &missed, number);
         }

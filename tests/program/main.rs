@@ -18,3 +18,4 @@ mod schema;
 mod shells;
 mod show;
 mod snapshot;
+mod structure;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 
 use crate::cli::job::{Job, Request};
-use crate::store::{Missing, Shard, Store, StoreError};
+use crate::store::{Missing, PartStore, Shard, StoreError};
 
 /// Where a run's simulations are kept, and what it left to shards.
 #[derive(Debug)]
@@ -28,14 +28,14 @@ impl KeptRun {
     }
 
     /// The store of a job.
-    pub fn open(&self, job: &Job, request: &Request) -> Result<Store, StoreError> {
+    pub fn open(&self, job: &Job, request: &Request) -> Result<PartStore, StoreError> {
         let asked = request.asked();
         let context = super::context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
-        Store::open(&self.folder, &context, self.missing)
+        PartStore::open(&self.folder, &context, self.missing)
     }
 
     /// Notes what a job left to shards. Whether its results are complete and to be written.
-    pub fn close(&self, job: &Job, store: &Store) -> bool {
+    pub fn close(&self, job: &Job, store: &PartStore) -> bool {
         let deferred = store.deferred();
         self.shards.borrow_mut().extend(Shard::of(job.number, job.scene.as_deref(), &deferred));
         deferred.is_empty() && !self.plans

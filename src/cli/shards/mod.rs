@@ -17,7 +17,7 @@ use super::{Failure, Status, load};
 use crate::methods::Method;
 use crate::model::Override;
 use crate::results::ModelFile;
-use crate::store::{Asked, Missing, Plan, Shard, Store, StoreError, StudyFolder};
+use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFolder};
 use crate::study;
 
 fn failed(error: &StoreError) -> Failure {
@@ -104,7 +104,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
         description.bounds.certified = Some(crate::methods::Certified);
     }
     let context = context(&model, &asked.set, shard.scene.as_deref(), asked.skip_infeasible);
-    let store = Store::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
+    let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
     super::interrupt::listen();
     let options = study::Options {
         methods: methods(&asked)?,

@@ -66,6 +66,7 @@ pub struct Backlash {
 }
 
 impl ForceElement for Backlash {
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::ANGLE, Dimension::ANGLE),
         (Sensor::RATE, Dimension::ANGULAR_VELOCITY),

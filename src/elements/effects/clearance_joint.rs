@@ -48,6 +48,7 @@ pub struct ClearanceJoint {
 
 impl ForceElement for ClearanceJoint {
     const GLYPH: Glyph = Glyph::Pin;
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = contact::SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -70,6 +70,7 @@ pub(super) const SENSORS: &[TypedSensor] = &[
 ];
 
 impl ForceElement for Contact {
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -65,6 +65,7 @@ impl Drag {
 }
 
 impl ForceElement for Drag {
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE)];
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {

@@ -72,6 +72,7 @@ pub struct FrictionJoint {
 }
 
 impl ForceElement for JointFriction {
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = &[
         (Sensor::LOAD, Dimension::FORCE),
         (Sensor::FORCE, Dimension::FORCE),

@@ -62,6 +62,9 @@ pub trait ForceElement: Element {
         Self::SENSORS.to_vec()
     }
 
+    /// Whether it only resists: it sets nothing at rest in motion.
+    const RESISTS: bool = false;
+
     /// Its symbol in drawings, at the points, bodies and joints that it names.
     const GLYPH: Glyph = Glyph::Nothing;
 

@@ -90,6 +90,13 @@ macro_rules! effects {
                 }
             }
 
+            /// Whether it only resists: it sets nothing at rest in motion.
+            pub fn resists(&self) -> bool {
+                match self {
+                    $(Self::$name(_) => <$name as ForceElement>::RESISTS,)*
+                }
+            }
+
             /// Its symbol in drawings.
             pub fn glyph(&self) -> $crate::elements::Glyph {
                 match self {

@@ -40,6 +40,7 @@ pub struct Stop {
 }
 
 impl ForceElement for Stop {
+    const RESISTS: bool = true;
     const SENSORS: &'static [TypedSensor] = &[(Sensor::FORCE, Dimension::FORCE), (Sensor::TORQUE, Dimension::TORQUE)];
 
     fn sensors(&self) -> Vec<TypedSensor> {

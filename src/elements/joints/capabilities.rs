@@ -71,6 +71,11 @@ pub trait Joint: Debug {
         Toothed::default()
     }
 
+    /// Whether it prescribes a motion, whatever its formulas.
+    fn drives(&self) -> bool {
+        false
+    }
+
     /// Its constraints; `own` is its own index.
     ///
     /// # Errors

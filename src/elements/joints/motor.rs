@@ -99,6 +99,10 @@ impl Joint for Motor {
         vec![self.on]
     }
 
+    fn drives(&self) -> bool {
+        true
+    }
+
     fn glyph(&self) -> Glyph {
         Glyph::Motor
     }

@@ -1,7 +1,6 @@
 //! Error against computing time, as a table (`csv`) and as a `plot`.
 
 mod csv;
-mod log_axis;
 mod plot;
 
 pub use self::csv::write_cost;

@@ -3,91 +3,85 @@
 //! Every setting is a dot, hollow where its bounds leave out more than they are too wide. A method's line joins the settings on
 //! its own Pareto front; the thick grey line is the front of all methods.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+use svg::node::element::{Circle, Group, Path, Rectangle, Title};
 
-use super::log_axis::LogAxis;
 use crate::compile::Scheme;
-use crate::export::canvas::{Canvas, Drawn, FRAME, GRID, fine, pixel, pixels, svg, text_style};
-use crate::export::polyline::Point;
+use crate::export::figure::document::{Anchor, document, finished, group, heading, line, text, upright};
+use crate::export::figure::log_axis::LogAxis;
+use crate::export::figure::path::{Point, line_data, px};
+use crate::export::figure::style::{Color, Hue};
 use crate::results::{CostMethod, CostPoint, CostStudy, cost_curves, pareto};
 
 /// Size on the page, px.
-const SIZE: (u32, u32) = (1100, 540);
+const SIZE: (f64, f64) = (1100.0, 560.0);
 /// Space for title and legend, px.
-const TOP: f64 = 96.0;
+const TOP: f64 = 124.0;
+/// The first row of the legend, px.
+const LEGEND: f64 = 56.0;
 /// Space for the errors' axis, px.
 const BOTTOM: f64 = 54.0;
 /// Space for the seconds' axis of each panel, px.
 const LEFT: f64 = 70.0;
 /// Space on the right of each panel, px.
 const RIGHT: f64 = 18.0;
+/// What the front of all methods is.
+const CHEAPEST: &str = "no other is cheaper and as good";
 /// From one line of the legend to the next, px.
 const LINE: f64 = 18.0;
 /// From one column of the legend to the next, px.
 const COLUMN: f64 = 214.0;
 /// A dot's radius, px.
 const DOT: f64 = 3.4;
-const FRONT: RGBColor = RGBColor(190, 190, 190);
+/// The front of all methods.
+const FRONT: Color = Color([190, 190, 190]);
 
 /// The colours of the plots of bounds, and others that are apart from them for every colour vision.
-fn color(method: CostMethod) -> RGBColor {
+fn color(method: CostMethod) -> Color {
     match method {
-        CostMethod::Bounds(curve) => {
-            let [red, green, blue] = curve.about().color;
-            RGBColor(red, green, blue)
-        }
-        CostMethod::Scheme(Scheme::Hht { .. }) => RGBColor(0, 114, 178),
-        CostMethod::Scheme(Scheme::TrapezoidalIndex2) => RGBColor(130, 25, 80),
+        CostMethod::Bounds(curve) => Color(curve.about().color),
+        CostMethod::Scheme(Scheme::Hht { .. }) => Color([0, 114, 178]),
+        CostMethod::Scheme(Scheme::TrapezoidalIndex2) => Color([130, 25, 80]),
         CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.65 => {
-            RGBColor(0, 158, 115)
+            Color([0, 158, 115])
         }
         CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.85 => {
-            RGBColor(240, 160, 20)
+            Color([240, 160, 20])
         }
-        CostMethod::Scheme(Scheme::GeneralisedAlpha { .. }) => RGBColor(86, 180, 233),
+        CostMethod::Scheme(Scheme::GeneralisedAlpha { .. }) => Color([86, 180, 233]),
     }
 }
 
 /// The study as an SVG document.
-///
-/// # Errors
-/// plotters' own, as text; none is known to occur.
-pub fn cost_svg(study: &CostStudy) -> Result<String, String> {
-    svg(SIZE, |canvas| draw(canvas, study).map_err(|error| error.to_string()))
-}
-
-fn draw(canvas: &Canvas, study: &CostStudy) -> Drawn {
-    canvas.fill(&WHITE)?;
-    let half = f64::from(SIZE.0) / 2.0;
+pub fn cost_svg(study: &CostStudy) -> String {
+    let half = SIZE.0 / 2.0;
     let scale = if study.is_deterministic() { "error / range of the course" } else { "error / largest width" };
     let panels = [
         ("Bounds", &study.bounds, study.reference.bounds_error),
         ("Nominal trajectory", &study.trajectories, study.reference.trajectory_error),
     ];
+    let what = format!("{}: error against computing time", study.model);
+    let mut figure = document(SIZE, &what).add(heading(&what, (LEFT, 15.0)));
     let shown = panels.into_iter().filter(|(_, points, _)| !points.is_empty());
     for (place, (title, points, reference)) in shown.enumerate() {
         let left = place as f64 * half;
         let shown = || points.iter().filter(|point| is_shown(point));
         let errors = shown().map(|point| point.deviation.largest()).chain([study.tolerance]);
         let panel = Panel {
-            canvas,
             left: left + LEFT,
             right: left + half - RIGHT,
             top: TOP,
-            bottom: f64::from(SIZE.1) - BOTTOM,
+            bottom: SIZE.1 - BOTTOM,
             x: LogAxis::fit(errors.map(|error| error.max(reference))),
             y: LogAxis::fit(shown().map(|point| point.seconds)),
         };
-        panel.mesh()?;
-        panel.threshold(study.tolerance, "tolerance")?;
+        let mut drawn = group("panel").add(Title::new(title)).add(panel.mesh()).add(panel.axes(title, scale));
+        drawn = drawn.add(panel.threshold(study.tolerance, "tolerance"));
         if points.iter().any(|point| point.limited) {
-            panel.threshold(reference, "reference")?;
+            drawn = drawn.add(panel.threshold(reference, "reference"));
         }
-        panel.curves(points, reference)?;
-        panel.frame(title, scale)?;
+        figure = figure.add(panel.curves(drawn, points, reference)).add(panel.legend(points));
     }
-    Ok(())
+    finished(&figure)
 }
 
 /// Settings without a result have no place in the plot.
@@ -95,9 +89,8 @@ fn is_shown(point: &CostPoint) -> bool {
     point.deviation.largest().is_finite() && point.seconds > 0.0
 }
 
-/// A rectangle of the canvas with its axes; lengths in px.
-struct Panel<'a, 'b> {
-    canvas: &'a Canvas<'b>,
+/// A rectangle of the figure with its axes; lengths in px.
+struct Panel {
     left: f64,
     right: f64,
     top: f64,
@@ -106,97 +99,121 @@ struct Panel<'a, 'b> {
     y: LogAxis,
 }
 
-impl Panel<'_, '_> {
-    /// Grid and labels of both axes.
-    fn mesh(&self) -> Drawn {
+impl Panel {
+    fn across(&self, at: f64) -> f64 {
+        self.left + at * (self.right - self.left)
+    }
+
+    fn up(&self, at: f64) -> f64 {
+        self.bottom - at * (self.bottom - self.top)
+    }
+
+    /// Lines at the decades.
+    fn mesh(&self) -> Group {
+        let decades = |ticks: Vec<(f64, Option<String>)>| ticks.into_iter().filter(|(_, label)| label.is_some());
+        let across =
+            decades(self.x.ticks()).map(|(at, _)| self.across(at)).map(|x| line((x, self.top), (x, self.bottom)));
+        let up = decades(self.y.ticks()).map(|(at, _)| self.up(at)).map(|y| line((self.left, y), (self.right, y)));
+        across.chain(up).fold(group("grid"), Group::add)
+    }
+
+    /// The frame, ticks, labels and titles of both axes.
+    fn axes(&self, title: &str, scale: &str) -> Group {
+        let Self { left, right, top, bottom, .. } = *self;
+        let frame = Rectangle::new().set("class", "frame").set("x", px(left)).set("y", px(top));
+        let mut axes = group("axis").add(frame.set("width", px(right - left)).set("height", px(bottom - top)));
         for (at, label) in self.x.ticks() {
-            let x = self.left + at * (self.right - self.left);
+            let x = self.across(at);
+            axes = axes.add(line((x, bottom), (x, bottom + 4.0)).set("class", "frame"));
             if let Some(label) = label {
-                self.line(&[(x, self.top), (x, self.bottom)], GRID, 1.0)?;
-                self.text(&label, (x, self.bottom + 8.0), HPos::Center, VPos::Top)?;
+                axes = axes.add(text(&label, (x, bottom + 15.0), Anchor::Middle));
             }
-            self.line(&[(x, self.bottom), (x, self.bottom + 4.0)], FRAME, 1.0)?;
         }
         for (at, label) in self.y.ticks() {
-            let y = self.bottom - at * (self.bottom - self.top);
+            let y = self.up(at);
+            axes = axes.add(line((left - 4.0, y), (left, y)).set("class", "frame"));
             if let Some(label) = label {
-                self.line(&[(self.left, y), (self.right, y)], GRID, 1.0)?;
-                self.text(&label, (self.left - 7.0, y), HPos::Right, VPos::Center)?;
+                axes = axes.add(text(&label, (left - 7.0, y), Anchor::End));
             }
-            self.line(&[(self.left - 4.0, y), (self.left, y)], FRAME, 1.0)?;
         }
-        Ok(())
+        axes.add(text(title, (left, 36.0), Anchor::Start))
+            .add(text(scale, (0.5 * (left + right), bottom + 36.0), Anchor::Middle))
+            .add(upright("computing time [s]", (left - 54.0, 0.5 * (top + bottom))))
     }
 
     /// A vertical line at an error.
-    fn threshold(&self, error: f64, label: &str) -> Drawn {
+    fn threshold(&self, error: f64, label: &str) -> Group {
         let (x, _) = self.place((error, 1.0));
-        self.line(&[(x, self.top), (x, self.bottom)], FRAME, 1.0)?;
-        self.text(label, (x - 4.0, self.bottom - 6.0), HPos::Right, VPos::Bottom)
+        group("threshold").add(line((x, self.top), (x, self.bottom)).set("class", "frame")).add(text(
+            label,
+            (x - 4.0, self.bottom - 12.0),
+            Anchor::End,
+        ))
     }
 
-    /// The common front below every method's dots and line, and the legend above. Errors below the reference's own error are
-    /// shown at that error.
-    fn curves(&self, points: &[CostPoint], reference: f64) -> Drawn {
+    /// The common front below every method's dots and line. Errors below the reference's own error are shown at that error.
+    fn curves(&self, drawn: Group, points: &[CostPoint], reference: f64) -> Group {
         let all = || points.iter().filter(|point| is_shown(point));
-        self.front(&all().map(|point| point.place(reference)).collect::<Vec<Point>>(), FRONT, 7.0)?;
-        for (entry, method) in cost_curves(points).into_iter().enumerate() {
+        let places: Vec<Point> = all().map(|point| point.place(reference)).collect();
+        let front = Hue::Color(FRONT).paint(Group::new().add(Title::new(CHEAPEST)), "series");
+        let drawn = drawn.add(front.add(self.front(&places, 7.0)));
+        cost_curves(points).into_iter().enumerate().fold(drawn, |drawn, (entry, method)| {
             let own = || all().filter(|point| point.method == method);
-            self.front(&own().map(|point| point.place(reference)).collect::<Vec<Point>>(), color(method), 1.6)?;
-            for point in own() {
-                self.dot(self.place(point.place(reference)), color(method), point.deviation.is_narrow())?;
-            }
-            let (row, column) = (entry % 3, entry / 3);
-            let (x, y) = (self.left + column as f64 * COLUMN, 32.0 + row as f64 * LINE);
-            self.line(&[(x, y), (x + 22.0, y)], color(method), 1.6)?;
-            self.dot((x + 11.0, y), color(method), false)?;
-            self.text(&method.label(), (x + 28.0, y), HPos::Left, VPos::Center)?;
-        }
-        let (x, y) = (self.left, 32.0 + 3.0 * LINE);
-        self.line(&[(x, y), (x + 22.0, y)], FRONT, 7.0)?;
-        self.text("no other is cheaper and as good", (x + 28.0, y), HPos::Left, VPos::Center)?;
-        if all().any(|point| point.deviation.is_narrow()) {
-            self.dot((x + 251.0, y), FRAME, true)?;
-            self.text("too narrow", (x + 260.0, y), HPos::Left, VPos::Center)?;
-        }
-        Ok(())
+            let places: Vec<Point> = own().map(|point| point.place(reference)).collect();
+            let series = Group::new().set("data-series", method.label()).add(Title::new(method.label()));
+            let series = Hue::Color(color(method)).paint(series, "series").add(self.front(&places, 1.6));
+            drawn.add(own().zip(&places).fold(series, |series, (point, place)| {
+                series.add(mark(self.place(*place), entry, point.deviation.is_narrow()))
+            }))
+        })
     }
 
-    fn frame(&self, title: &str, scale: &str) -> Drawn {
-        let Self { left, right, top, bottom, .. } = *self;
-        self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], FRAME, 1.0)?;
-        let middle = (left + right) / 2.0;
-        self.text(title, (middle, 12.0), HPos::Center, VPos::Center)?;
-        self.text(scale, (middle, bottom + 28.0), HPos::Center, VPos::Top)?;
-        let upright = text_style(HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-        self.canvas.draw_text("seconds", &upright, pixel((left - 62.0, (top + bottom) / 2.0)))
+    /// Three rows of methods, and what the front and hollow marks mean.
+    fn legend(&self, points: &[CostPoint]) -> Group {
+        let mut legend = group("legend");
+        for (entry, method) in cost_curves(points).into_iter().enumerate() {
+            let (row, column) = (entry % 3, entry / 3);
+            let (x, y) = (self.left + column as f64 * COLUMN, LEGEND + row as f64 * LINE);
+            let stroke = line((x, y), (x + 22.0, y)).set("class", "line").set("stroke-width", 1.6);
+            let key = Hue::Color(color(method)).paint(Group::new(), "key").add(stroke);
+            let key = key.add(mark((x + 11.0, y), entry, false));
+            legend = legend.add(key.add(text(&method.label(), (x + 28.0, y), Anchor::Start)));
+        }
+        let (x, y) = (self.left, LEGEND + 3.0 * LINE);
+        let stroke = line((x, y), (x + 22.0, y)).set("class", "line").set("stroke-width", 7.0);
+        let key = Hue::Color(FRONT).paint(Group::new(), "key").add(stroke);
+        legend = legend.add(key.add(text(CHEAPEST, (x + 28.0, y), Anchor::Start)));
+        if points.iter().any(|point| is_shown(point) && point.deviation.is_narrow()) {
+            let key = Hue::Ink.paint(Group::new(), "key").add(mark((x + 251.0, y), 0, true));
+            legend = legend.add(key.add(text("too narrow", (x + 262.0, y), Anchor::Start)));
+        }
+        legend
     }
 
     fn place(&self, (error, seconds): Point) -> Point {
-        let across = self.left + self.x.place(error) * (self.right - self.left);
-        (across, self.bottom - self.y.place(seconds) * (self.bottom - self.top))
+        (self.across(self.x.place(error)), self.up(self.y.place(seconds)))
     }
 
     /// A line through the points on the Pareto front.
-    fn front(&self, points: &[Point], color: RGBColor, width: f64) -> Drawn {
+    fn front(&self, points: &[Point], width: f64) -> Path {
         let line: Vec<Point> = pareto(points).into_iter().map(|place| self.place(points[place])).collect();
-        self.line(&line, color, width)
+        Path::new().set("class", "line").set("d", line_data(&line)).set("stroke-width", width)
     }
+}
 
-    fn line(&self, points: &[Point], color: RGBColor, width: f64) -> Drawn {
-        self.canvas.draw(&PathElement::new(pixels(points), color.stroke_width(fine(width))))
-    }
-
-    fn dot(&self, at: Point, color: RGBColor, hollow: bool) -> Drawn {
-        self.canvas.draw(&Circle::new(pixel(at), fine(DOT), color.filled()))?;
-        if hollow {
-            self.canvas.draw(&Circle::new(pixel(at), fine(DOT - 1.3), WHITE.filled()))?;
-        }
-        Ok(())
-    }
-
-    fn text(&self, text: &str, at: Point, horizontal: HPos, vertical: VPos) -> Drawn {
-        self.canvas.draw_text(text, &text_style(horizontal, vertical), pixel(at))
+/// A mark whose shape tells the methods apart beside their colours.
+fn mark((x, y): Point, entry: usize, hollow: bool) -> Group {
+    let class = if hollow { "hollow" } else { "area" };
+    let shape = |corners: &[Point]| {
+        let corners: Vec<Point> = corners.iter().map(|(dx, dy)| (x + DOT * dx, y + DOT * dy)).collect();
+        Path::new().set("class", class).set("d", line_data(&corners) + "z")
+    };
+    let mark = Group::new().set("stroke-width", 1.4);
+    match entry % 4 {
+        0 => mark.add(Circle::new().set("class", class).set("cx", px(x)).set("cy", px(y)).set("r", DOT)),
+        1 => mark.add(shape(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)])),
+        2 => mark.add(shape(&[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)])),
+        _ => mark.add(shape(&[(0.0, -1.2), (1.2, 0.9), (-1.2, 0.9)])),
     }
 }
 
@@ -212,8 +229,8 @@ mod tests {
         let mut whole = sample();
         whole.bounds.push(CostPoint::without_result(COMPOSED, Stepping::Fixed(1e-2)));
         for study in [whole, study(vec![])] {
-            let svg = cost_svg(&study).unwrap();
-            assert!(svg.starts_with("<svg width=\"1100\" height=\"540\"") && svg.trim_end().ends_with("</svg>"));
+            let svg = cost_svg(&study);
+            roxmltree::Document::parse(&svg).unwrap();
             assert!(!svg.contains("NaN") && !svg.contains("inf"));
             for point in study.bounds.iter().chain(&study.trajectories) {
                 assert!(svg.contains(&point.method.label()), "{}", point.method.label());

@@ -18,6 +18,7 @@ use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
 use super::sub_box::{HIGHEST, SubBox};
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
+use crate::methods::kept::{KeptRow, KeptSurrogate};
 use crate::methods::request::Budget;
 use crate::methods::result::Estimate;
 use crate::methods::validation::{Validation, ValidationTable};
@@ -52,6 +53,8 @@ pub(super) struct Adapted {
     pub order: Vec<usize>,
     /// What came of the simulations.
     pub simulated: Simulated,
+    /// The surrogate, where it is to be kept.
+    pub kept: Option<KeptSurrogate>,
 }
 
 /// What is estimated besides ranges and the surrogate's errors.
@@ -79,11 +82,13 @@ pub(super) struct Adaptation<'r> {
     search: RangeSearch,
     /// Of the whole box.
     validation: &'r Validation,
+    /// The surrogate that is kept, box by box, where one is.
+    kept: Option<KeptSurrogate>,
 }
 
 impl<'r> Adaptation<'r> {
     /// Before the first simulation.
-    pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation) -> Self {
+    pub fn new(ensemble: &'r dyn Ensemble, goal: Goal, validation: &'r Validation, keep: bool) -> Self {
         let every = goal.rows.div_ceil(CHECKED).max(1);
         Self {
             ensemble,
@@ -95,6 +100,7 @@ impl<'r> Adaptation<'r> {
             every,
             search: RangeSearch::new(ensemble.domain().dimension()),
             validation,
+            kept: keep.then(KeptSurrogate::default),
         }
     }
 
@@ -249,13 +255,30 @@ impl<'r> Adaptation<'r> {
             sensitivity: (detail == Detail::Sensitivities)
                 .then(|| SensitivityAnalysis::new(&sub_box.domain, &surrogate)),
         };
-        let look = |place: usize, row: &Row, previous: &mut Previous| estimator.estimate(row, rows[place], previous);
-        Ok(self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)?.concat())
+        let keeps = self.kept.is_some() && detail != Detail::Errors;
+        let look = |place: usize, row: &Row, previous: &mut Previous| {
+            let found = estimator.estimate(row, rows[place], previous);
+            let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
+            (found, kept)
+        };
+        let found = self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)?;
+        let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
+        if let (true, Some(all)) = (keeps, &mut self.kept) {
+            all.add(&sub_box.domain, surrogate.basis(), kept.into_iter().flatten().collect());
+        }
+        Ok(found.concat())
     }
 
     /// Ranges over all sub-boxes together, with their errors.
     fn conclude(mut self, boxes: &[SubBox]) -> Result<Adapted, EnsembleError> {
-        let nothing = Estimate { range: EMPTY, error: 0.0, step_error: 0.0, sensitivity: None, is_expanded: false };
+        let nothing = Estimate {
+            range: EMPTY,
+            error: 0.0,
+            step_error: 0.0,
+            sensitivity: None,
+            is_expanded: false,
+            is_own: false,
+        };
         let mut found = vec![nothing.clone(); self.ensemble.rows() * self.ensemble.outputs()];
         let mut order = vec![0; self.ensemble.domain().dimension()];
         let detail = if boxes.len() == 1 { Detail::Sensitivities } else { Detail::StepErrors };
@@ -274,6 +297,6 @@ impl<'r> Adaptation<'r> {
             }
         }
         let (simulations, boxes) = (self.goal.spent, boxes.len());
-        Ok(Adapted { found, simulations, boxes, order, simulated: self.simulated })
+        Ok(Adapted { found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
     }
 }

@@ -29,13 +29,14 @@ impl RangeEstimator<'_> {
             Some(analysis) => analysis.of_row(row, &found.extents).into_iter().map(Some).collect(),
             None => vec![None; errors.len()],
         };
-        let ranges = found.extents.iter().map(|found| found.range).zip(found.expanded);
-        let estimate = |((((range, is_expanded), error), step_error), sensitivity)| Estimate {
+        let ranges = found.extents.iter().map(|found| found.range).zip(found.expanded.into_iter().zip(found.own));
+        let estimate = |((((range, (is_expanded, is_own)), error), step_error), sensitivity)| Estimate {
             range,
             error,
             step_error,
             sensitivity,
             is_expanded,
+            is_own,
         };
         ranges.zip(errors).zip(step_errors).zip(sensitivities).map(estimate).collect()
     }

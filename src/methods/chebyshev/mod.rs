@@ -14,6 +14,7 @@ use rayon::prelude::*;
 
 use super::BoundsRequest;
 use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
+use super::kept::{KeptRow, KeptSurrogate};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult, PolynomialEstimate};
@@ -266,11 +267,18 @@ impl BoundingMethod for Chebyshev {
         let surrogate = Surrogate::tensor(order, nodes);
         let samples = ensemble.domain().samples(surrogate.samples());
         let composes = can_compose(ensemble.domain().dimension(), ensemble.scales().len());
+        let mut kept_rows = request.keep.then(Vec::new);
         let (bands, simulated) = match self.expand {
-            Expand::Coordinates if composes => composed(ensemble, &surrogate, &samples, validation)?,
-            _ => expanded(ensemble, &surrogate, PolynomialRange::new(order, self.range), &samples, validation)?,
+            Expand::Coordinates if composes => {
+                composed(ensemble, &surrogate, &samples, validation, kept_rows.as_mut())?
+            }
+            _ => {
+                let range = PolynomialRange::new(order, self.range);
+                expanded(ensemble, &surrogate, range, &samples, validation, kept_rows.as_mut())?
+            }
         };
-        Ok(bands.finish(samples.len(), simulated))
+        let kept = kept_rows.map(|rows| KeptSurrogate::of_box(ensemble.domain(), surrogate.basis(), rows));
+        Ok(MethodResult { kept, ..bands.finish(samples.len(), simulated) })
     }
 }
 
@@ -293,14 +301,14 @@ fn adapted(
         let time = largest(time[..resolved].iter().copied());
         goal.allowed.push(if span > 0.0 { (allowed - time).max(LEAST_SHARE * allowed) } else { f64::INFINITY });
     }
-    let adapted = Adaptation::new(ensemble, goal, validation).search()?;
+    let adapted = Adaptation::new(ensemble, goal, validation, request.keep).search()?;
     let outputs = ensemble.outputs();
     let mut bands = BandBuilder::new(outputs, ensemble.rows());
     for (place, estimate) in adapted.found.into_iter().enumerate() {
         bands.set_estimate(place / outputs, place % outputs, estimate);
     }
     let result = bands.finish(adapted.simulations - spent, adapted.simulated);
-    Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), ..result })
+    Ok(MethodResult { order: Some(adapted.order), boxes: Some(adapted.boxes), kept: adapted.kept, ..result })
 }
 
 /// The outputs follow from the expanded independent coordinates.
@@ -309,6 +317,7 @@ fn composed(
     surrogate: &Surrogate,
     samples: &[Sample],
     validation: &Validation,
+    mut kept: Option<&mut Vec<KeptRow>>,
 ) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let domain: &ParameterBox = ensemble.domain();
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
@@ -326,10 +335,16 @@ fn composed(
     let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
         let times: Vec<f64> = rows.clone().map(|row| ensemble.time(row)).collect();
         let first = rows.start;
-        let look = |place: usize, row: &Row, previous: &mut Previous| estimator.estimate(row, first + place, previous);
+        let keeps = kept.is_some();
+        let look = |place: usize, row: &Row, previous: &mut Previous| {
+            let found = estimator.estimate(row, first + place, previous);
+            let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
+            (found, kept)
+        };
         match composer.rows(surrogate, domain, &times, (values, stride), look) {
             Ok(found) => {
-                for (row, estimates) in rows.zip(found) {
+                for (row, (estimates, row_kept)) in rows.zip(found) {
+                    kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));
                     let estimates = estimates.into_iter().enumerate();
                     estimates.for_each(|(output, estimate)| bands.set_estimate(row, output, estimate));
                 }
@@ -347,10 +362,12 @@ fn expanded(
     range: PolynomialRange,
     samples: &[Sample],
     validation: &Validation,
+    mut kept: Option<&mut Vec<KeptRow>>,
 ) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
     let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, finish: false };
     let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
+        let keeps = kept.is_some();
         let found: Vec<PolynomialEstimate> = values
             .par_chunks_exact(samples.len())
             .map_init(
@@ -361,11 +378,18 @@ fn expanded(
                     surrogate.basis().values(&validation.points, &coefficients, &mut at_validation, sparse);
                     let enclosed = range.enclose(&coefficients);
                     let truncation = truncation(surrogate.basis(), &coefficients);
-                    PolynomialEstimate { range: enclosed.outer, excess: enclosed.excess(), truncation, at_validation }
+                    let (range, excess) = (enclosed.outer, enclosed.excess());
+                    let coefficients = if keeps { coefficients } else { Vec::new() };
+                    PolynomialEstimate { range, excess, truncation, at_validation, coefficients }
                 },
             )
             .collect();
-        bands.set_polynomials(rows, &found, validation);
+        bands.set_polynomials(rows.clone(), &found, validation);
+        if let Some(kept) = &mut kept {
+            let lines: Vec<&[f64]> = found.iter().map(|found| found.coefficients.as_slice()).collect();
+            let of_rows = rows.zip(lines.chunks_exact(ensemble.outputs().max(1)));
+            kept.extend(of_rows.map(|(row, lines)| KeptRow::of_outputs(ensemble.time(row), lines)));
+        }
     })?;
     Ok((bands, simulated))
 }

@@ -13,6 +13,20 @@ pub struct Simulation {
     pub output_step: f64,
     /// By which coordinates the motion is described.
     pub formulation: Formulation,
+    /// By what the motion is integrated.
+    pub scheme: SchemeChoice,
+    /// Levels of step lengths that are combined; `None` where nothing is said.
+    pub extrapolation: Option<usize>,
+}
+
+/// By what a motion is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SchemeChoice {
+    /// Under a tolerance whichever reaches it with the least work; else HHT-I3.
+    #[default]
+    Auto,
+    /// HHT-I3.
+    Hht,
 }
 
 /// By which coordinates a motion is described; the motion is the same.

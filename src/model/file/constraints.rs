@@ -33,6 +33,9 @@ const NONNEGATIVE: &str = "minimum";
 
 /// A model stands alone, or on a robot.
 fn of_model(root: &mut Map<String, Value>) {
+    let without_time =
+        json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
+    root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time]));
     let alone = json!({
         "required": ["bodies", "outputs"],
         "properties": {
@@ -94,6 +97,10 @@ fn of_simulation(simulation: &mut Value) {
     insert(alpha, "exclusiveMaximum", json!(0));
     insert(alpha, "default", json!(-0.1));
     insert(&mut simulation["properties"]["formulation"], "default", json!("auto"));
+    insert(&mut simulation["properties"]["scheme"], "default", json!("auto"));
+    insert(&mut simulation["properties"]["extrapolation"], "minimum", json!(2));
+    insert(&mut simulation["properties"]["extrapolation"], "maximum", json!(4));
+    insert(&mut simulation["properties"]["extrapolation"], "examples", json!([3]));
     for (key, example) in [("duration", json!("2 s")), ("step", json!(1e-3)), ("tolerance", json!(1e-6))] {
         insert(&mut simulation["properties"][key], "examples", json!([example]));
     }

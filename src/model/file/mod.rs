@@ -8,11 +8,13 @@ use schemars::transform::{RecursiveTransform, Transform};
 mod bodies;
 mod constraints;
 mod model;
+mod reduced;
 mod run;
 mod values;
 
 pub use bodies::*;
 pub use model::*;
+pub use reduced::*;
 pub use run::*;
 use values::*;
 

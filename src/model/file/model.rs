@@ -30,14 +30,18 @@ grammar! {
         joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
-        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others.
-        initial: Option<IndexMap<String, StartFile>>,
+        /// What is done with the mechanism; by default its `motion`.
+        analysis: Option<AnalysisName>,
+        /// Coordinates and velocities at the start, e.g. `crank.angle: 30 deg`; assembly finds the others. Or `equilibrium`.
+        initial: Option<InitialFile>,
         /// Where assembly begins to look for coordinates, e.g. `rocker.angle: 60 deg`.
         guess: Option<IndexMap<String, StartFile>>,
-        /// What is observed: names with formulas, e.g. `x3: slider.x`.
-        outputs: Option<IndexMap<String, Number>>,
-        /// How long, and in which steps.
-        simulation: Simulation,
+        /// What is observed: names with formulas, e.g. `x3: slider.x`, or what of a motion is one number, e.g. `stroke: { range: slider.x }`.
+        outputs: Option<IndexMap<String, OutputFile>>,
+        /// What is required of outputs: names with comparisons, e.g. `clears: x3 >= 0.4 m`.
+        requirements: Option<IndexMap<String, RequirementFile>>,
+        /// How long, and in which steps; `analysis: statics` needs none.
+        simulation: Option<Simulation>,
         /// Which bounds to compute; without this, Chebyshev of order 5.
         bounds: Option<crate::methods::keys::Bounds>,
         /// Makes stops of the limits of the robot's joints; by default they do nothing.
@@ -64,12 +68,16 @@ grammar! {
         joints: Option<IndexMap<String, JointKind>>,
         /// Instead of the model's of the same name, or on top.
         effects: Option<IndexMap<String, EffectKind>>,
-        /// Instead of the model's of the same name, or on top.
-        initial: Option<IndexMap<String, StartFile>>,
+        /// Instead of the model's.
+        analysis: Option<AnalysisName>,
+        /// Instead of the model's of the same name, or on top; `equilibrium` stands instead of all.
+        initial: Option<InitialFile>,
         /// Instead of the model's of the same name, or on top.
         guess: Option<IndexMap<String, StartFile>>,
         /// Instead of the model's of the same name, or on top.
-        outputs: Option<IndexMap<String, Number>>,
+        outputs: Option<IndexMap<String, OutputFile>>,
+        /// Instead of the model's of the same name, or on top.
+        requirements: Option<IndexMap<String, RequirementFile>>,
         /// Keys that are not as in the model.
         simulation: Option<SceneSimulation>,
         /// Instead of the model's.
@@ -92,6 +100,10 @@ grammar! {
         output_step: Option<Number>,
         /// By which coordinates the motion is described.
         formulation: Option<FormulationName>,
+        /// By what the motion is integrated.
+        scheme: Option<SchemeName>,
+        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
+        extrapolation: Option<u32>,
     }
 
     /// Stops at the limits of a robot's joints.

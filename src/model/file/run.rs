@@ -19,5 +19,9 @@ grammar! {
         output_step: Option<Number>,
         /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions.
         formulation: Option<FormulationName>,
+        /// By what the motion is integrated; by default `auto`.
+        scheme: Option<SchemeName>,
+        /// So many step lengths, each half the one before, are combined to an order one higher than their number: 2, 3 or 4.
+        extrapolation: Option<u32>,
     }
 }

@@ -1,5 +1,6 @@
 //! What stands behind a key: numbers, names of things, and short forms.
 
+use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
@@ -36,6 +37,14 @@ schema_only! {
     }
 
     #[schemars(rename_all = "lowercase", inline)]
+    pub enum SchemeName {
+        /// Under a tolerance whichever reaches it with the least work; else HHT-I3.
+        Auto,
+        /// HHT-I3.
+        Hht,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
     pub enum BaseName {
         /// The root link is part of the ground.
         Fixed,
@@ -66,6 +75,29 @@ schema_only! {
         Number(Number),
         Vector([Number; 3]),
         Rotation(Rotation),
+    }
+
+    /// Values by name, or `equilibrium`.
+    #[schemars(untagged, inline)]
+    pub enum InitialFile {
+        Equilibrium(EquilibriumName),
+        Values(IndexMap<String, StartFile>),
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum EquilibriumName {
+        /// At rest where the forces are in equilibrium, near `guess`.
+        Equilibrium,
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum AnalysisName {
+        /// It moves by its forces.
+        Motion,
+        /// It rests where its forces are in equilibrium.
+        Statics,
+        /// It moves as its motors say, whatever its forces and masses are.
+        Kinematics,
     }
 
     #[schemars(rename_all = "lowercase", inline)]

@@ -19,16 +19,17 @@ const PARTS: &[&str] = &["effects", "joints"];
 const OUTPUTS: &[&str] = &["outputs"];
 
 /// Sections of which a scene's entries replace the model's of the same name, or come on top.
-const BY_NAME: [(&str, &str); 5] = [
+const BY_NAME: [(&str, &str); 6] = [
     ("joints", "joints"),
     ("effects", "effects"),
     ("initial", "start values"),
     ("guess", "start values"),
     ("outputs", "outputs"),
+    ("requirements", "requirements"),
 ];
 
 /// Keys whose value in a scene stands instead of the model's.
-const WHOLE: [&str; 3] = ["description", "limits", "bounds"];
+const WHOLE: [&str; 4] = ["description", "limits", "bounds", "analysis"];
 
 /// What says how far a parameter may be off.
 const DEVIATION: [&str; 4] = ["tolerance", "interval", "plus", "minus"];
@@ -50,6 +51,12 @@ impl Draft {
         }
         for (section, what) in BY_NAME {
             let Some(node) = fields.get(section) else { continue };
+            if node.scalar().is_some_and(|scalar| !scalar.is_null()) {
+                // `initial: equilibrium`; what else it may be is the reader's to say.
+                let entry = Entry { key: section.to_owned(), key_span: fields.key_span(section), value: node.clone() };
+                replace(&mut self.entries, entry);
+                continue;
+            }
             for entry in reader.entries(node, what) {
                 self.out.remove(&(section, entry.key.clone()));
                 if let Some(entries) = self.section(section, fields.key_span(section), node) {
@@ -76,7 +83,8 @@ impl Draft {
 
     /// The entries of a section, which is made if it is not there; nothing where it is no mapping, as is reported of the model.
     fn section(&mut self, key: &str, key_span: Span, like: &Node) -> Option<&mut Vec<Entry>> {
-        let found = self.entries.iter().position(|entry| entry.key == key && !entry.value.is_null());
+        let is_word = |entry: &Entry| key == "initial" && entry.value.scalar().is_some();
+        let found = self.entries.iter().position(|e| e.key == key && !e.value.is_null() && !is_word(e));
         let place = found.unwrap_or_else(|| {
             let value = Node { span: like.span.clone(), value: Value::Mapping(Vec::new()) };
             self.entries.retain(|entry| entry.key != key);

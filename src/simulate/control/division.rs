@@ -52,7 +52,7 @@ impl TimeFunctions {
             ends.push(list);
         }
         let unresolved_from = division.unresolved_from;
-        Divided { schedule: Schedule::listed(schedule.output_step, ends), unresolved_from }
+        Divided { schedule: Schedule::listed(schedule.output_step, ends).taken(schedule.integration), unresolved_from }
     }
 }
 

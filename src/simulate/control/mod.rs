@@ -4,6 +4,7 @@
 mod adaptive;
 mod controller;
 mod division;
+mod integration;
 mod samples;
 mod schedule;
 mod switch_watch;
@@ -11,6 +12,7 @@ mod switch_watch;
 pub use adaptive::Adaptive;
 pub use controller::Controller;
 pub use division::Divided;
+pub use integration::Integration;
 pub use samples::{ToleranceSchedule, schedule_for_tolerance};
 pub use schedule::Schedule;
 pub use switch_watch::SwitchWatch;

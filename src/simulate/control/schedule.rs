@@ -3,6 +3,7 @@
 //! The last row is at the end of the run, also where the output step does not divide the duration; then it is nearer to the row before.
 //! Where the step does not divide the time between these two, the last step is shorter.
 
+use super::integration::Integration;
 use serde::{Deserialize, Serialize};
 
 /// Rows of output, and the steps that lead from row to row.
@@ -15,6 +16,8 @@ pub struct Schedule {
     /// Time of the last row, s.
     end: f64,
     steps: Steps,
+    /// How the steps are taken.
+    pub integration: Integration,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,13 +77,13 @@ impl Schedule {
         } else {
             LastSteps::new(before, step)
         };
-        Self { output_step, rows, end, steps: Steps::Fixed { step, per_row, last } }
+        Self { output_step, rows, end, steps: Steps::Fixed { step, per_row, last }, integration: Integration::Plain }
     }
 
     /// Steps that end at the listed times: one list for each row but the first.
     pub fn listed(output_step: f64, ends: Vec<Vec<f64>>) -> Self {
         let end = ends.last().and_then(|ends| ends.last()).copied().unwrap_or(0.0);
-        Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends) }
+        Self { output_step, rows: ends.len() + 1, end, steps: Steps::Listed(ends), integration: Integration::Plain }
     }
 
     /// The same rows, each step divided into `parts` equal ones.
@@ -162,7 +165,14 @@ impl Schedule {
     /// The same rows with this many steps of one length between them.
     #[must_use]
     pub fn with_steps_per_row(&self, per_row: usize) -> Self {
-        Self::of_steps(self.end, self.output_step, self.output_step / per_row as f64, per_row)
+        let steps = Self::of_steps(self.end, self.output_step, self.output_step / per_row as f64, per_row);
+        steps.taken(self.integration)
+    }
+
+    /// The same steps, taken in another way.
+    #[must_use]
+    pub fn taken(self, integration: Integration) -> Self {
+        Self { integration, ..self }
     }
 
     /// Number of rows of a schedule of this duration.

@@ -7,7 +7,7 @@
 use symdiff::{JetMemory, jet::JetSpace};
 
 use super::run::Stop;
-use crate::compile::Tapes;
+use crate::compile::{StartProgram, Tapes};
 use crate::simulate::control::Schedule;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
@@ -52,6 +52,15 @@ impl<'s> JetRun<'s> {
             start.set_constant(register, assembled.lane(register)[0]);
         }
         set_parameters(&mut start);
+        if let Some(equilibrium) = &simulator.equilibrium {
+            let layout = &simulator.start.layout;
+            let state = assembled.values()[..layout.registers()].to_vec();
+            if let Some(found) = equilibrium.jet(space, center, half_width, &state) {
+                for register in layout.q.clone() {
+                    start.jet_mut(register).copy_from_slice(found.jet(register));
+                }
+            }
+        }
         consistent(simulator, &mut start, order, first_step);
 
         let program = &simulator.program;
@@ -79,13 +88,41 @@ impl<'s> JetRun<'s> {
     pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
         into.clear();
         for row in rows {
-            for (h, end) in schedule.steps_to(row) {
-                if let Err(singular) = self.step(h, end) {
-                    let equation = self.center.worst_equation(0);
-                    return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
-                }
+            if let Some(stop) = self.advance_to(schedule, row) {
+                return Some(stop);
             }
             self.observe(into);
+        }
+        None
+    }
+
+    /// The same, and records positions and velocities (2n).
+    pub fn advance_motion(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        into: &mut Vec<f64>,
+    ) -> Option<Stop> {
+        let layout = &self.simulator.program.layout;
+        into.clear();
+        for row in rows {
+            if let Some(stop) = self.advance_to(schedule, row) {
+                return Some(stop);
+            }
+            for register in layout.q.clone().chain(layout.v.clone()) {
+                into.extend_from_slice(self.memory.jet(register));
+            }
+        }
+        None
+    }
+
+    /// Advances to a row from the one before; where the run stopped, if it did.
+    fn advance_to(&mut self, schedule: &Schedule, row: usize) -> Option<Stop> {
+        for (h, end) in schedule.steps_to(row) {
+            if let Err(singular) = self.step(h, end) {
+                let equation = self.center.worst_equation(0);
+                return Some(Stop { sample: 0, row, time: end, equation, open: None, singular });
+            }
         }
         None
     }
@@ -199,7 +236,7 @@ impl<'s> JetRun<'s> {
 }
 
 /// Adds the correction to the unknowns.
-fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>, correction: usize) {
+pub(super) fn add_correction(memory: &mut JetMemory, unknowns: impl Iterator<Item = usize>, correction: usize) {
     for (place, register) in unknowns.enumerate() {
         let change = memory.jet(correction + place).to_vec();
         memory.jet_mut(register).iter_mut().zip(change).for_each(|(value, change)| *value += change);
@@ -253,15 +290,20 @@ fn consistent(simulator: &Simulator, memory: &mut JetMemory, order: usize, first
 }
 
 /// Newton corrections that make a jet of this order consistent.
-fn corrections(order: usize) -> usize {
+pub(super) fn corrections(order: usize) -> usize {
     (order + 1).ilog2() as usize + 2
 }
 
 /// Accelerations and multipliers of the start's memory at its positions, velocities and time.
 fn accelerate(simulator: &Simulator, memory: &mut JetMemory, order: usize) {
-    let layout = &simulator.start.layout;
+    solve_accelerations(&simulator.start, memory, order);
+}
+
+/// Accelerations and multipliers in a program's memory at its positions, velocities and time.
+pub(super) fn solve_accelerations(program: &StartProgram, memory: &mut JetMemory, order: usize) {
+    let layout = &program.layout;
     for _ in 0..corrections(order) {
-        memory.run(simulator.start.acceleration());
+        memory.run(program.acceleration());
         add_correction(memory, layout.w.clone().chain(layout.lambda.clone()), layout.correction.start);
     }
 }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use symdiff::WIDTHS;
 
 use super::lane_steps::LaneSteps;
+use super::reduction::{Channel, Reduction};
 use super::row_accelerations::RowAccelerations;
 use super::switch_extents::SwitchExtents;
 use crate::compile::Tapes;
@@ -54,6 +55,8 @@ struct TileRun<'s> {
     stopped: Option<(usize, Vec<f64>)>,
     /// Search for singular configurations of the first lane.
     watch: Option<SingularWatch<'s>>,
+    /// Where outputs are reduced to one number.
+    reduction: Option<Reduction<'s>>,
 }
 
 /// Values that are recorded in each row.
@@ -63,6 +66,8 @@ pub enum Observed {
     Outputs,
     /// Positions, then velocities (2n), then the model's outputs.
     Motion,
+    /// Positions, then velocities (2n).
+    Coordinates,
     /// Positions, then velocities (2n), then of each switch the least and the largest value since the row before.
     Switches,
 }
@@ -73,6 +78,7 @@ impl Observed {
         match self {
             Self::Outputs => simulator.program.outputs.len(),
             Self::Motion => 2 * simulator.program.scale.len() + simulator.program.outputs.len(),
+            Self::Coordinates => 2 * simulator.program.scale.len(),
             Self::Switches => {
                 2 * simulator.program.scale.len() + 2 * simulator.switches().map_or(0, |program| program.switches.len())
             }
@@ -142,6 +148,7 @@ impl<'s> EnsembleRun<'s> {
                     switches: None,
                     stopped: None,
                     watch: None,
+                    reduction: None,
                 })
             })
             .collect();
@@ -156,6 +163,33 @@ impl<'s> EnsembleRun<'s> {
             tile.watch = Some(SingularWatch::new(self.simulator, &tile.stepper));
         }
         self
+    }
+
+    /// Also reduces outputs to one number each.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        if !channels.is_empty() {
+            let outputs = self.simulator.program.outputs.len();
+            for tile in &mut self.tiles {
+                tile.reduction = Some(Reduction::new(channels, outputs, tile.stepper.tile().width()));
+            }
+        }
+        self
+    }
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let mut values = Vec::new();
+        for tile in &mut self.tiles {
+            let Some(reduction) = &mut tile.reduction else { continue };
+            let found = reduction.finish();
+            let width = tile.stepper.tile().width();
+            values.resize(found.len() / width * self.samples, f64::NAN);
+            for (channel, lanes) in found.chunks_exact(width).enumerate() {
+                values[channel * self.samples + tile.first..][..tile.count].copy_from_slice(&lanes[..tile.count]);
+            }
+        }
+        values
     }
 
     /// Advances to `rows`, which follow the rows of the last call (row 0 is the start), and records what is `observed`: row by
@@ -258,13 +292,17 @@ impl TileRun<'_> {
         let mut values = vec![0.0; rows.len() * outputs * width];
         let mut stops = Vec::new();
         for (place, row) in rows.enumerate() {
+            if row == 0 {
+                self.reduce(0.0);
+            }
             let mut steps = schedule.steps_to(row).peekable();
             while let Some((h, end)) = steps.next() {
                 if !self.stepper.alive().contains(&true) {
                     break;
                 }
                 self.stepper.set_step_size(h);
-                self.stepper.refine(self.observes_accelerations && steps.peek().is_none());
+                let is_observed = steps.peek().is_none() || self.reduction.is_some();
+                self.stepper.refine(self.observes_accelerations && is_observed);
                 if let Some(switches) = &mut self.switches {
                     switches.begin(&self.stepper);
                 }
@@ -281,6 +319,7 @@ impl TileRun<'_> {
                 if let Some(switches) = &mut self.switches {
                     switches.end(&self.stepper, h);
                 }
+                self.reduce(end);
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
                     sample: self.first + lane,
                     row,
@@ -302,6 +341,7 @@ impl TileRun<'_> {
                     self.stepper.copy_motion(motion);
                     self.observe(outputs);
                 }
+                Observed::Coordinates => self.stepper.copy_motion(values),
                 Observed::Switches => {
                     let (motion, extents) = values.split_at_mut(2 * self.stepper.coordinates() * width);
                     self.stepper.copy_motion(motion);
@@ -312,6 +352,16 @@ impl TileRun<'_> {
             }
         }
         (values, stops)
+    }
+
+    /// Takes the outputs into what they are reduced to, if they are.
+    fn reduce(&mut self, time: f64) {
+        if let Some(mut reduction) = self.reduction.take() {
+            let mut values = reduction.buffer();
+            self.observe(&mut values);
+            reduction.push(time, values, self.stepper.alive());
+            self.reduction = Some(reduction);
+        }
     }
 
     fn observe(&mut self, into: &mut [f64]) {

@@ -287,6 +287,35 @@ impl<'p> Assembly<'p> {
         residuals.map(|residual| self.tile.lane(residual.register)[0].powi(2)).sum::<f64>().sqrt()
     }
 
+    /// Positions, velocities, accelerations and multipliers of the one lane at its time, from its present state. Returns
+    /// whether there are any.
+    pub fn close(&mut self) -> bool {
+        let program = self.program;
+        if !self.correct_until_settled(program.position(), program.layout.q.start)[0] {
+            return false;
+        }
+        self.tile.run(program.position());
+        let is_closed = self.open_lanes(&program.constraint, false).is_empty();
+        self.correct_until_settled(program.velocity(), program.layout.v.start);
+        let settled = self.correct_until_settled(program.acceleration(), program.layout.w.start)[0];
+        is_closed && settled
+    }
+
+    /// Evaluates the outputs.
+    pub fn observe(&mut self) {
+        self.tile.run(self.program.observe());
+    }
+
+    /// The tapes.
+    pub fn program(&self) -> &'p StartProgram {
+        self.program
+    }
+
+    /// Scale of every coordinate.
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
     /// Full corrections of the values from register `start` on, until every lane has settled or the corrections are used up.
     /// Returns which lanes have settled.
     pub fn correct_until_settled(&mut self, tape: &Tape, start: usize) -> Vec<bool> {

@@ -111,6 +111,8 @@ mod tests {
             alpha: -0.1,
             output_step: 0.01,
             formulation: crate::model::Formulation::Auto,
+            scheme: crate::model::SchemeChoice::Auto,
+            extrapolation: None,
         }
     }
 

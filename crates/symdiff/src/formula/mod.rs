@@ -164,6 +164,19 @@ pub enum Term {
     Degrees(usize),
 }
 
+impl Term {
+    /// The same with its operands at other positions.
+    fn moved(&self, place: impl Fn(usize) -> usize) -> Self {
+        match self {
+            Self::Unary(function, a) => Self::Unary(*function, place(*a)),
+            Self::Binary(function, a, b) => Self::Binary(*function, place(*a), place(*b)),
+            Self::Compared(a, b) => Self::Compared(place(*a), place(*b)),
+            Self::Degrees(a) => Self::Degrees(place(*a)),
+            Self::Number(_) | Self::Quantity(..) | Self::Name(_) => self.clone(),
+        }
+    }
+}
+
 /// A parsed formula: its nodes, operands first, the result last, each with its place (bytes) in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
@@ -213,21 +226,55 @@ impl Formula {
     #[must_use]
     pub fn combined(&self, function: Binary, other: &Self) -> Self {
         let shift = self.terms.len();
-        let shifted = |(term, span): &(Term, Range<usize>)| {
-            let term = match term {
-                Term::Unary(function, a) => Term::Unary(*function, a + shift),
-                Term::Binary(function, a, b) => Term::Binary(*function, a + shift, b + shift),
-                Term::Compared(a, b) => Term::Compared(a + shift, b + shift),
-                Term::Degrees(a) => Term::Degrees(a + shift),
-                Term::Number(_) | Term::Quantity(..) | Term::Name(_) => term.clone(),
-            };
-            (term, span.clone())
-        };
+        let shifted = |(term, span): &(Term, Range<usize>)| (term.moved(|place| place + shift), span.clone());
         let mut terms = self.terms.clone();
         terms.extend(other.terms.iter().map(shifted));
         let last = terms.len() - 1;
         terms.push((Term::Binary(function, shift - 1, last), 0..0));
         Self { terms }
+    }
+
+    /// The same with other formulas instead of some names. What comes from these has the name's place.
+    #[must_use]
+    pub fn with_names(&self, formula: impl Fn(&str) -> Option<Self>) -> Self {
+        let mut terms: Vec<(Term, Range<usize>)> = Vec::with_capacity(self.terms.len());
+        let mut places = Vec::with_capacity(self.terms.len());
+        for (term, span) in &self.terms {
+            match term {
+                Term::Name(name) => match formula(name) {
+                    Some(other) => {
+                        let first = terms.len();
+                        terms.extend(
+                            other.terms.iter().map(|(term, _)| (term.moved(|place| place + first), span.clone())),
+                        );
+                    }
+                    None => terms.push((term.clone(), span.clone())),
+                },
+                _ => terms.push((term.moved(|place| places[place]), span.clone())),
+            }
+            places.push(terms.len() - 1);
+        }
+        Self { terms }
+    }
+
+    /// `function(self)`.
+    #[must_use]
+    pub fn applied(&self, function: Unary) -> Self {
+        let mut terms = self.terms.clone();
+        terms.push((Term::Unary(function, self.terms.len() - 1), 0..0));
+        Self { terms }
+    }
+
+    /// The argument of a function that is all of the formula.
+    pub fn argument_of(&self, function: Unary) -> Option<Self> {
+        match self.terms.split_last() {
+            Some(((Term::Unary(outer, argument), _), before))
+                if *outer == function && *argument + 1 == before.len() =>
+            {
+                Some(Self { terms: before.to_vec() })
+            }
+            _ => None,
+        }
     }
 
     /// The number, if the formula is a literal one (a sign in front is allowed).

@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use super::{Found, Row};
 use crate::methods::chebyshev::range_search::{RangeSearch, extent};
+use crate::methods::expansion::Moves;
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{Extent, Extremes, extremes_near, largest, step_error, surrogate_error, truncation};
 
@@ -21,12 +22,15 @@ impl Row<'_> {
         range_search: &RangeSearch,
         (points, direct): (&[Vec<f64>], &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() {
             return vec![f64::NAN; extents.len()];
         }
-        let moved = self.moved(range_search, extents, &self.coordinate_errors(points, direct.motion(row)));
+        let errors = self.coordinate_errors(points, direct.motion(row));
+        let moves: Vec<Moves> =
+            errors.chunks_exact(2).map(|by| Moves { by: by.to_vec(), ..Moves::default() }).collect();
+        let moved = self.moved(range_search, extents, &moves);
         let error = |(output, (found, moved)): (usize, (&Extent, f64))| {
             let simulated = direct.at(row, output);
             if expanded[output] {
@@ -42,54 +46,77 @@ impl Row<'_> {
 
     /// The time steps' errors of the outputs' ranges: how far those of the coordinates, from samples with the steps as they are
     /// and with halved ones, move the ends.
+    ///
+    /// A coordinate that is too early or too late is so by about the same time over many turns. An end of a band that is full of turns
+    /// is at rest, and such a shift moves it by next to nothing. What of the errors is none may move an end wherever it is.
     pub fn step_errors(
         &self,
         range_search: &RangeSearch,
         (direct, halved): (&ValidationTable, &ValidationTable),
         row: usize,
-        Found { extents, expanded }: &Found,
+        Found { extents, expanded, .. }: &Found,
     ) -> Vec<f64> {
         if row >= direct.rows() || row >= halved.rows() {
             return vec![f64::NAN; extents.len()];
         }
-        let errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
-        let moved = self.moved(range_search, extents, &errors);
+        let mut errors = self.of_independent(|line| step_error(direct.line(row, line), halved.line(row, line)));
+        let mut in_time = Vec::new();
+        for (coordinate, error) in errors.iter_mut().step_by(2) {
+            if let Some(split) = direct.time_shift(halved, row, *coordinate) {
+                in_time.push(Moves { ahead: vec![(*coordinate, split.shift)], ..Moves::default() });
+                *error = split.remainder;
+            }
+        }
+        let mut moved = self.moved_by(range_search, extents, &errors);
+        if !in_time.is_empty() {
+            let in_time = self.moved(range_search, extents, &in_time);
+            moved.iter_mut().zip(in_time).for_each(|(moved, in_time)| *moved += in_time);
+        }
         // Of what does not follow from coordinates, their errors say nothing.
         moved.into_iter().zip(expanded).map(|(moved, &expanded)| if expanded { f64::NAN } else { moved }).collect()
     }
 
-    /// How far errors of the independent coordinates and their velocities (pairwise) move the ends of the outputs' ranges.
+    /// How far errors of the independent coordinates and of their velocities (pairwise) move the ends of the outputs' ranges. What
+    /// positions and velocities do adds up, too, since their errors may have either sign.
+    fn moved_by(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
+        let lines = |first: usize| errors.iter().skip(first).step_by(2);
+        let moves = |first: usize| -> Vec<Moves> {
+            lines(first).map(|&error| Moves { by: vec![error], ..Moves::default() }).collect()
+        };
+        let mut moved = self.moved(range_search, found, &moves(0));
+        if self.closure.needs_velocities() {
+            let by_velocities = self.moved(range_search, found, &moves(1));
+            moved.iter_mut().zip(by_velocities).for_each(|(moved, own)| *moved += own);
+        }
+        moved
+    }
+
+    /// How far moves of the independent coordinates, one for each, move the ends of the outputs' ranges.
     ///
     /// Each coordinate is moved one way and the other, and what they do adds up, whichever way each of them moves an output. Many are
     /// moved together: all one way, or every other one against the rest. Where that moves an end by little, the extreme stays where it
     /// is, to first order; else it is searched for again.
-    fn moved(&self, range_search: &RangeSearch, found: &[Extent], errors: &[(usize, f64)]) -> Vec<f64> {
-        let coordinates = errors.len() / 2;
-        let one_by_one = coordinates <= MOST_MOVED;
-        let rounds = if one_by_one { coordinates } else { 2 };
-        let weight = |round: usize, coordinate: usize| match (one_by_one, coordinate == round) {
+    fn moved(&self, range_search: &RangeSearch, found: &[Extent], moves: &[Moves]) -> Vec<f64> {
+        let one_by_one = moves.len() <= MOST_MOVED;
+        let rounds = if one_by_one { moves.len() } else { 2 };
+        let weight = |round: usize, place: usize| match (one_by_one, place == round) {
             (true, is_its_turn) => f64::from(u8::from(is_its_turn)),
-            (false, _) if round == 1 && coordinate % 2 == 1 => -1.0,
+            (false, _) if round == 1 && place % 2 == 1 => -1.0,
             (false, _) => 1.0,
         };
-        let shift = |round: usize, sign: f64| -> Vec<(usize, f64)> {
-            let of_line = |(place, &(line, error)): (usize, &(usize, f64))| match weight(round, place / 2) {
-                0.0 => None,
-                weight => Some((line, sign * weight * error)),
-            };
-            errors.iter().enumerate().filter_map(of_line).collect()
+        let way = |round: usize, sign: f64| {
+            Moves::sum(moves.iter().enumerate().map(|(place, moves)| (moves, sign * weight(round, place))))
         };
-        let shifts: Vec<Vec<(usize, f64)>> =
-            (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| shift(round, sign))).collect();
+        let ways: Vec<Moves> = (0..rounds).flat_map(|round| [1.0, -1.0].map(|sign| way(round, sign))).collect();
         let mut moved = vec![0.0; found.len()];
-        let at_extremes = self.moved_at_extremes(found, &shifts);
-        for (shifts, at_extremes) in shifts.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
+        let at_extremes = self.moved_at_extremes(found, &ways);
+        for (ways, at_extremes) in ways.chunks_exact(2).zip(at_extremes.chunks_exact(2)) {
             let mut own = vec![0.0; found.len()];
-            for (shift, at_extremes) in shifts.iter().zip(at_extremes) {
+            for (way, at_extremes) in ways.iter().zip(at_extremes) {
                 own.iter_mut().zip(at_extremes).for_each(|(own, &moved)| *own = largest([*own, moved]));
                 let moves_far = |&output: &usize| at_extremes[output] > FAR * found[output].range.width();
                 let far: Vec<usize> = (0..found.len()).filter(moves_far).collect();
-                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), shift)) {
+                for (&output, shifted) in far.iter().zip(self.range_near(range_search, (&far, found), way)) {
                     let (from, to) = (found[output].range, shifted.range);
                     own[output] = largest([from.lower - to.lower, from.upper - to.upper, own[output]]);
                 }
@@ -101,32 +128,32 @@ impl Row<'_> {
         moved
     }
 
-    /// For each shift of lines, how far it moves every output at the places of its extremes.
-    fn moved_at_extremes(&self, found: &[Extent], shifts: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
+    /// For each way of moving, how far it moves every output at the places of its extremes.
+    fn moved_at_extremes(&self, found: &[Extent], ways: &[Moves]) -> Vec<Vec<f64>> {
         let places: Vec<Vec<f64>> = found.iter().flat_map(|found| found.places.iter().cloned()).collect();
-        let all: Vec<Vec<(usize, f64)>> = [Vec::new()].into_iter().chain(shifts.iter().cloned()).collect();
-        let values = self.evaluate_shifted(&places, &all);
-        let at = |output: usize, shift: usize, end: usize| {
-            values[(output * all.len() + shift) * places.len() + 2 * output + end]
+        let all: Vec<Moves> = [Moves::default()].into_iter().chain(ways.iter().cloned()).collect();
+        let values = self.evaluate_moved(&places, &all);
+        let at = |output: usize, way: usize, end: usize| {
+            values[(output * all.len() + way) * places.len() + 2 * output + end]
         };
         let of_output =
-            |shift: usize, output: usize| largest([0, 1].map(|end| at(output, shift, end) - at(output, 0, end)));
-        (1..all.len()).map(|shift| (0..found.len()).map(|output| of_output(shift, output)).collect()).collect()
+            |way: usize, output: usize| largest([0, 1].map(|end| at(output, way, end) - at(output, 0, end)));
+        (1..all.len()).map(|way| (0..found.len()).map(|output| of_output(way, output)).collect()).collect()
     }
 
-    /// Ranges of some outputs with some lines shifted, near those that are known of all.
+    /// Ranges of some outputs with the motion moved, near those that are known of all.
     fn range_near(
         &self,
         range_search: &RangeSearch,
         (outputs, known): (&[usize], &[Extent]),
-        shift: &[(usize, f64)],
+        way: &Moves,
     ) -> Vec<Extent> {
         if outputs.is_empty() {
             return Vec::new();
         }
-        let shifts = [shift.to_vec()];
+        let ways = [way.clone()];
         let evaluate = |points: &[Vec<f64>]| -> Vec<f64> {
-            let values = self.evaluate_shifted(points, &shifts);
+            let values = self.evaluate_moved(points, &ways);
             outputs.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
         };
         let near = outputs.iter().map(|&output| &known[output]);

@@ -1,6 +1,8 @@
 //! Outputs at points of the box: the coordinates' polynomials, closed.
 
 use super::Row;
+use crate::methods::expansion::{Expansion, Moves};
+use crate::methods::kept::KeptRow;
 use crate::numerics::{SparseWork, largest, surrogate_error, truncation};
 
 impl Row<'_> {
@@ -43,60 +45,48 @@ impl Row<'_> {
         lines.map(|line| (line, error(line))).collect()
     }
 
+    fn expansion(&self) -> Expansion<'_> {
+        Expansion {
+            basis: self.surrogate.basis(),
+            domain: self.domain,
+            closure: self.closure,
+            time: self.time,
+            coefficients: &self.coefficients,
+            extent: &self.extent,
+        }
+    }
+
     /// Every output at some ξ as it follows from the motion there: 2n lines of points.
     pub fn evaluate_motion(&self, points: &[Vec<f64>], motion: &[f64]) -> Vec<f64> {
         let motion = motion[..self.extent.len() * points.len()].to_vec();
-        self.close(points, motion)
+        self.expansion().close(points, motion)
     }
 
     /// Every output at some ξ, output by output.
     pub fn evaluate(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        self.evaluate_shifted(points, &[Vec::new()])
+        self.evaluate_moved(points, &[Moves::default()])
     }
 
-    /// Every output with some lines shifted, output by output, shift by shift, point by point.
-    pub(super) fn evaluate_shifted(&self, points: &[Vec<f64>], shifts: &[Vec<(usize, f64)>]) -> Vec<f64> {
-        let lines = if self.closure.needs_velocities() { self.extent.len() } else { self.extent.len() / 2 };
-        let mut expanded = vec![0.0; lines * points.len()];
-        self.expand(points, &mut expanded);
-        let count = shifts.len() * points.len();
-        let mut motion = vec![0.0; self.extent.len() * count];
-        for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
-            for (place, shift) in shifts.iter().enumerate() {
-                let by: f64 = shift.iter().filter(|shift| shift.0 == line).map(|shift| shift.1).sum();
-                let into = &mut motion[line * count + place * points.len()..][..points.len()];
-                into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
-            }
-        }
-        // Dependent coordinates are only a guess, and are kept within what the samples have.
-        let n = self.extent.len() / 2;
-        for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(&self.extent).enumerate() {
-            if !self.closure.independent().contains(&(line % n)) && low <= high {
-                values.iter_mut().for_each(|value| *value = value.clamp(low, high));
-            }
-        }
-        let all: Vec<Vec<f64>> = shifts.iter().flat_map(|_| points.iter().cloned()).collect();
-        self.close(&all, motion)
+    /// Every output with the motion moved in some ways, output by output, way by way, point by point.
+    pub(super) fn evaluate_moved(&self, points: &[Vec<f64>], ways: &[Moves]) -> Vec<f64> {
+        self.expansion().evaluate_moved(points, ways)
     }
 
     /// The polynomials' values: 2n lines of points.
     pub(super) fn expanded(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let mut motion = vec![0.0; self.extent.len() * points.len()];
-        self.expand(points, &mut motion);
+        self.expansion().expand(points, &mut motion);
         motion
     }
 
-    /// The first of them, as many lines as there is room for.
-    fn expand(&self, points: &[Vec<f64>], motion: &mut [f64]) {
-        let lines = motion.len() / points.len().max(1);
-        let coefficients = &self.coefficients[..lines * self.surrogate.basis().len()];
-        self.surrogate.basis().values(points, coefficients, motion, &mut SparseWork::default());
-    }
-
-    fn close(&self, points: &[Vec<f64>], motion: Vec<f64>) -> Vec<f64> {
-        let parameters = (0..self.domain.dimension())
-            .flat_map(|parameter| points.iter().map(move |xi| self.domain.value(parameter, xi[parameter])))
-            .collect();
-        self.closure.outputs(self.time, points.len(), parameters, motion)
+    /// What is kept of it after the run, given which outputs are the polynomials through their own samples.
+    pub fn kept(&self, own: Vec<bool>) -> KeptRow {
+        KeptRow {
+            time: self.time,
+            independent: self.closure.independent().to_vec(),
+            coefficients: self.coefficients.clone(),
+            extent: self.extent.clone(),
+            own,
+        }
     }
 }

@@ -35,7 +35,7 @@ const APART: f64 = 0.5;
 
 /// Whether outputs can be composed: there are uncertain parameters, and not too many coordinates.
 pub fn can_compose(parameters: usize, coordinates: usize) -> bool {
-    parameters > 0 && coordinates <= MOST_COORDINATES
+    parameters > 0 && (1..=MOST_COORDINATES).contains(&coordinates)
 }
 
 /// One mechanism's closures, and what is evaluated through them.
@@ -132,6 +132,8 @@ pub(super) struct Found {
     pub extents: Vec<Extent>,
     /// Whether an output does not follow from the coordinates here, and was expanded itself.
     pub expanded: Vec<bool>,
+    /// Whether an output is the polynomial through its own samples, or was expanded itself.
+    pub own: Vec<bool>,
 }
 
 /// Outputs by how their ranges are found.
@@ -203,11 +205,13 @@ impl<'r> Row<'r> {
             range_search.range(&functions, &of(outputs, &own, points.len()), previous)
         };
         let found = of_polynomials(&alike, previous);
+        let mut is_own = vec![false; outputs];
         for ((&output, mut extent), apart) in alike.iter().zip(found.clone()).zip(self.apart_at_ends(&alike, &found)) {
             // A kink beside all samples shows where the range ends. Written so that NaN does too.
             if apart <= self.alike(output, &rounding) + extent.gap {
                 extent.gap += largest([defects[output], apart]);
                 extents[output] = extent;
+                is_own[output] = true;
             } else {
                 composed.push(output);
             }
@@ -226,9 +230,9 @@ impl<'r> Row<'r> {
         }
         let mut expanded = vec![false; outputs];
         for (&output, extent) in lost.iter().zip(of_polynomials(&lost, previous)) {
-            (extents[output], expanded[output]) = (extent, true);
+            (extents[output], expanded[output], is_own[output]) = (extent, true, true);
         }
-        Found { extents, expanded }
+        Found { extents, expanded, own: is_own }
     }
 
     /// What becomes of each output, given its values at some points and at the compared samples, and its own polynomial's at the points.

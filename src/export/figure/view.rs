@@ -6,7 +6,7 @@ use crate::results::Band;
 ///
 /// The narrowest band and the nominal course are always in view, and so is everything up to `widest` times as wide. A diverged
 /// bound, such as Taylor's over long times, would reduce the others to lines: it leaves the plot instead.
-pub(super) fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<bool>) {
+pub fn in_view(nominal: &[f64], bands: &[Band], widest: f64) -> (Vec<f64>, Vec<bool>) {
     let nominal = extent(nominal.iter());
     let extents: Vec<_> = bands.iter().map(|band| extent(band.lower.iter().chain(&band.upper))).collect();
     let union = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
@@ -34,7 +34,7 @@ fn extent<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
 }
 
 /// A band less the nominal course.
-pub(super) fn deviation(band: &Band, nominal: &[f64]) -> Band {
+pub fn deviation(band: &Band, nominal: &[f64]) -> Band {
     let less = |side: &[f64]| side.iter().zip(nominal).map(|(x, nominal)| x - nominal).collect();
     Band { lower: less(&band.lower), upper: less(&band.upper), ..band.clone() }
 }

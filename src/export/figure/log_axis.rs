@@ -1,13 +1,13 @@
 //! A plot's logarithmic axis: whole decades at its ends, labels such as 10⁻³.
 
-use crate::export::axis::superscript;
+use super::prefix::superscript;
 
 /// A tick: its place, and its label where it has one.
-pub(super) type Tick = (f64, Option<String>);
+pub type Tick = (f64, Option<String>);
 
 /// From `10^first` to `10^last`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LogAxis {
+pub struct LogAxis {
     first: i32,
     last: i32,
 }

@@ -1,0 +1,255 @@
+//! The figure of bounds over time, for one run or several.
+//!
+//! Two panels share the time axis. The upper panel shows the output: nominal courses and bands. Tolerances of a per cent make
+//! bands as thin as a line there, so the lower panel shows each band minus its own nominal course.
+
+use svg::Document;
+
+use super::figure::Caption;
+use super::figure::axis::Axis;
+use super::figure::data::{FigureData, SeriesData, extremes, times};
+use super::figure::document::{document, finished, heading, metadata, shortened};
+use super::figure::legend::{Entry, Legend, Sign};
+use super::figure::panel::{Named, Panel, Style, label_width};
+use super::figure::style::Hue;
+use super::figure::view::{deviation, in_view};
+use crate::results::Band;
+
+/// Size on the page with one row of legend, px.
+const SIZE: (f64, f64) = (900.0, 580.0);
+/// Space for the heading and a row of legend, px.
+const TOP: f64 = 58.0;
+/// Space for the time axis, px.
+const BOTTOM: f64 = 50.0;
+/// Space between the panels, px.
+const BETWEEN: f64 = 22.0;
+/// Space on the right, px.
+const RIGHT: f64 = 20.0;
+
+/// Deviations that are smaller than this, relative to the output's size, are rounding noise.
+const ROUNDING: f64 = 1e-12;
+
+/// A nominal course with its bands.
+pub(super) struct Course<'a> {
+    /// What it belongs to: begins with a letter, and has letters, digits and `-`.
+    pub group: String,
+    /// Label of the course; empty where the labels of its bands suffice.
+    pub label: &'a str,
+    pub hue: Hue,
+    /// Of the line, px.
+    pub width: f64,
+    pub times: &'a [f64],
+    pub nominal: &'a [f64],
+    pub bands: Vec<CourseBand<'a>>,
+}
+
+/// A band of a course.
+pub(super) struct CourseBand<'a> {
+    /// As a course's.
+    pub group: String,
+    pub band: &'a Band,
+    pub style: Style,
+}
+
+/// What a figure shows.
+pub(super) struct Shown<'a> {
+    /// The output's name.
+    pub name: &'a str,
+    /// Its unit, as models write it.
+    pub unit: &'a str,
+    /// What moves by less is a constant.
+    pub noise: f64,
+    pub courses: &'a [Course<'a>],
+}
+
+/// The figure of an output as an SVG document. The same data give the same bytes.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub(super) fn courses_svg(caption: Caption, shown: &Shown) -> Result<String, serde_json::Error> {
+    Ok(finished(&Figure::new(caption, shown).drawn()?))
+}
+
+/// What is drawn, and where.
+struct Figure<'a> {
+    caption: Caption<'a>,
+    shown: &'a Shown<'a>,
+    /// Each course's bands minus the course.
+    deviations: Vec<Vec<Band>>,
+    time: Axis,
+    value: Axis,
+    deviation: Axis,
+    left: f64,
+    legend: Legend,
+}
+
+impl<'a> Figure<'a> {
+    fn new(caption: Caption<'a>, shown: &'a Shown) -> Self {
+        let of_course = |course: &Course| -> Vec<Band> {
+            course.bands.iter().map(|of| deviation(of.band, course.nominal)).collect()
+        };
+        let deviations: Vec<Vec<Band>> = shown.courses.iter().map(of_course).collect();
+        let (mut values, mut below, mut entries) = (Vec::new(), Vec::new(), Vec::new());
+        for (course, deviations) in shown.courses.iter().zip(&deviations) {
+            let bands: Vec<Band> = course.bands.iter().map(|of| of.band.clone()).collect();
+            let (in_value, beyond) = in_view(course.nominal, &bands, 4.0);
+            values.extend(in_value);
+            let (in_deviation, beyond_below) = in_view(&[0.0], deviations, 6.0);
+            below.extend(in_deviation);
+            if !course.label.is_empty() {
+                let (group, label) = (course.group.clone(), course.label.to_owned());
+                entries.push(Entry { group, label, sign: Sign::Line(course.hue) });
+            }
+            for ((of, above), below) in course.bands.iter().zip(beyond).zip(beyond_below) {
+                let unresolved = of.band.error.unresolved_from().map(|row| course.times[row]);
+                let label = format!("{}{}", of.style.label, note(above || below, unresolved));
+                entries.push(Entry { group: of.group.clone(), label, sign: Sign::Band(of.style.clone()) });
+            }
+        }
+        let size = values.iter().filter(|x| x.is_finite()).fold(0.0, |size: f64, x| size.max(x.abs()));
+        let all_times = shown.courses.iter().flat_map(|course| course.times);
+        let time = Axis::fit(all_times.copied(), "s", 9, 0.0, 0.0);
+        let value = Axis::fit(values.into_iter(), shown.unit, 6, 0.04, shown.noise);
+        let noise = shown.noise.max(ROUNDING * size);
+        let deviation = Axis::fit(below.into_iter(), shown.unit, 4, 0.06, noise);
+        let left = 44.0 + label_width(&value).max(label_width(&deviation));
+        let legend = Legend::new(entries, SIZE.0 - RIGHT - left);
+        Self { caption, shown, deviations, time, value, deviation, left, legend }
+    }
+
+    fn drawn(&self) -> Result<Document, serde_json::Error> {
+        let Shown { name, courses, .. } = *self.shown;
+        let (top, height) = (TOP + self.legend.more(), SIZE.1 + self.legend.more());
+        let free = height - top - BOTTOM;
+        let alone = courses.iter().all(|course| course.bands.is_empty());
+        let split = if alone { top + free } else { top + 0.6 * (free - BETWEEN) };
+        let prefix = self.caption.prefix;
+        let (id, right) = (format!("{prefix}-value"), SIZE.0 - RIGHT);
+        let value = Panel { id, left: self.left, right, top, bottom: split, x: &self.time, y: &self.value };
+        let id = format!("{prefix}-deviation");
+        let below = Panel { id, top: split + BETWEEN, bottom: height - BOTTOM, y: &self.deviation, ..value.clone() };
+
+        let title = format!("{}: {}", shortened(self.caption.model, 60), shortened(name, 60));
+        let mut figure = document((SIZE.0, height), &format!("{}: {name}", self.caption.model))
+            .add(metadata(&self.data(&value, (!alone).then_some(&below)))?)
+            .add(heading(&title, (self.left, 15.0)))
+            .add(self.legend.drawn((self.left, 38.0)));
+        let bands = courses.iter().map(|course| course.bands.iter().map(|of| of.band).collect::<Vec<_>>());
+        let drawn = self.series(&value, bands, |course| course.nominal.to_vec());
+        figure = figure.add(value.framed(name, &self.value.title(&shortened(name, 28)), drawn));
+        if alone {
+            return Ok(figure.add(value.time_axis("t")));
+        }
+        let bands = self.deviations.iter().map(|bands| bands.iter().collect::<Vec<_>>());
+        let drawn = self.series(&below, bands, zero);
+        let title = "bound − nominal";
+        Ok(figure.add(below.framed(title, &self.deviation.title(title), drawn)).add(below.time_axis("t")))
+    }
+
+    /// All that is drawn in a panel: errors below, then bands, then the course.
+    fn series<'b>(
+        &self,
+        panel: &Panel,
+        bands: impl Iterator<Item = Vec<&'b Band>>,
+        nominal: impl Fn(&Course) -> Vec<f64>,
+    ) -> Vec<svg::node::element::Group> {
+        let mut drawn = Vec::new();
+        for (course, bands) in self.shown.courses.iter().zip(bands) {
+            let styled = || course.bands.iter().zip(&bands);
+            for (of, band) in styled().filter(|(of, _)| of.style.fill > 0.0) {
+                let (id, title) = (error_id(panel, of), format!("error of {}", of.style.label));
+                drawn.push(panel.error(named(&id, &of.group, &title), course.times, band, &of.style));
+            }
+            for (of, band) in styled() {
+                let id = series_id(panel, &of.group);
+                drawn.push(panel.band(named(&id, &of.group, &of.style.label), course.times, band, &of.style));
+            }
+            let (id, title) = (series_id(panel, &course.group), nominal_title(course));
+            let values = nominal(course);
+            drawn.push(panel.curve(named(&id, &course.group, &title), course.times, &values, course.hue, course.width));
+        }
+        drawn
+    }
+
+    /// Scales and series, for what shows the figure.
+    fn data(&self, value: &Panel, below: Option<&Panel>) -> FigureData {
+        let Shown { name, courses, .. } = *self.shown;
+        let shared = courses.first().map_or(&[][..], |course| course.times);
+        let mut series = Vec::new();
+        for (place, course) in courses.iter().enumerate() {
+            let time = (course.times != shared).then(|| times(course.times));
+            let mut add = |panel: &Panel, id, group: &str, label: String, kind, [lower, upper]: [&[f64]; 2]| {
+                let [lower, upper] = extremes(lower, upper, panel.y);
+                let (group, panel, time) = (group.to_owned(), panel.id.clone(), time.clone());
+                series.push(SeriesData { id, group, label, kind, panel, time, lower, upper });
+            };
+            let panels = [Some((value, course.nominal.to_vec())), below.map(|below| (below, zero(course)))];
+            for (panel, nominal) in panels.into_iter().flatten() {
+                let id = series_id(panel, &course.group);
+                add(panel, id, &course.group, nominal_title(course), "nominal", [&nominal, &nominal]);
+                for (entry, of) in course.bands.iter().enumerate() {
+                    let is_value = panel.id == value.id;
+                    let band = if is_value { of.band } else { &self.deviations[place][entry] };
+                    let (id, label) = (series_id(panel, &of.group), of.style.label.clone());
+                    add(panel, id, &of.group, label, "bounds", [&band.lower, &band.upper]);
+                    if of.style.fill > 0.0 {
+                        let moved = |side: &[f64], sign: f64| -> Vec<f64> {
+                            side.iter().zip(&band.error.total).map(|(bound, error)| bound + sign * error).collect()
+                        };
+                        let (lower, upper) = (moved(&band.lower, -1.0), moved(&band.upper, 1.0));
+                        let label = format!("error of {}", of.style.label);
+                        add(panel, error_id(panel, of), &of.group, label, "error", [&lower, &upper]);
+                    }
+                }
+            }
+        }
+        FigureData {
+            model: self.caption.model.to_owned(),
+            output: name.to_owned(),
+            unit: self.value.unit.text.clone(),
+            time: times(shared),
+            panels: [Some(value), below].into_iter().flatten().map(|panel| panel.data(1.0)).collect(),
+            series,
+        }
+    }
+}
+
+fn named<'n>(id: &'n str, group: &'n str, title: &'n str) -> Named<'n> {
+    Named { id, group, title }
+}
+
+fn series_id(panel: &Panel, group: &str) -> String {
+    format!("{}-{group}", panel.id)
+}
+
+fn error_id(panel: &Panel, of: &CourseBand) -> String {
+    format!("{}-{}-error", panel.id, of.group)
+}
+
+/// For people: what a course's line is.
+fn nominal_title(course: &Course) -> String {
+    match (course.label, course.bands.first()) {
+        ("", Some(of)) => format!("{}, nominal", of.style.label),
+        (label, _) => label.to_owned(),
+    }
+}
+
+/// The nominal course, less itself: a line at zero with the same gaps.
+fn zero(course: &Course) -> Vec<f64> {
+    course.nominal.iter().map(|x| if x.is_finite() { 0.0 } else { f64::NAN }).collect()
+}
+
+/// What the legend adds to a method's name.
+fn note(beyond: bool, unresolved_from: Option<f64>) -> String {
+    match (unresolved_from, beyond) {
+        (Some(time), _) => format!(" (unreliable from {} s)", short(time)),
+        (None, true) => " (beyond the plot)".to_owned(),
+        (None, false) => String::new(),
+    }
+}
+
+/// A time with three digits.
+fn short(time: f64) -> String {
+    let text = format!("{time:.2e}").parse::<f64>().unwrap_or(time);
+    format!("{text}")
+}

@@ -1,0 +1,21 @@
+//! What figures are made of: scales, paths, legends, colours, and the document with its data. All of it is deterministic.
+
+pub mod axis;
+pub mod data;
+pub mod document;
+pub mod legend;
+pub mod log_axis;
+pub mod panel;
+pub mod path;
+pub mod prefix;
+pub mod style;
+pub mod view;
+
+/// Where a figure is: what it is named, and what its ids begin with.
+#[derive(Clone, Copy, Debug)]
+pub struct Caption<'a> {
+    /// The model's name.
+    pub model: &'a str,
+    /// Begins all ids of the figure: letters, digits and `-`, a letter first; unique in the page.
+    pub prefix: &'a str,
+}

@@ -1,0 +1,87 @@
+//! A row's expanded motion, and the outputs that follow from it through the loop closure.
+
+use super::ensemble::Closure;
+use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
+
+/// How motions are moved, to see what that does to outputs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Moves {
+    /// Lines, each by how much.
+    pub by: Vec<(usize, f64)>,
+    /// Coordinates, each along its velocity for so much time, s.
+    pub ahead: Vec<(usize, f64)>,
+}
+
+impl Moves {
+    /// All of these together, each so many times.
+    pub fn sum<'m>(moves: impl Iterator<Item = (&'m Self, f64)>) -> Self {
+        let mut sum = Self::default();
+        for (moves, weight) in moves.filter(|(_, weight)| *weight != 0.0) {
+            let scaled = |&(line, amount): &(usize, f64)| (line, weight * amount);
+            sum.by.extend(moves.by.iter().map(scaled));
+            sum.ahead.extend(moves.ahead.iter().map(scaled));
+        }
+        sum
+    }
+}
+
+/// Polynomials of the 2n lines of a motion in one row over a box.
+#[derive(Clone, Copy)]
+pub(super) struct Expansion<'r> {
+    pub basis: &'r SparseBasis,
+    pub domain: &'r ParameterBox,
+    pub closure: &'r dyn Closure,
+    /// s
+    pub time: f64,
+    /// Of each of the 2n lines; what follows them is not looked at.
+    pub coefficients: &'r [f64],
+    /// Least and largest of each of the 2n lines over the samples.
+    pub extent: &'r [(f64, f64)],
+}
+
+impl Expansion<'_> {
+    /// Every output at some ξ with the motion moved in some ways, output by output, way by way, point by point.
+    pub fn evaluate_moved<P: AsRef<[f64]>>(&self, points: &[P], ways: &[Moves]) -> Vec<f64> {
+        let n = self.extent.len() / 2;
+        let needs_velocities = self.closure.needs_velocities() || ways.iter().any(|moves| !moves.ahead.is_empty());
+        let mut expanded = vec![0.0; if needs_velocities { 2 * n } else { n } * points.len()];
+        self.expand(points, &mut expanded);
+        let count = ways.len() * points.len();
+        let mut motion = vec![0.0; self.extent.len() * count];
+        for (line, values) in expanded.chunks_exact(points.len().max(1)).enumerate() {
+            for (place, moves) in ways.iter().enumerate() {
+                let by: f64 = moves.by.iter().filter(|moved| moved.0 == line).map(|moved| moved.1).sum();
+                let into = &mut motion[line * count + place * points.len()..][..points.len()];
+                into.iter_mut().zip(values).for_each(|(into, value)| *into = value + by);
+                for &(_, time) in moves.ahead.iter().filter(|ahead| ahead.0 == line) {
+                    let velocities = &expanded[(n + line) * points.len()..][..points.len()];
+                    into.iter_mut().zip(velocities).for_each(|(into, velocity)| *into += time * velocity);
+                }
+            }
+        }
+        // Dependent coordinates are only a guess, and are kept within what the samples have.
+        for (line, (values, &(low, high))) in motion.chunks_exact_mut(count.max(1)).zip(self.extent).enumerate() {
+            if !self.closure.independent().contains(&(line % n)) && low <= high {
+                values.iter_mut().for_each(|value| *value = value.clamp(low, high));
+            }
+        }
+        let all: Vec<&[f64]> = ways.iter().flat_map(|_| points.iter().map(AsRef::as_ref)).collect();
+        self.close(&all, motion)
+    }
+
+    /// The first of the polynomials' values, as many lines of points as there is room for.
+    pub fn expand<P: AsRef<[f64]>>(&self, points: &[P], motion: &mut [f64]) {
+        let lines = motion.len() / points.len().max(1);
+        let coefficients = &self.coefficients[..lines * self.basis.len()];
+        self.basis.values(points, coefficients, motion, &mut SparseWork::default());
+    }
+
+    /// Every output as it follows from the motion at some ξ: 2n lines of points.
+    pub fn close<P: AsRef<[f64]>>(&self, points: &[P], motion: Vec<f64>) -> Vec<f64> {
+        let at = |parameter: usize, point: &P| self.domain.value(parameter, point.as_ref()[parameter]);
+        let parameters = (0..self.domain.dimension())
+            .flat_map(|parameter| points.iter().map(move |point| at(parameter, point)))
+            .collect();
+        self.closure.outputs(self.time, points.len(), parameters, motion)
+    }
+}

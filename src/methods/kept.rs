@@ -1,0 +1,175 @@
+//! A surrogate that is kept after the run, to be evaluated at any point of the box: for statistics, verdicts and pictures.
+//!
+//! It is data: coefficients row by row, for each sub-box that the box was split into. An output is the polynomial through its own samples,
+//! or follows from the expanded coordinates through a loop closure, which whoever evaluates it has compiled.
+
+use super::ensemble::Closure;
+use super::expansion::{Expansion, Moves};
+use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
+
+/// A surrogate over the whole box.
+#[derive(Clone, Debug, Default)]
+pub struct KeptSurrogate {
+    boxes: Vec<KeptBox>,
+}
+
+/// A sub-box with its polynomials.
+#[derive(Clone, Debug)]
+struct KeptBox {
+    domain: ParameterBox,
+    basis: SparseBasis,
+    /// Up to the first that a sample has not reached.
+    rows: Vec<KeptRow>,
+}
+
+/// One row's polynomials over a sub-box.
+#[derive(Clone, Debug)]
+pub struct KeptRow {
+    /// s
+    pub time: f64,
+    /// The independent coordinates; none where only outputs are expanded.
+    pub independent: Vec<usize>,
+    /// Of each of the 2n lines of the motion, then of each output.
+    pub coefficients: Vec<f64>,
+    /// Least and largest of each of the 2n lines over the samples.
+    pub extent: Vec<(f64, f64)>,
+    /// Whether an output is the polynomial through its own samples.
+    pub own: Vec<bool>,
+}
+
+impl KeptRow {
+    /// Where only the outputs are expanded: coefficients output by output.
+    pub fn of_outputs(time: f64, lines: &[&[f64]]) -> Self {
+        let own = vec![true; lines.len()];
+        Self { time, independent: Vec::new(), coefficients: lines.concat(), extent: Vec::new(), own }
+    }
+
+    /// An output's own polynomial.
+    fn of_output(&self, output: usize, terms: usize) -> &[f64] {
+        &self.coefficients[(self.extent.len() + output) * terms..][..terms]
+    }
+}
+
+impl KeptSurrogate {
+    /// Over one box.
+    pub fn of_box(domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) -> Self {
+        Self { boxes: vec![KeptBox { domain: domain.clone(), basis: basis.clone(), rows }] }
+    }
+
+    /// What does not depend on any parameter: rows of outputs.
+    pub fn constant(rows: impl Iterator<Item = (f64, Vec<f64>)>) -> Self {
+        let row = |(time, values): (f64, Vec<f64>)| {
+            let lines: Vec<&[f64]> = values.iter().map(std::slice::from_ref).collect();
+            KeptRow::of_outputs(time, &lines)
+        };
+        Self::of_box(&ParameterBox::default(), &SparseBasis::tensor(&[]), rows.map(row).collect())
+    }
+
+    /// Adds a sub-box.
+    pub fn add(&mut self, domain: &ParameterBox, basis: &SparseBasis, rows: Vec<KeptRow>) {
+        self.boxes.push(KeptBox { domain: domain.clone(), basis: basis.clone(), rows });
+    }
+
+    /// Rows that are known over the whole box.
+    pub fn rows(&self) -> usize {
+        self.boxes.iter().map(|part| part.rows.len()).min().unwrap_or(0)
+    }
+
+    /// The choices of independent coordinates through which outputs follow, each once.
+    pub fn independent(&self) -> Vec<Vec<usize>> {
+        let mut found: Vec<Vec<usize>> = Vec::new();
+        for row in self.boxes.iter().flat_map(|part| &part.rows) {
+            if row.own.contains(&false) && !found.contains(&row.independent) {
+                found.push(row.independent.clone());
+            }
+        }
+        found
+    }
+
+    /// Whether an output is the same polynomial of the parameters over the whole box in a row, so that no closure is needed.
+    pub fn is_polynomial(&self, row: usize, output: usize) -> bool {
+        self.boxes.len() == 1 && self.boxes[0].rows[row].own[output]
+    }
+
+    /// The polynomial through an output's own samples in a row: its terms, and the coefficients before them. Where the box was not split.
+    pub fn polynomial(&self, row: usize, output: usize) -> Option<(&SparseBasis, &[f64])> {
+        let [part] = self.boxes.as_slice() else { return None };
+        Some((&part.basis, part.rows[row].of_output(output, part.basis.len())))
+    }
+
+    /// Outputs in one row at samples of the box (values of the parameters in their units), output by output; NaN where a closure has no solution.
+    /// `closures` has one for every choice of [`independent`](Self::independent).
+    pub fn values<'c, P: AsRef<[f64]>>(
+        &self,
+        row: usize,
+        (outputs, samples): (&[usize], &[P]),
+        closures: &'c [Box<dyn Closure + 'c>],
+    ) -> Vec<f64> {
+        let mut values = vec![f64::NAN; outputs.len() * samples.len()];
+        let mut left: Vec<usize> = (0..samples.len()).collect();
+        for part in &self.boxes {
+            let holds = |place: &usize| self.boxes.len() == 1 || part.contains(samples[*place].as_ref());
+            let (inside, outside): (Vec<usize>, Vec<usize>) = left.into_iter().partition(holds);
+            left = outside;
+            let points: Vec<Vec<f64>> = inside.iter().map(|&place| part.xi(samples[place].as_ref())).collect();
+            let found = part.values(row, outputs, &points, closures);
+            for (of_output, found) in
+                values.chunks_exact_mut(samples.len().max(1)).zip(found.chunks_exact(inside.len().max(1)))
+            {
+                inside.iter().zip(found).for_each(|(&place, &value)| of_output[place] = value);
+            }
+        }
+        values
+    }
+}
+
+impl KeptBox {
+    fn contains(&self, sample: &[f64]) -> bool {
+        let ends = self.domain.lower.iter().zip(&self.domain.upper);
+        sample.iter().zip(ends).all(|(value, (lower, upper))| (lower..=upper).contains(&value))
+    }
+
+    /// ξ of a sample; 0 along what has no width.
+    fn xi(&self, sample: &[f64]) -> Vec<f64> {
+        let along = |axis: usize| match self.domain.half_width(axis) {
+            half if half > 0.0 => (sample[axis] - self.domain.midpoint(axis)) / half,
+            _ => 0.0,
+        };
+        (0..sample.len()).map(along).collect()
+    }
+
+    fn values<'c>(
+        &self,
+        row: usize,
+        outputs: &[usize],
+        points: &[Vec<f64>],
+        closures: &'c [Box<dyn Closure + 'c>],
+    ) -> Vec<f64> {
+        let row = &self.rows[row];
+        let mut values = vec![f64::NAN; outputs.len() * points.len()];
+        let mut work = SparseWork::default();
+        let closure = closures.iter().find(|closure| closure.independent() == row.independent);
+        let closed = match closure {
+            Some(closure) if outputs.iter().any(|&output| !row.own[output]) => {
+                let expansion = Expansion {
+                    basis: &self.basis,
+                    domain: &self.domain,
+                    closure: closure.as_ref(),
+                    time: row.time,
+                    coefficients: &row.coefficients,
+                    extent: &row.extent,
+                };
+                expansion.evaluate_moved(points, &[Moves::default()])
+            }
+            _ => Vec::new(),
+        };
+        for (&output, values) in outputs.iter().zip(values.chunks_exact_mut(points.len().max(1))) {
+            if row.own[output] {
+                self.basis.values(points, row.of_output(output, self.basis.len()), values, &mut work);
+            } else if let Some(closed) = closed.get(output * points.len()..(output + 1) * points.len()) {
+                values.copy_from_slice(closed);
+            }
+        }
+        values
+    }
+}

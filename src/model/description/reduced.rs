@@ -1,0 +1,93 @@
+//! Outputs that are one number a motion, and what is required of outputs.
+
+use symdiff::Formula;
+
+use crate::grammar::quantity::Dimension;
+
+/// An output that is one number a motion.
+#[derive(Clone, Debug)]
+pub struct ReducedOutput {
+    /// Its name.
+    pub name: String,
+    /// What it is, as the file writes it: `max of pin.force`.
+    pub text: String,
+    /// SI unit; empty where dimensionless or unknown.
+    pub unit: String,
+    /// What kind of quantity it is; `None` where unknown.
+    pub dimension: Option<Dimension>,
+    /// What of the motion.
+    pub kind: ReducedKind,
+    /// What it is taken of, over names of [`Description::symbol`](super::Description::symbol).
+    pub sources: Vec<Formula>,
+    /// Places of these among the outputs, once they are there.
+    pub places: Vec<usize>,
+    /// From when, s.
+    pub from: f64,
+    /// Until when, s.
+    pub to: f64,
+}
+
+/// What is taken of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReducedKind {
+    /// The greatest value less the smallest.
+    Range,
+    /// The greatest value.
+    Max,
+    /// The smallest value.
+    Min,
+    /// The greatest magnitude.
+    MaxAbs,
+    /// The value at the end of the time.
+    Value,
+    /// The mean over the time.
+    Mean,
+    /// The root of the mean square.
+    Rms,
+    /// The integral over the time.
+    Integral,
+    /// When it is greatest.
+    TimeOfMax,
+    /// When it is smallest.
+    TimeOfMin,
+    /// When the source is first not negative.
+    When,
+    /// When the source is last not negative.
+    LastWhen,
+    /// From when on the source stays negative.
+    Settling,
+    /// How far it goes beyond its target (the second source; its own value at the end where there is none), seen from its start.
+    Overshoot,
+    /// The width of the narrowest strip that holds the path of both sources.
+    Straightness,
+}
+
+/// A requirement: every slack must not be negative.
+#[derive(Clone, Debug)]
+pub struct Requirement {
+    /// Its name.
+    pub name: String,
+    /// As the file writes it.
+    pub text: String,
+    /// SI unit of the slacks; empty where dimensionless or unknown.
+    pub unit: String,
+    /// How far the limits are from what is limited.
+    pub slacks: Vec<Formula>,
+    /// Places of these among the outputs, once they are there.
+    pub places: Vec<usize>,
+    /// When they count; `None` where they are of reduced outputs and parameters, by their names.
+    pub times: Option<(f64, f64)>,
+    /// Constant limits.
+    pub limits: Vec<Limit>,
+}
+
+/// A constant limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// What is limited, as the file writes it.
+    pub of: String,
+    /// The limit, SI.
+    pub value: f64,
+    /// Whether values above it fail; else those below it do.
+    pub is_upper: bool,
+}

@@ -1,0 +1,97 @@
+//! Outputs that are one number a motion, and requirements.
+
+use schemars::JsonSchema;
+
+use super::*;
+use crate::grammar::mapping::schema_only;
+
+schema_only! {
+    /// A formula, of every time; or one number a motion.
+    #[schemars(untagged, inline)]
+    pub enum OutputFile {
+        Formula(Number),
+        Reduced(Box<Reduced>),
+    }
+
+    /// A comparison, or limits of an output.
+    #[schemars(untagged, inline)]
+    pub enum RequirementFile {
+        Comparison(String),
+        Limits(Box<Requirement>),
+    }
+
+    /// Abscissa and ordinate of a path, or an ordinate that is held against a `line`.
+    #[schemars(untagged, inline)]
+    pub enum PathFile {
+        Path([Number; 2]),
+        Ordinate(Number),
+    }
+}
+
+grammar! {
+    /// One number a motion. Exactly one of the first keys says which.
+    Reduced is "a reduced output" {
+        /// The greatest value less the smallest of this formula.
+        range: Option<Number>,
+        /// The greatest value of this formula.
+        max: Option<Number>,
+        /// The smallest value of this formula.
+        min: Option<Number>,
+        /// The greatest magnitude of this formula.
+        max_abs: Option<Number>,
+        /// The value at the end, or at the time `to`.
+        r#final: Option<Number>,
+        /// The value at the time `at`.
+        value: Option<Number>,
+        /// The mean over the time.
+        mean: Option<Number>,
+        /// The root of the mean square.
+        rms: Option<Number>,
+        /// The integral over the time.
+        integral: Option<Number>,
+        /// When this formula is greatest, s.
+        time_of_max: Option<Number>,
+        /// When this formula is smallest, s.
+        time_of_min: Option<Number>,
+        /// When this comparison holds first, s: `door.angle > 1.2`.
+        when: Option<String>,
+        /// When this comparison holds last, s.
+        last_when: Option<String>,
+        /// From when on this formula stays within `band` of `target`, s.
+        settling: Option<Number>,
+        /// How far this formula goes beyond `target`, seen from its start; without `target`, beyond its value at the end.
+        overshoot: Option<Number>,
+        /// Width of the narrowest strip that holds this path; with `line`, the greatest distance from that.
+        straightness: Option<PathFile>,
+        /// From when the motion counts, s.
+        from: Option<Number>,
+        /// Until when the motion counts, s.
+        to: Option<Number>,
+        /// The time of `value`, s.
+        at: Option<Number>,
+        /// Where `settling` and `overshoot` lead to.
+        target: Option<Number>,
+        /// Half the width of the band of `settling`.
+        band: Option<Number>,
+        /// What the ordinate of `straightness` is held against.
+        line: Option<Number>,
+    }
+
+    /// Limits of an output at all times, or of a reduced output.
+    Requirement is "a requirement" {
+        /// A comparison: `x3 >= 0.4 m`; instead of `output`.
+        that: Option<String>,
+        /// An output, a reduced output, or a formula of them.
+        output: Option<Number>,
+        /// The largest value allowed.
+        max: Option<Number>,
+        /// The smallest value allowed.
+        min: Option<Number>,
+        /// From when it is required, s.
+        from: Option<Number>,
+        /// Until when it is required, s.
+        to: Option<Number>,
+        /// The only time at which it is required, s.
+        at: Option<Number>,
+    }
+}

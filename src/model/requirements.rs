@@ -1,0 +1,212 @@
+//! What is required of outputs: `clears: x3 >= 0.4 m`.
+
+use symdiff::{Binary, Formula, Unary};
+
+use super::description::{Limit, Requirement};
+use super::file;
+use super::reduced::{self, Source};
+use crate::grammar::Symbol;
+use crate::grammar::dimension::{self, Kind};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::model::names::Reader;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Entry, Node, Value};
+
+/// Two sides of a comparison.
+struct Limited {
+    /// What is limited, as it is written.
+    of: String,
+    own: Source,
+    limit: Source,
+    is_upper: bool,
+}
+
+/// Reads `requirements:`.
+pub fn read(reader: &mut Reader, entries: &[Entry]) {
+    for entry in entries {
+        reader.name(entry, "a requirement");
+        let found = match &entry.value.value {
+            Value::Mapping(_) => of_mapping(reader, entry),
+            _ => of_text(reader, &entry.value, entry),
+        };
+        if let Some(found) = found {
+            reader.model.requirements.push(found);
+        }
+    }
+}
+
+/// `x3 >= 0.4 m`.
+fn of_text(reader: &mut Reader, node: &Node, entry: &Entry) -> Option<Requirement> {
+    let (place, length, is_upper) = reduced::relation(reader, node)?;
+    let scalar = reader.scalar(node, "a comparison")?;
+    let text = scalar.text.trim().to_owned();
+    let of = scalar.text[..place].trim().to_owned();
+    let sides = [0..place, place + length..scalar.text.len()];
+    let of_reduced = sides.iter().any(|range| names_reduced(reader, &scalar.text[range.clone()]));
+    let [own, limit] = if of_reduced {
+        sides.map(|range| part_of_reduced(reader, node, range))
+    } else {
+        let comparison = reduced::comparison(reader, node)?;
+        comparison.sides.map(Some)
+    };
+    let limited = Limited { of, own: own?, limit: limit?, is_upper };
+    Some(required(reader, entry, text, vec![limited], (of_reduced, (0.0, f64::INFINITY))))
+}
+
+/// `{ output: peak, max: 250 N }`, or `{ that: "x3 >= 0.4 m", from: 0.1 }`.
+fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
+    let fields = reader.fields::<file::Requirement>(&entry.value, entry.key_span.clone())?;
+    let times = times(reader, &fields)?;
+    if let Some(node) = fields.get("that") {
+        for key in ["output", "max", "min"] {
+            reader.exclude(&fields, [key, "that"]);
+        }
+        let found = of_text(reader, node, entry)?;
+        return timed(reader, &fields, found, times);
+    }
+    let node = reader.required(&fields, "output")?;
+    let of = reader.scalar(node, "an output")?.text.trim().to_owned();
+    let limits: Vec<(&str, &Node)> =
+        ["max", "min"].into_iter().filter_map(|key| Some((key, fields.get(key)?))).collect();
+    if limits.is_empty() {
+        reader.error(entry.key_span.clone(), "a requirement needs `max`, `min` or both", None);
+        return None;
+    }
+    let of_reduced = names_reduced(reader, &of);
+    let side = |reader: &mut Reader, node: &Node| match of_reduced {
+        true => {
+            let length = reader.scalar(node, "a formula")?.text.len();
+            part_of_reduced(reader, node, 0..length)
+        }
+        false => reduced::formula_of_outputs(reader, node),
+    };
+    let (mut limited, mut texts) = (Vec::new(), Vec::new());
+    for (key, limit) in limits {
+        let own = side(reader, node)?;
+        let found = side(reader, limit)?;
+        if let (Some(found), Some(wanted)) = (found.dimension, own.dimension) {
+            reader.check_fits(&limit.span, found, wanted);
+        }
+        let is_upper = key == "max";
+        let sign = if is_upper { "<=" } else { ">=" };
+        texts.push(format!("{of} {sign} {}", limit.scalar().map_or("", |scalar| scalar.text.trim())));
+        limited.push(Limited { of: of.clone(), own, limit: found, is_upper });
+    }
+    let found = required(reader, entry, texts.join(" and "), limited, (of_reduced, times));
+    timed(reader, &fields, found, times)
+}
+
+/// `from` and `to`, or `at`.
+fn times(reader: &mut Reader, fields: &Fields) -> Option<(f64, f64)> {
+    reader.exclude(fields, ["at", "from"]);
+    reader.exclude(fields, ["at", "to"]);
+    match fields.get("at") {
+        Some(node) => reader.number(node, Dimension::TIME).map(|at| (at, at)),
+        None => reduced::times(reader, fields),
+    }
+}
+
+/// The same at other times, with these in its text.
+fn timed(reader: &mut Reader, fields: &Fields, found: Requirement, (from, to): (f64, f64)) -> Option<Requirement> {
+    let Some(key) = ["at", "from", "to"].into_iter().find(|key| fields.get(key).is_some()) else { return Some(found) };
+    if found.times.is_none() {
+        let help = "give the reduced output its own `from` and `to`".to_owned();
+        reader.error(fields.key_span(key), format!("`{key}` has no meaning for what is one number a motion"), help);
+        return None;
+    }
+    let mut text = found.text;
+    let mut add = |key: &str, time: f64| {
+        if fields.get(key).is_some() {
+            text += &format!(" {key} {time} s");
+        }
+    };
+    add("at", from);
+    add("from", from);
+    add("to", to);
+    Some(Requirement { text, times: Some((from, to)), ..found })
+}
+
+/// Slacks and limits.
+fn required(
+    reader: &Reader,
+    entry: &Entry,
+    text: String,
+    limited: Vec<Limited>,
+    (of_reduced, times): (bool, (f64, f64)),
+) -> Requirement {
+    let (mut slacks, mut limits) = (Vec::new(), Vec::new());
+    let unit = limited.iter().find_map(|limited| limited.own.dimension.or(limited.limit.dimension));
+    for Limited { of, own, limit, is_upper } in limited {
+        let constant = reader.evaluate(&limit.formula, 0).filter(|_| !reader.is_uncertain(&limit.formula));
+        let mut note = |of: &str, sign: f64, is_upper: bool| {
+            limits.extend(constant.map(|value| Limit { of: of.to_owned(), value: sign * value, is_upper }));
+        };
+        // A magnitude has a kink where it is zero, its two sides have none.
+        match own.formula.argument_of(Unary::Abs).filter(|_| is_upper) {
+            Some(inside) => {
+                slacks.push(limit.formula.combined(Binary::Sub, &inside));
+                slacks.push(limit.formula.combined(Binary::Add, &inside));
+                let inner = of.trim_start_matches("abs(").trim_end_matches(')');
+                note(inner, 1.0, true);
+                note(inner, -1.0, false);
+            }
+            None => {
+                let (larger, smaller) = if is_upper { (&limit, &own) } else { (&own, &limit) };
+                slacks.push(larger.formula.combined(Binary::Sub, &smaller.formula));
+                note(&of, 1.0, is_upper);
+            }
+        }
+    }
+    let unit = unit.map_or_else(String::new, Dimension::unit);
+    let times = (!of_reduced).then_some(times);
+    Requirement { name: entry.key.clone(), text, unit, slacks, places: Vec::new(), times, limits }
+}
+
+/// Whether a text names a reduced output.
+fn names_reduced(reader: &Reader, text: &str) -> bool {
+    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    let mut words = text.split(|c| !is_part(c));
+    words.any(|word| reader.model.reduced.iter().any(|reduced| reduced.name == word))
+}
+
+/// The formula of reduced outputs and parameters in a part of a scalar.
+fn part_of_reduced(reader: &mut Reader, node: &Node, range: std::ops::Range<usize>) -> Option<Source> {
+    let scalar = reader.scalar(node, "a formula")?;
+    let formula: Formula = reader.parse(node, scalar, range.clone())?;
+    let mut unknown = None;
+    for (name, span) in formula.names() {
+        if reader.model.reduced.iter().any(|reduced| reduced.name == name) {
+            continue;
+        }
+        match reader.symbol(name) {
+            Some(Symbol::Parameter(index)) => {
+                if let Some(used) = reader.used.get_mut(index) {
+                    *used = true;
+                }
+            }
+            _ => unknown = Some((clip(name), range.start + span.start..range.start + span.end)),
+        }
+    }
+    if let Some((name, span)) = unknown {
+        let message = format!("`{name}` is neither a reduced output nor a parameter");
+        let help =
+            "what is compared with a reduced output is one number a motion; make it a reduced output too".to_owned();
+        reader.error(scalar.place(&node.span, span), message, help);
+        return None;
+    }
+    let mut mismatches = Vec::new();
+    let kind = |name: &str| match reader.model.reduced.iter().find(|reduced| reduced.name == name) {
+        Some(reduced) => reduced.dimension.map_or(Kind::Any, Kind::motion),
+        None => match reader.symbol(name) {
+            Some(Symbol::Parameter(index)) => reader.kinds.get(index).copied().unwrap_or(Kind::Any),
+            _ => Kind::Any,
+        },
+    };
+    let dimension = dimension::analyse(&formula, kind, |_| [None; 2], &mut mismatches).dimension();
+    for mismatch in mismatches {
+        let part = range.start + mismatch.span.start..range.start + mismatch.span.end;
+        reader.error(scalar.place(&node.span, part), mismatch.message, None);
+    }
+    Some(Source { formula, dimension })
+}

@@ -1,0 +1,34 @@
+//! By what a motion is integrated: the scheme, and the levels that it is extrapolated over.
+
+use super::description::SchemeChoice;
+use super::names::Reader;
+use crate::grammar::quantity::Dimension;
+use crate::grammar::reader::Fields;
+use crate::syntax::diagnostic::Diagnostic;
+
+/// The words of `scheme`.
+const SCHEMES: [(&str, SchemeChoice); 2] = [("auto", SchemeChoice::Auto), ("hht", SchemeChoice::Hht)];
+
+/// Levels that can be combined. A fifth gains nothing that rounding leaves.
+const LEVELS: std::ops::RangeInclusive<usize> = 2..=4;
+
+/// Reads `scheme` and `extrapolation`.
+pub(super) fn read(reader: &mut Reader, fields: &Fields) -> Option<(SchemeChoice, Option<usize>)> {
+    let scheme = match fields.get("scheme") {
+        Some(node) => reader.choice(node, &SCHEMES),
+        None => Some(SchemeChoice::Auto),
+    };
+    let levels = match fields.get("extrapolation") {
+        None => Some(None),
+        Some(node) => match reader.number(node, Dimension::NUMBER)? {
+            number if LEVELS.clone().any(|levels| levels as f64 == number) => Some(Some(number as usize)),
+            number => {
+                let message = format!("`extrapolation` combines 2, 3 or 4 step lengths, not {number}");
+                let help = "each level halves the steps; 3 levels take 7 times the steps and are of order 4".to_owned();
+                reader.diagnostics.push(Diagnostic::error(node.span.clone(), message).help(help));
+                None
+            }
+        },
+    };
+    Some((scheme?, levels?))
+}

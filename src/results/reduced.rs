@@ -1,0 +1,77 @@
+//! Reduced outputs: one number a motion, bounded over the box.
+
+use serde::Serialize;
+
+/// A reduced output's bounds. Numbers are in the output's SI unit, `null` where unknown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReducedSummary {
+    /// Its name in the model.
+    pub name: String,
+    /// What it is of the motion, as the model writes it: `max of pin.force`.
+    pub of: String,
+    /// Its SI unit; empty where dimensionless or unknown.
+    pub unit: String,
+    /// With every parameter at its nominal value.
+    pub nominal: f64,
+    /// Bounds by every method, in the order of [`Method`](super::Method).
+    pub bands: Vec<ReducedBand>,
+    /// Which tolerance matters, the largest total index first; empty where it is not known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contributions: Vec<ReducedContribution>,
+    /// The simulated sample with the smallest value, and the one with the largest; absent where no sample has a value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst: Option<[WorstCase; 2]>,
+    /// Set where some of the samples have no value, as of an event that does not occur: how many of those simulated have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub occurs: Option<Occurrence>,
+}
+
+/// A method's bounds of a reduced output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReducedBand {
+    /// Name of the method.
+    pub method: String,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// How far the bounds may be from the truth.
+    pub error: f64,
+    /// The part of the error that is due to the method.
+    pub surrogate: f64,
+    /// The part of the error that is due to time steps.
+    pub time: f64,
+    /// Whether the bounds are not resolved: their error is too large beside their width.
+    pub unresolved: bool,
+}
+
+/// A parameter's part in the spread of a reduced output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReducedContribution {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// First-order Sobol index: what varies with this parameter alone.
+    pub main: f64,
+    /// Total Sobol index: what varies with this parameter and its interactions.
+    pub total: f64,
+    /// Width of the range if this parameter were at its nominal value.
+    pub width_without: f64,
+}
+
+/// A simulated sample: its parameters in the summary's order, SI, and its value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstCase {
+    /// Values of the uncertain parameters.
+    pub parameters: Vec<f64>,
+    /// The value there.
+    pub value: f64,
+}
+
+/// How many samples have a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Occurrence {
+    /// Those that have one.
+    pub samples: usize,
+    /// Of so many.
+    pub of: usize,
+}

@@ -1,0 +1,48 @@
+//! How the steps of a schedule are taken.
+
+use serde::{Deserialize, Serialize};
+
+/// How the steps of a schedule are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Integration {
+    /// By the scheme, once.
+    #[default]
+    Plain,
+    /// By the scheme on several levels, each with the steps of the one before halved, combined so that the leading terms of
+    /// their errors cancel.
+    Extrapolated {
+        /// 2, 3 or 4.
+        levels: usize,
+    },
+}
+
+impl Integration {
+    /// Of so many levels; one is the scheme itself.
+    pub fn of_levels(levels: usize) -> Self {
+        if levels > 1 { Self::Extrapolated { levels } } else { Self::Plain }
+    }
+
+    /// Steps that are taken for each of the schedule's.
+    pub fn steps(self) -> usize {
+        match self {
+            Self::Plain => 1,
+            Self::Extrapolated { levels } => (1 << levels) - 1,
+        }
+    }
+
+    /// The order at which the error falls with the steps where the motion is smooth.
+    pub fn order(self) -> usize {
+        match self {
+            Self::Plain => 2,
+            Self::Extrapolated { levels } => levels + 1,
+        }
+    }
+
+    /// For summaries; `None` for the scheme itself.
+    pub fn name(self) -> Option<String> {
+        match self {
+            Self::Plain => None,
+            Self::Extrapolated { levels } => Some(format!("HHT-I3 extrapolated over {levels} levels")),
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Extrapolation: runs with steps h, h/2, h/4, … combined so that the leading terms of their errors cancel.
+//!
+//! The scheme's error at a time is a h² + b h³ + c h⁴ + …: it is not even in h, since the algorithmic acceleration belongs to a
+//! time beside the step's end. So L levels have the combination
+//!
+//! ```text
+//! T₁(h) = run with h        T_{k+1}(h) = (2^{k+1} T_k(h/2) − T_k(h)) / (2^{k+1} − 1)
+//! ```
+//!
+//! and T_L is of order L + 1. Positions and velocities are combined, all of them, and closed
+//! ([`RowClosure`](super::row_closure::RowClosure)); what else a row has follows from them. Levels run on by themselves
+//! (passive extrapolation), so that a stiff part is damped in each as it is in one.
+
+use rayon::prelude::*;
+use symdiff::{WIDTHS, jet::JetSpace};
+
+use super::jets::JetRun;
+use super::reduction::Channel;
+use super::row_closure::{JetClosure, RowClosure};
+use super::run::{EnsembleRun, Observed, Stop};
+use crate::numerics::Sample;
+use crate::simulate::control::{Controller, Schedule};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+
+/// Samples whose rows are closed together.
+const WIDTH: usize = 32;
+
+/// Weights of the levels, the coarsest first.
+pub(super) fn weights(levels: usize) -> Vec<f64> {
+    let mut weights = vec![1.0];
+    for level in 1..levels {
+        let power = (1_u32 << (level + 1)) as f64;
+        let coarse = weights.iter().copied().chain([0.0]);
+        let fine = [0.0].into_iter().chain(weights.iter().copied());
+        weights = coarse.zip(fine).map(|(coarse, fine)| (power * fine - coarse) / (power - 1.0)).collect();
+    }
+    weights
+}
+
+/// Sum of values with weights.
+fn combined(weights: &[f64], values: &[Vec<f64>], into: &mut Vec<f64>) {
+    into.clear();
+    into.resize(values.first().map_or(0, Vec::len), 0.0);
+    for (weight, values) in weights.iter().zip(values) {
+        into.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+    }
+}
+
+/// The run of an ensemble of samples on several levels.
+#[derive(Debug)]
+pub struct ExtrapolatedRun<'s> {
+    simulator: &'s Simulator,
+    /// With the steps of the schedule, halved, halved again, …
+    levels: Vec<EnsembleRun<'s>>,
+    weights: Vec<f64>,
+    /// For every so many samples.
+    closures: Vec<RowClosure<'s>>,
+    samples: usize,
+    values: Vec<Vec<f64>>,
+    motion: Vec<f64>,
+}
+
+impl<'s> ExtrapolatedRun<'s> {
+    /// Assembles samples for a schedule that begins with steps of `first_step`.
+    ///
+    /// # Errors
+    /// The first sample that cannot be assembled.
+    pub fn start(
+        simulator: &'s Simulator,
+        samples: &[Sample],
+        first_step: f64,
+        levels: usize,
+    ) -> Result<Self, SimulationError> {
+        let of_level = |level: u32| EnsembleRun::start(simulator, samples, first_step / f64::from(1_u32 << level));
+        let closure = |samples: &[Sample]| {
+            let width = WIDTHS.into_iter().find(|&width| width >= samples.len()).unwrap_or(samples.len());
+            let start = simulator.assemble(width, first_step, |lane| samples[lane.min(samples.len() - 1)].clone())?;
+            RowClosure::new(simulator, &start)
+        };
+        Ok(Self {
+            simulator,
+            levels: (0..levels as u32).map(of_level).collect::<Result<_, _>>()?,
+            weights: weights(levels),
+            closures: samples.chunks(WIDTH).map(closure).collect::<Result<_, _>>()?,
+            samples: samples.len(),
+            values: vec![Vec::new(); levels],
+            motion: Vec::new(),
+        })
+    }
+
+    /// The levels' own runs, that with the steps of the schedule first.
+    pub fn levels(&self) -> &[EnsembleRun<'s>] {
+        &self.levels
+    }
+
+    /// Also searches for singular configurations that the first sample passes with the steps of the schedule.
+    #[must_use]
+    pub fn watching(mut self) -> Self {
+        if !self.levels.is_empty() {
+            let first = self.levels.remove(0).watching();
+            self.levels.insert(0, first);
+        }
+        self
+    }
+
+    /// Also reduces outputs to one number each, on every level.
+    #[must_use]
+    pub fn reducing(mut self, channels: &'s [Channel]) -> Self {
+        self.levels = self.levels.into_iter().map(|level| level.reducing(channels)).collect();
+        self
+    }
+
+    /// As [`EnsembleRun::reduced`]: what the levels' outputs are reduced to, combined as their motions are.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        let of_levels: Vec<Vec<f64>> = self.levels.iter_mut().map(EnsembleRun::reduced).collect();
+        let mut values = Vec::new();
+        combined(&self.weights, &of_levels, &mut values);
+        values
+    }
+
+    /// As [`EnsembleRun::advance`].
+    pub fn advance(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        tolerance: Option<Controller>,
+        observed: Observed,
+        into: &mut Vec<f64>,
+    ) -> Vec<Stop> {
+        let mut stops: Vec<Stop> = Vec::new();
+        for (level, (run, values)) in self.levels.iter_mut().zip(&mut self.values).enumerate() {
+            let parts = 1 << level;
+            let (schedule, tolerance) = (schedule.refined(parts), tolerance.map(|all| all.for_parts(parts)));
+            for stop in run.advance(&schedule, rows.clone(), tolerance, Observed::Coordinates, values) {
+                match stops.iter_mut().find(|known| known.sample == stop.sample) {
+                    Some(known) if known.row <= stop.row => {}
+                    Some(known) => *known = stop,
+                    None => stops.push(stop),
+                }
+            }
+        }
+        combined(&self.weights, &self.values, &mut self.motion);
+        let (samples, motion) = (self.samples, &self.motion);
+        let lines = observed.count(self.simulator);
+        let parts: Vec<Vec<f64>> = self
+            .closures
+            .par_iter_mut()
+            .enumerate()
+            .map(|(place, closure)| {
+                let first = place * WIDTH;
+                closed(closure, schedule, (rows.clone(), observed, lines), (motion, first, samples))
+            })
+            .collect();
+        into.clear();
+        into.resize(rows.len() * lines * samples, 0.0);
+        for (place, values) in parts.iter().enumerate() {
+            let first = place * WIDTH;
+            let (count, width) = (WIDTH.min(samples - first), self.closures[place].tile().width());
+            for (line, lanes) in values.chunks_exact(width).enumerate() {
+                into[line * samples + first..][..count].copy_from_slice(&lanes[..count]);
+            }
+        }
+        stops
+    }
+}
+
+/// What is observed in rows (row, line, lane), from a motion (row, line, sample) whose samples from `first` on are the lanes.
+fn closed(
+    closure: &mut RowClosure,
+    schedule: &Schedule,
+    (rows, observed, lines): (std::ops::Range<usize>, Observed, usize),
+    (motion, first, samples): (&[f64], usize, usize),
+) -> Vec<f64> {
+    let width = closure.tile().width();
+    let coordinates = motion.len() / (rows.len() * samples).max(1);
+    let mut state = vec![0.0; coordinates * width];
+    let mut values = vec![0.0; rows.len() * lines * width];
+    for ((row, of_row), values) in
+        rows.zip(motion.chunks_exact(coordinates * samples)).zip(values.chunks_exact_mut(lines * width))
+    {
+        for (state, line) in state.chunks_exact_mut(width).zip(of_row.chunks_exact(samples)) {
+            for (lane, value) in state.iter_mut().enumerate() {
+                *value = line[(first + lane).min(samples - 1)];
+            }
+        }
+        closure.close(schedule.time(row), &mut state);
+        let outputs = match observed {
+            Observed::Outputs => values,
+            _ => {
+                let (motion, outputs) = values.split_at_mut(state.len());
+                motion.copy_from_slice(&state);
+                outputs
+            }
+        };
+        closure.observe(outputs);
+    }
+    values
+}
+
+/// The run of one jet on several levels.
+#[derive(Debug)]
+pub struct ExtrapolatedJets<'s> {
+    levels: Vec<JetRun<'s>>,
+    weights: Vec<f64>,
+    closure: JetClosure<'s>,
+    coordinates: usize,
+    values: Vec<Vec<f64>>,
+    motion: Vec<f64>,
+}
+
+impl<'s> ExtrapolatedJets<'s> {
+    /// Assembles the jet around `center`; the parameters' half widths are its first derivatives.
+    ///
+    /// # Errors
+    /// Where the centre cannot be assembled.
+    pub fn start(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_width): (&[f64], &[f64]),
+        first_step: f64,
+        levels: usize,
+    ) -> Result<Self, SimulationError> {
+        let of_level =
+            |level: u32| JetRun::start(simulator, space, center, half_width, first_step / f64::from(1_u32 << level));
+        let start = simulator.assemble(1, first_step, |_| center.iter().copied().collect())?;
+        Ok(Self {
+            levels: (0..levels as u32).map(of_level).collect::<Result<_, _>>()?,
+            weights: weights(levels),
+            closure: JetClosure::new(simulator, space, (center, half_width), &start)?,
+            coordinates: simulator.system.q.len(),
+            values: vec![Vec::new(); levels],
+            motion: Vec::new(),
+        })
+    }
+
+    /// The levels' own runs, that with the steps of the schedule first.
+    pub fn levels(&self) -> &[JetRun<'s>] {
+        &self.levels
+    }
+
+    /// As [`JetRun::advance`].
+    pub fn advance(&mut self, schedule: &Schedule, rows: std::ops::Range<usize>, into: &mut Vec<f64>) -> Option<Stop> {
+        let mut stop: Option<Stop> = None;
+        let mut reached = rows.end;
+        for (level, (run, values)) in self.levels.iter_mut().zip(&mut self.values).enumerate() {
+            let found = run.advance_motion(&schedule.refined(1 << level), rows.start..reached, values);
+            reached = found.as_ref().map_or(reached, |stop| stop.row);
+            stop = found.or(stop);
+        }
+        let rows = rows.start..reached;
+        let shortest = self.values.iter().map(Vec::len).min().unwrap_or(0);
+        self.values.iter_mut().for_each(|values| values.truncate(shortest));
+        combined(&self.weights, &self.values, &mut self.motion);
+        into.clear();
+        let of_row = self.motion.len() / rows.len().max(1);
+        debug_assert!(of_row.is_multiple_of(2 * self.coordinates));
+        for (row, motion) in rows.zip(self.motion.chunks_exact_mut(of_row.max(1))) {
+            self.closure.close(schedule.time(row), motion);
+            self.closure.observe(into);
+        }
+        stop
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_cancel_the_powers_of_the_error() {
+        for levels in 1..=4 {
+            let weights = weights(levels);
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            for power in 2..=levels as i32 {
+                let left: f64 =
+                    weights.iter().enumerate().map(|(level, weight)| weight * 0.5_f64.powi(power * level as i32)).sum();
+                assert!(left.abs() < 1e-15, "{levels} levels leave {left} of h^{power}");
+            }
+        }
+        assert_eq!(weights(3), [1.0 / 21.0, -12.0 / 21.0, 32.0 / 21.0]);
+    }
+}

@@ -1,0 +1,164 @@
+//! Rows of output from positions and velocities that are no step's own: combined from several runs, or interpolated.
+//!
+//! They miss the constraints by as much as they miss the motion. Positions are moved onto the constraints by the smallest change,
+//! velocities by impulses of the constraints, both of the order of that error, whatever coordinates are independent there.
+//! Accelerations and multipliers follow from the equations, and with them the outputs.
+
+use symdiff::{JetMemory, Tile, jet::JetSpace};
+
+use super::jets::{add_correction, corrections, solve_accelerations};
+use crate::assemble::System;
+use crate::compile::{StartProgram, Tapes};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::start::Assembly;
+
+/// What rows need of a mechanism.
+#[derive(Clone, Copy, Debug)]
+struct Needs {
+    /// Whether constraints are to be met.
+    closure: bool,
+    /// Whether outputs depend on accelerations or multipliers.
+    accelerations: bool,
+}
+
+impl Needs {
+    fn of(system: &System) -> Self {
+        Self { closure: !system.lambda.is_empty(), accelerations: system.observes_accelerations() }
+    }
+}
+
+/// Closes the rows of a tile of samples.
+#[derive(Debug)]
+pub(in crate::simulate) struct RowClosure<'s> {
+    program: &'s StartProgram,
+    assembly: Assembly<'s>,
+    needs: Needs,
+}
+
+impl<'s> RowClosure<'s> {
+    /// For the samples of an assembled tile.
+    ///
+    /// # Errors
+    /// Where the closure's equations have no factors.
+    pub fn new(simulator: &'s Simulator, start: &Tile) -> Result<Self, SimulationError> {
+        let program = simulator.free_closure()?;
+        let layout = &program.layout;
+        let parameters = layout.parameters.start;
+        let parameter = |parameter: usize, lane: usize| start.lane(parameters + parameter)[lane];
+        let mut assembly = Assembly::new(program, &simulator.system, start.width(), parameter);
+        for register in layout.state() {
+            assembly.tile_mut().lane_mut(register).copy_from_slice(start.lane(register));
+        }
+        Ok(Self { program, assembly, needs: Needs::of(&simulator.system) })
+    }
+
+    /// The memory, with the state that was closed last.
+    pub fn tile(&self) -> &Tile {
+        self.assembly.tile()
+    }
+
+    /// Makes a motion (2n lines, q and v, lane by lane) consistent at a time.
+    pub fn close(&mut self, time: f64, motion: &mut [f64]) {
+        let layout = &self.program.layout;
+        let width = self.assembly.tile().width();
+        let registers = layout.q.start * width..layout.v.end * width;
+        self.assembly.tile_mut().values_mut()[registers.clone()].copy_from_slice(motion);
+        self.assembly.tile_mut().lane_mut(layout.time).fill(time);
+        if !self.needs.closure {
+            return;
+        }
+        let settled = self.assembly.correct_until_settled(self.program.position(), layout.q.start);
+        // What cannot be closed stays as it is.
+        let n = layout.q.len();
+        for (register, given) in layout.q.clone().zip(motion[..n * width].chunks_exact(width)) {
+            let found = self.assembly.tile_mut().lane_mut(register);
+            for lane in (0..width).filter(|&lane| !settled[lane] || !found[lane].is_finite()).collect::<Vec<_>>() {
+                found[lane] = given[lane];
+            }
+        }
+        self.assembly.project_velocities();
+        motion.copy_from_slice(&self.assembly.tile().values()[registers]);
+    }
+
+    /// Outputs (output, lane) of the state that was closed last.
+    pub fn observe(&mut self, into: &mut [f64]) {
+        if self.needs.accelerations {
+            self.assembly.accelerate();
+        }
+        self.assembly.tile_mut().run(self.program.observe());
+        let width = self.assembly.tile().width();
+        for (line, &register) in into.chunks_exact_mut(width).zip(&self.program.outputs) {
+            line.copy_from_slice(self.assembly.tile().lane(register));
+        }
+    }
+}
+
+/// Closes the rows of a jet.
+#[derive(Debug)]
+pub(in crate::simulate) struct JetClosure<'s> {
+    program: &'s StartProgram,
+    memory: JetMemory<'s>,
+    order: usize,
+    needs: Needs,
+}
+
+impl<'s> JetClosure<'s> {
+    /// For a jet about `center`, whose state starts at that of an assembled tile of one lane.
+    ///
+    /// # Errors
+    /// Where the closure's equations have no factors.
+    pub fn new(
+        simulator: &'s Simulator,
+        space: &'s JetSpace,
+        (center, half_width): (&[f64], &[f64]),
+        start: &Tile,
+    ) -> Result<Self, SimulationError> {
+        let program = simulator.free_closure()?;
+        let mut memory = JetMemory::new(space, program.registers(), program.constants());
+        for (variable, register) in program.layout.parameters.clone().enumerate() {
+            space.variable(variable, center[variable], half_width[variable], memory.jet_mut(register));
+        }
+        for register in program.layout.state() {
+            memory.set_constant(register, start.lane(register)[0]);
+        }
+        memory.run(program.sample());
+        Ok(Self { program, memory, order: space.monomials().order(), needs: Needs::of(&simulator.system) })
+    }
+
+    /// Makes a motion (2n jets, q and v) consistent at a time.
+    pub fn close(&mut self, time: f64, motion: &mut [f64]) {
+        let layout = &self.program.layout;
+        let unknowns = layout.q.start..layout.v.end;
+        let terms = motion.len() / unknowns.len();
+        for (register, jet) in unknowns.clone().zip(motion.chunks_exact(terms)) {
+            self.memory.jet_mut(register).copy_from_slice(jet);
+        }
+        self.memory.set_constant(layout.time, time);
+        if !self.needs.closure {
+            return;
+        }
+        for _ in 0..corrections(self.order) {
+            self.memory.run(self.program.position());
+            add_correction(&mut self.memory, layout.q.clone(), layout.correction.start);
+        }
+        for _ in 0..corrections(self.order) {
+            self.memory.run(self.program.projection());
+            add_correction(&mut self.memory, layout.v.clone(), layout.correction.start);
+        }
+        for (register, jet) in unknowns.zip(motion.chunks_exact_mut(terms)) {
+            jet.copy_from_slice(self.memory.jet(register));
+        }
+    }
+
+    /// Appends the outputs of the state that was closed last, coefficient by coefficient.
+    pub fn observe(&mut self, into: &mut Vec<f64>) {
+        if self.needs.accelerations {
+            solve_accelerations(self.program, &mut self.memory, self.order);
+        }
+        self.memory.run(self.program.observe());
+        for &register in &self.program.outputs {
+            into.extend_from_slice(self.memory.jet(register));
+        }
+    }
+}

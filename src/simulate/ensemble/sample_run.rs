@@ -1,0 +1,114 @@
+//! The run of an ensemble of samples, however the schedule's steps are taken.
+
+use super::extrapolated::ExtrapolatedRun;
+use super::reduction::Channel;
+use super::run::{EnsembleRun, Observed, Stop};
+use crate::numerics::Sample;
+use crate::simulate::control::{Controller, Integration, Schedule};
+use crate::simulate::diagnostics::{OpenConstraint, SingularPass};
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+use crate::simulate::step::Counters;
+
+/// A run by one of the ways to integrate.
+#[derive(Debug)]
+pub enum SampleRun<'s> {
+    /// By the scheme itself.
+    Plain(EnsembleRun<'s>),
+    /// By the scheme on several levels.
+    Extrapolated(ExtrapolatedRun<'s>),
+}
+
+impl<'s> SampleRun<'s> {
+    /// Assembles samples for a schedule.
+    ///
+    /// # Errors
+    /// The first sample that cannot be assembled.
+    pub fn start(simulator: &'s Simulator, samples: &[Sample], schedule: &Schedule) -> Result<Self, SimulationError> {
+        let first_step = schedule.first_step();
+        Ok(match schedule.integration {
+            Integration::Plain => Self::Plain(EnsembleRun::start(simulator, samples, first_step)?),
+            Integration::Extrapolated { levels } => {
+                Self::Extrapolated(ExtrapolatedRun::start(simulator, samples, first_step, levels)?)
+            }
+        })
+    }
+
+    /// Also searches for singular configurations that the first sample passes.
+    #[must_use]
+    pub fn watching(self) -> Self {
+        match self {
+            Self::Plain(run) => Self::Plain(run.watching()),
+            Self::Extrapolated(run) => Self::Extrapolated(run.watching()),
+        }
+    }
+
+    /// Also reduces outputs to one number each.
+    #[must_use]
+    pub fn reducing(self, channels: &'s [Channel]) -> Self {
+        match self {
+            Self::Plain(run) => Self::Plain(run.reducing(channels)),
+            Self::Extrapolated(run) => Self::Extrapolated(run.reducing(channels)),
+        }
+    }
+
+    /// After the last row: what outputs are reduced to, channel by channel, sample by sample; NaN of samples that stopped.
+    pub fn reduced(&mut self) -> Vec<f64> {
+        match self {
+            Self::Plain(run) => run.reduced(),
+            Self::Extrapolated(run) => run.reduced(),
+        }
+    }
+
+    /// As [`EnsembleRun::advance`].
+    pub fn advance(
+        &mut self,
+        schedule: &Schedule,
+        rows: std::ops::Range<usize>,
+        tolerance: Option<Controller>,
+        observed: Observed,
+        into: &mut Vec<f64>,
+    ) -> Vec<Stop> {
+        match self {
+            Self::Plain(run) => run.advance(schedule, rows, tolerance, observed, into),
+            Self::Extrapolated(run) => run.advance(schedule, rows, tolerance, observed, into),
+        }
+    }
+
+    /// The runs of the scheme behind it, that with the schedule's steps first.
+    fn levels(&self) -> &[EnsembleRun<'s>] {
+        match self {
+            Self::Plain(run) => std::slice::from_ref(run),
+            Self::Extrapolated(run) => run.levels(),
+        }
+    }
+
+    /// Newton iterations and rank-revealing solves so far.
+    pub fn counters(&self) -> Counters {
+        self.levels().iter().map(EnsembleRun::counters).fold(Counters::default(), |total, counters| Counters {
+            iterations: total.iterations + counters.iterations,
+            rank_revealing: total.rank_revealing + counters.rank_revealing,
+        })
+    }
+
+    /// Singular configurations that the first sample has passed, if they are searched for.
+    pub fn singular_passes(&self) -> Vec<SingularPass> {
+        self.levels().first().map(EnsembleRun::singular_passes).unwrap_or_default()
+    }
+
+    /// See [`EnsembleRun::open_constraint`].
+    pub fn open_constraint(&self, stop: &Stop, schedule: &Schedule) -> Option<OpenConstraint> {
+        self.levels().iter().find_map(|run| run.open_constraint(stop, schedule))
+    }
+
+    /// See [`EnsembleRun::beyond_tolerance_from`].
+    pub fn beyond_tolerance_from(&self) -> Option<usize> {
+        self.levels().iter().filter_map(EnsembleRun::beyond_tolerance_from).min()
+    }
+
+    /// See [`EnsembleRun::largest_error_ratio`].
+    pub fn largest_error_ratio(&self) -> Option<(usize, f64)> {
+        let ratios = self.levels().iter().filter_map(EnsembleRun::largest_error_ratio);
+        ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })
+    }
+}

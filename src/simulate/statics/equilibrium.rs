@@ -1,0 +1,277 @@
+//! Where forces are in equilibrium: Φ_qᵀ λ = Q(q, v = 0, λ) and Φ(q) = 0.
+//!
+//! Newton's method on the motions that the constraints allow: with Φ̂_q = L B and N orthogonal to B, the correction of the coordinates is
+//! the shortest one that closes the constraints, and N p with Nᵀ K N p = −Nᵀ(M w + Φ_qᵀ λ − Q). Near a solution that is all: it is the
+//! nearest equilibrium, stable or not. Further away each eigenvalue of Nᵀ K N is taken positive, and the step is shortened: that leads
+//! downhill, to a stable one.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+use super::configuration::{Configuration, Linearised, reduced, times};
+use super::stability::Stability;
+use crate::assemble::System;
+use crate::compile::{EquationsProgram, compile_equations};
+use crate::numerics::{RowSpace, combined, dot};
+
+/// Corrections before it is given up.
+const MAX_CORRECTIONS: usize = 400;
+
+/// Corrections of a coordinate, in its scale, that are taken as Newton's method says.
+const NEAR: f64 = 0.1;
+
+/// Longest correction of a coordinate, in its scale.
+const REACH: f64 = 0.3;
+
+/// Corrections below this end the iteration.
+const SETTLED: f64 = 1e-14;
+
+/// Corrections below this that no longer shrink are round-off.
+const STALLED: f64 = 1e-9;
+
+/// Stiffnesses, and forces, below this share of the largest are zero.
+const NOTHING: f64 = 1e-10;
+
+/// Times that a correction is halved at most.
+const MOST_HALVINGS: u32 = 30;
+
+/// Steps from the nominal parameters to those of a sample that is far from them.
+const CONTINUATION_STEPS: usize = 16;
+
+/// A sample whose coordinates lie further than this from the nominal ones, in their scales, is reached by small changes.
+const FAR: f64 = 0.25;
+
+/// Finds equilibria of a mechanism.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    pub(super) program: EquationsProgram,
+    pub(super) scale: Vec<f64>,
+    pub(super) redundant: Vec<usize>,
+}
+
+/// Why there is none.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoEquilibrium {
+    /// The coordinate that is pushed most.
+    pub coordinate: usize,
+    /// By this much, in N or N m.
+    pub force: f64,
+    /// Whether nothing holds it, wherever it is.
+    pub is_free: bool,
+}
+
+impl Equilibrium {
+    /// Of a mechanism with these redundant constraints.
+    pub fn new(system: &System, redundant: &[usize]) -> Self {
+        let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
+        Self { program: compile_equations(system), scale, redundant: redundant.to_vec() }
+    }
+
+    /// The equations at rest with these parameters.
+    pub fn configuration(&self, parameters: &[f64]) -> Configuration<'_> {
+        Configuration::new(&self.program, &self.scale, &self.redundant, parameters)
+    }
+
+    /// The equilibrium with `parameters` near that of `nominal` parameters at `state`: its state (the layout's registers), at rest.
+    ///
+    /// # Errors
+    /// Where none is found.
+    pub fn near(&self, state: &[f64], nominal: &[f64], parameters: &[f64]) -> Result<Vec<f64>, NoEquilibrium> {
+        let at_once = self.find(state, parameters);
+        let is_far = |found: &Vec<f64>| {
+            let change = |(register, scale): (usize, &f64)| ((found[register] - state[register]) / scale).abs();
+            !self.program.layout.q.clone().zip(&self.scale).map(change).all(|change| change <= FAR)
+        };
+        if at_once.as_ref().is_ok_and(|found| !is_far(found)) {
+            return at_once;
+        }
+        let mut followed = state.to_vec();
+        for step in 1..=CONTINUATION_STEPS {
+            let share = step as f64 / CONTINUATION_STEPS as f64;
+            let between: Vec<f64> =
+                nominal.iter().zip(parameters).map(|(nominal, value)| nominal + share * (value - nominal)).collect();
+            let last = if step == CONTINUATION_STEPS { parameters } else { &between };
+            match self.find(&followed, last) {
+                Ok(found) => followed = found,
+                Err(_) => return at_once,
+            }
+        }
+        Ok(followed)
+    }
+
+    /// The equilibrium near a state.
+    ///
+    /// # Errors
+    /// Where none is found.
+    pub fn find(&self, state: &[f64], parameters: &[f64]) -> Result<Vec<f64>, NoEquilibrium> {
+        let layout = &self.program.layout;
+        let mut at = self.configuration(parameters);
+        at.set(layout.q.clone(), &state[layout.q.clone()]);
+        let mut last = f64::INFINITY;
+        let mut balance = self.balanced(&mut at);
+        for _ in 0..MAX_CORRECTIONS {
+            let Some(step) = balance.step() else { break };
+            let size = step.all.iter().fold(0.0_f64, |size, change| size.max(change.abs()));
+            let settles = size <= SETTLED || size <= STALLED && size >= 0.5 * last;
+            last = if step.is_newton { size } else { f64::INFINITY };
+            let before = at.get(layout.q.clone());
+            let mut share = 1.0;
+            for _ in 0..MOST_HALVINGS {
+                let places = before.iter().zip(&step.all).zip(&self.scale);
+                let moved: Vec<f64> = places.map(|((q, change), scale)| q + share * change * scale).collect();
+                at.set(layout.q.clone(), &moved);
+                balance = self.balanced(&mut at);
+                let work = -dot(&balance.linear.motion, &step.allowed);
+                if step.is_newton || work > -0.5 * step.work {
+                    break;
+                }
+                share *= 0.5;
+            }
+            if settles && step.is_newton {
+                let mut found = state.to_vec();
+                found[layout.q.clone()].copy_from_slice(&at.get(layout.q.clone()));
+                found[layout.v.start..layout.w.end].fill(0.0);
+                found[layout.lambda.clone()].copy_from_slice(&at.get(layout.lambda.clone()));
+                return Ok(found);
+            }
+        }
+        Err(balance.why(&self.scale))
+    }
+
+    /// What the stiffness says of an equilibrium's state.
+    pub fn stability(&self, state: &[f64], parameters: &[f64]) -> Stability {
+        Stability::of(&self.at(state, parameters).linearise())
+    }
+
+    /// The equations at an equilibrium's state.
+    pub fn at(&self, state: &[f64], parameters: &[f64]) -> Configuration<'_> {
+        let layout = &self.program.layout;
+        let mut at = self.configuration(parameters);
+        at.set(layout.q.clone(), &state[layout.q.clone()]);
+        at.set(layout.lambda.clone(), &state[layout.lambda.clone()]);
+        at
+    }
+
+    /// The equations with the multipliers that leave the smallest forces.
+    fn balanced(&self, at: &mut Configuration) -> Balance {
+        let (n, registers) = (self.scale.len(), self.program.layout.lambda.clone());
+        let linear = at.linearise();
+        let space = RowSpace::of(&linear.jacobian, n);
+        let change = space.multipliers(&linear.motion, registers.len());
+        let lambda: Vec<f64> = at.get(registers.clone()).iter().zip(&change).map(|(a, b)| a - b).collect();
+        at.set(registers, &lambda);
+        let linear = at.linearise();
+        let held = combined(&linear.jacobian, &lambda, n);
+        let applied = linear.motion.iter().zip(&held).map(|(all, held)| (all - held).abs()).fold(0.0, f64::max);
+        Balance { linear, space, applied }
+    }
+}
+
+/// The equations at a configuration, with the multipliers that leave the smallest forces.
+struct Balance {
+    linear: Linearised,
+    space: RowSpace,
+    /// The largest of the forces that no constraint exerts.
+    applied: f64,
+}
+
+/// A correction, per scale of the coordinates.
+struct Step {
+    all: Vec<f64>,
+    /// The part along motions that the constraints allow.
+    allowed: Vec<f64>,
+    /// Of the forces along that part.
+    work: f64,
+    /// Whether it is that of Newton's method.
+    is_newton: bool,
+}
+
+impl Balance {
+    /// `None` where a number is not finite.
+    fn step(&self) -> Option<Step> {
+        let Linearised { motion, constraint, stiffness, .. } = &self.linear;
+        let (basis, n) = (&self.space.null, motion.len());
+        let right: Vec<f64> = constraint.iter().map(|value| -value).collect();
+        let closing = self.space.shortest(&right);
+        let closing = if closing.is_empty() { vec![0.0; n] } else { closing };
+        let along = times(stiffness, &closing);
+        let missing: Vec<f64> = motion.iter().zip(&along).map(|(force, along)| force + along).collect();
+        let forces: Vec<f64> = basis.iter().map(|vector| -dot(vector, &missing)).collect();
+        let small = reduced(stiffness, basis);
+        if forces.iter().chain(small.iter()).chain(&closing).any(|value| !value.is_finite()) {
+            return None;
+        }
+        let longest = |parts: &[f64]| parts.iter().fold(0.0_f64, |size, part| size.max(part.abs()));
+        let (newton, is_regular) = newton(&small, &forces, NOTHING * self.applied.max(longest_of(stiffness)));
+        let allowed = combined(basis, &newton, n);
+        let (allowed, is_newton) = if is_regular && longest(&allowed) <= NEAR {
+            (allowed, true)
+        } else {
+            let downhill = combined(basis, &downhill(&small, &forces), n);
+            let share = (REACH / longest(&downhill)).min(1.0);
+            (downhill.iter().map(|part| share * part).collect(), false)
+        };
+        let shortened = (REACH / longest(&closing)).min(1.0);
+        let all = allowed.iter().zip(&closing).map(|(a, b)| a + shortened * b).collect();
+        let work = -dot(motion, &allowed);
+        Some(Step { all, allowed, work, is_newton: is_newton && shortened == 1.0 })
+    }
+
+    fn why(&self, scale: &[f64]) -> NoEquilibrium {
+        let (basis, n) = (&self.space.null, scale.len());
+        let forces: Vec<f64> = basis.iter().map(|vector| -dot(vector, &self.linear.motion)).collect();
+        let pushed = combined(basis, &forces, n);
+        let coordinate = (0..n).max_by(|&a, &b| pushed[a].abs().total_cmp(&pushed[b].abs())).unwrap_or(0);
+        let small = reduced(&self.linear.stiffness, basis);
+        let yields: Vec<f64> = times(&small, &forces).iter().map(|part| part.abs()).collect();
+        let largest = yields.iter().copied().fold(0.0, f64::max);
+        let is_free =
+            largest <= NOTHING * longest_of(&self.linear.stiffness).max(1e-300) * dot(&forces, &forces).sqrt();
+        NoEquilibrium {
+            coordinate,
+            force: pushed.get(coordinate).map_or(0.0, |force| force / scale[coordinate]),
+            is_free,
+        }
+    }
+}
+
+fn longest_of(matrix: &DMatrix<f64>) -> f64 {
+    matrix.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()))
+}
+
+/// K⁻¹ f, and whether there is one. Forces below `nothing` push nothing where nothing is stiff.
+fn newton(small: &DMatrix<f64>, forces: &[f64], nothing: f64) -> (Vec<f64>, bool) {
+    let is_symmetric = (small - small.transpose()).iter().all(|part| part.abs() <= NOTHING * longest_of(small));
+    if !is_symmetric && let Some(found) = small.clone().full_piv_lu().solve(&DVector::from_column_slice(forces)) {
+        return (found.iter().copied().collect(), true);
+    }
+    let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);
+    let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let mut is_regular = true;
+    let mut found = vec![0.0; forces.len()];
+    for (place, value) in eigen.eigenvalues.iter().enumerate() {
+        let vector = eigen.eigenvectors.column(place);
+        let force: f64 = vector.iter().zip(forces).map(|(a, b)| a * b).sum();
+        if value.abs() > NOTHING * largest {
+            found.iter_mut().zip(vector.iter()).for_each(|(sum, part)| *sum += force / value * part);
+        } else {
+            is_regular &= force.abs() <= nothing;
+        }
+    }
+    (found, is_regular)
+}
+
+/// The same with every eigenvalue positive.
+fn downhill(small: &DMatrix<f64>, forces: &[f64]) -> Vec<f64> {
+    let eigen = SymmetricEigen::new((small + small.transpose()) * 0.5);
+    let largest = eigen.eigenvalues.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let size = forces.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
+    // Nothing is softer than what the force moves by a scale.
+    let least = (NOTHING * largest).max(size);
+    let mut found = vec![0.0; forces.len()];
+    for (place, value) in eigen.eigenvalues.iter().enumerate() {
+        let vector = eigen.eigenvectors.column(place);
+        let force: f64 = vector.iter().zip(forces).map(|(a, b)| a * b).sum();
+        found.iter_mut().zip(vector.iter()).for_each(|(sum, part)| *sum += force / value.abs().max(least) * part);
+    }
+    found
+}

@@ -1,0 +1,12 @@
+//! Configurations at rest, and the equations about a configuration.
+//!
+//! - `configuration`: the equations at one configuration, with their derivatives, as small dense matrices;
+//! - `equilibrium`: where forces are in equilibrium; `jets`: how that changes with the parameters;
+//! - `stability`: the smallest eigenvalue there.
+
+mod configuration;
+mod equilibrium;
+mod jets;
+mod stability;
+
+pub use equilibrium::{Equilibrium, NoEquilibrium};

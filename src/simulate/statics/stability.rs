@@ -1,0 +1,69 @@
+//! Stability of an equilibrium: the smallest eigenvalue of K on the motions that the constraints allow, about M there.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::configuration::{Linearised, reduced};
+use crate::numerics::RowSpace;
+
+/// Eigenvalues below this share of the largest are zero.
+const INDIFFERENT: f64 = 1e-9;
+
+/// Share of M's trace that motions without mass get.
+const LEAST_MASS: f64 = 1e-12;
+
+/// What the stiffness says of an equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stability {
+    /// The smallest eigenvalue of K φ = ω² M φ, rad²/s²: negative where the equilibrium is unstable; infinite where nothing can move.
+    pub smallest: f64,
+    /// Numbers of the coordinates that move most in directions without stiffness.
+    pub indifferent: Vec<usize>,
+}
+
+impl Stability {
+    /// Of the symmetric part of K: what follows loads does work of its own, which is no stiffness.
+    pub fn of(linear: &Linearised) -> Self {
+        let space = RowSpace::of(&linear.jacobian, linear.motion.len());
+        if space.null.is_empty() {
+            return Self { smallest: f64::INFINITY, indifferent: Vec::new() };
+        }
+        let Some((values, vectors)) = eigen(&linear.stiffness, &linear.mass, &space.null) else {
+            return Self { smallest: f64::NAN, indifferent: Vec::new() };
+        };
+        let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let is_none = |value: &f64| value.abs() <= INDIFFERENT * largest;
+        let mut indifferent: Vec<usize> = (0..values.len())
+            .filter(|&place| is_none(&values[place]))
+            .filter_map(|place| {
+                let shape = &vectors[place];
+                (0..shape.len()).max_by(|&a, &b| shape[a].abs().total_cmp(&shape[b].abs()))
+            })
+            .collect();
+        indifferent.sort_unstable();
+        indifferent.dedup();
+        Self { smallest: values.iter().copied().fold(f64::INFINITY, f64::min), indifferent }
+    }
+}
+
+/// Eigenvalues of K φ = ω² M φ for the symmetric parts on a basis, and the shapes (n each) with φᵀ M φ = 1. `None` where a number is
+/// not finite.
+fn eigen(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>, basis: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
+    let (stiffness, mut mass) = (symmetric(reduced(stiffness, basis)), symmetric(reduced(mass, basis)));
+    let least = LEAST_MASS * mass.trace();
+    (0..basis.len()).for_each(|place| mass[(place, place)] += least);
+    let root = mass.cholesky()?.unpack();
+    let half = root.solve_lower_triangular(&stiffness)?;
+    let scaled = symmetric(root.solve_lower_triangular(&half.transpose())?);
+    if scaled.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let eigen = SymmetricEigen::new(scaled);
+    let shapes = root.tr_solve_lower_triangular(&eigen.eigenvectors)?;
+    let n = basis[0].len();
+    let shape = |column: usize| {
+        let part: Vec<f64> = shapes.column(column).iter().copied().collect();
+        crate::numerics::combined(basis, &part, n)
+    };
+    Some((eigen.eigenvalues.iter().copied().collect(), (0..basis.len()).map(shape).collect()))
+}

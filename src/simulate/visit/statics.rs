@@ -1,0 +1,19 @@
+//! The equilibrium of a sample: its outputs at rest, and its smallest eigenvalue.
+
+use super::Visit;
+use crate::numerics::Sample;
+use crate::simulate::error::SimulationError;
+use crate::simulate::simulator::Simulator;
+
+impl Simulator {
+    pub(super) fn visit_equilibrium(&self, sample: &Sample) -> Result<Visit, SimulationError> {
+        let Some(equilibrium) = &self.equilibrium else { return Ok(Visit::default()) };
+        let state = self.equilibrium_of(equilibrium, sample)?;
+        let mut values = equilibrium.at(&state, sample).outputs();
+        // The last is the smallest eigenvalue.
+        if let Some(last) = values.last_mut() {
+            *last = equilibrium.stability(&state, sample).smallest;
+        }
+        Ok(Visit { values, stop: None })
+    }
+}

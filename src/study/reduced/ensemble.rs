@@ -1,0 +1,211 @@
+//! Reduced outputs as an ensemble of one row, whose coordinates are the channels: what bounds outputs bounds these too.
+//!
+//! The samples of rows are those of reduced outputs. What each is reduced to is kept, so that it is not simulated twice.
+
+use std::collections::BTreeMap;
+use std::ops::Range as Rows;
+use std::sync::{Mutex, PoisonError};
+
+use symdiff::jet::JetSpace;
+use symdiff::taylor_model::ModelSpace;
+
+use super::plan::Plan;
+use crate::methods::{self, Ensemble, EnsembleError, Lost, Observed, Sampling, Simulated, Until};
+use crate::numerics::{ParameterBox, Sample};
+use crate::simulate::Schedule;
+
+/// Most numbers that are kept.
+const MOST_KEPT: usize = 1 << 24;
+
+/// A schedule: number of its steps and its longest one's bits.
+pub type Steps = (usize, u64);
+
+/// The steps of a schedule.
+pub fn steps_of(schedule: &Schedule) -> Steps {
+    (schedule.steps_before(schedule.rows - 1), schedule.longest_step().to_bits())
+}
+
+/// What samples were reduced to.
+#[derive(Debug)]
+pub struct Store {
+    pub plan: Plan,
+    /// By steps and the bits of the parameters.
+    kept: Mutex<BTreeMap<(Steps, Vec<u64>), Vec<f64>>>,
+}
+
+fn bits(sample: &Sample) -> Vec<u64> {
+    sample.iter().map(|value| value.to_bits()).collect()
+}
+
+impl Store {
+    /// Of nothing yet.
+    pub fn new(plan: Plan) -> Self {
+        Self { plan, kept: Mutex::default() }
+    }
+
+    /// Keeps what samples were reduced to, channel by channel, sample by sample.
+    pub fn keep(&self, steps: Steps, samples: &[Sample], values: &[f64]) {
+        // What is kept is whole, whoever panicked.
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        for (place, sample) in samples.iter().enumerate() {
+            if kept.len() * (self.plan.channels.len() + sample.len()) < MOST_KEPT {
+                let channels = values.iter().skip(place).step_by(samples.len()).copied().collect();
+                kept.insert((steps, bits(sample)), channels);
+            }
+        }
+    }
+
+    /// What a sample was reduced to.
+    pub fn get(&self, steps: Steps, sample: &Sample) -> Option<Vec<f64>> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).get(&(steps, bits(sample))).cloned()
+    }
+
+    /// All samples of a schedule, in an order that does not depend on that of their simulations.
+    pub fn samples(&self, steps: Steps) -> Vec<(Sample, Vec<f64>)> {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let of = |((own, sample), channels): (&(Steps, Vec<u64>), &Vec<f64>)| {
+            (*own == steps).then(|| (sample.iter().map(|&bits| f64::from_bits(bits)).collect(), channels.clone()))
+        };
+        kept.iter().filter_map(of).collect()
+    }
+}
+
+/// An ensemble's reduced outputs.
+pub struct ReducedEnsemble<'a> {
+    motions: &'a dyn Ensemble,
+    store: &'a Store,
+    steps: Steps,
+    scales: Vec<f64>,
+}
+
+impl<'a> ReducedEnsemble<'a> {
+    /// Of motions that keep in the store what they are reduced to.
+    pub fn new(motions: &'a dyn Ensemble, store: &'a Store, schedule: &Schedule) -> Self {
+        Self { motions, store, steps: steps_of(schedule), scales: vec![1.0; store.plan.expanded] }
+    }
+
+    /// What is accumulated.
+    pub fn plan(&self) -> &Plan {
+        &self.store.plan
+    }
+
+    /// The channels of samples; NaN of those that do not reach the end.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn channels(&self, samples: &[Sample], finish: bool) -> Result<(Vec<Vec<f64>>, Simulated), EnsembleError> {
+        let unknown: Vec<Sample> =
+            samples.iter().filter(|sample| self.store.get(self.steps, sample).is_none()).cloned().collect();
+        let mut simulated = Simulated::default();
+        if !unknown.is_empty() {
+            let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish };
+            let own = self.motions.simulate(&unknown, sampling, &mut |_, _| ())?;
+            simulated = Simulated { stop: None, stopped: Vec::new(), missing: 0, ..own };
+        }
+        let nothing = || vec![f64::NAN; self.store.plan.channels.len()];
+        let found = samples.iter().map(|sample| self.store.get(self.steps, sample).unwrap_or_else(nothing)).collect();
+        Ok((found, simulated))
+    }
+}
+
+impl Ensemble for ReducedEnsemble<'_> {
+    fn domain(&self) -> &ParameterBox {
+        self.motions.domain()
+    }
+
+    fn outputs(&self) -> usize {
+        self.store.plan.values()
+    }
+
+    fn rows(&self) -> usize {
+        1
+    }
+
+    fn time(&self, _: usize) -> f64 {
+        self.motions.time(self.motions.rows() - 1)
+    }
+
+    fn rounding(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.motions.is_interrupted()
+    }
+
+    fn simulate(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, EnsembleError> {
+        let (channels, simulated) = self.channels(samples, sampling.finish)?;
+        let motions = if sampling.observed == Observed::Motion { 2 * self.scales.len() } else { 0 };
+        let mut block = vec![0.0; (motions + self.outputs()) * samples.len()];
+        let mut values = Vec::new();
+        for (place, (sample, channels)) in samples.iter().zip(&channels).enumerate() {
+            let coordinates = channels[..self.scales.len()].iter().take(motions);
+            coordinates.enumerate().for_each(|(line, &value)| block[line * samples.len() + place] = value);
+            self.store.plan.evaluate(channels, sample, &mut values);
+            for (line, &value) in values.iter().enumerate() {
+                block[(motions + line) * samples.len() + place] = value;
+            }
+        }
+        reduce(0..1, &block);
+        Ok(simulated)
+    }
+
+    fn jets(&self, _: &JetSpace, _: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {
+        Err("a reduced output has no Taylor polynomial: it has kinks".into())
+    }
+
+    fn obstacle_to_enclosure(&self) -> Option<String> {
+        Some("a reduced output".to_owned())
+    }
+
+    fn enclose(&self, _: &ModelSpace, _: &ParameterBox, _: &mut dyn FnMut(&[f64])) -> Option<Lost> {
+        None
+    }
+
+    fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
+    fn independent(&self, _: &[f64], _: &[f64], _: f64) -> Vec<usize> {
+        (0..self.scales.len()).collect()
+    }
+
+    fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
+        Ok(Box::new(Composition { plan: &self.store.plan, independent }))
+    }
+}
+
+/// Values from channels.
+struct Composition<'a> {
+    plan: &'a Plan,
+    independent: Vec<usize>,
+}
+
+impl methods::Closure for Composition<'_> {
+    fn independent(&self) -> &[usize] {
+        &self.independent
+    }
+
+    fn needs_velocities(&self) -> bool {
+        false
+    }
+
+    fn outputs(&self, _: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
+        let mut outputs = vec![0.0; self.plan.values() * count];
+        let (mut channels, mut own, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        for point in 0..count {
+            channels.clear();
+            channels.extend(self.independent.iter().map(|line| motion[line * count + point]));
+            own.clear();
+            own.extend(parameters.iter().skip(point).step_by(count));
+            self.plan.evaluate(&channels, &own, &mut values);
+            values.iter().enumerate().for_each(|(line, &value)| outputs[line * count + point] = value);
+        }
+        outputs
+    }
+}

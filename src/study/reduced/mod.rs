@@ -1,0 +1,254 @@
+//! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
+//!
+//! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
+//! what the methods see; `verdicts` decides requirements.
+
+mod ensemble;
+mod expand;
+mod plan;
+mod verdicts;
+
+pub(super) use ensemble::{Store, steps_of};
+pub(super) use expand::{expanded, shown};
+
+use super::conclude::{bands, contributions};
+use super::ensemble::Progress;
+use super::outcome::{Outcome, Results};
+use super::single::{Study, simulation_error, timed};
+use crate::methods::{
+    BandBuilder, BoundingMethod, Ensemble, Ensembles, Expand, Method, MethodResult, Observed, Sampling, Simulated,
+    Until, Validation,
+};
+use crate::model::ReducedOutput;
+use crate::numerics::{Range, Sample};
+use crate::results::{
+    Band, Contribution, MethodSummary, Occurrence, ReducedBand, ReducedContribution, ReducedSummary,
+    RequirementSummary, WorstCase,
+};
+use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+use ensemble::ReducedEnsemble;
+use plan::Plan;
+
+/// What was found of reduced outputs and requirements.
+#[derive(Default)]
+pub(super) struct Found {
+    pub reduced: Vec<ReducedSummary>,
+    pub requirements: Vec<RequirementSummary>,
+    /// What it took besides the samples of the outputs.
+    pub summary: Option<MethodSummary>,
+}
+
+/// What the methods found of each value, with what is common to all.
+struct Values<'a> {
+    results: &'a Results,
+    /// Whether something makes all bounds unreliable.
+    unreliable: bool,
+    contributions: Vec<Vec<Contribution>>,
+    /// Simulated samples with their values.
+    samples: Vec<(Sample, Vec<f64>)>,
+    /// Samples that reached the end.
+    whole: usize,
+}
+
+impl Study<'_> {
+    /// Plans what is accumulated during the motions, by the nominal one.
+    ///
+    /// # Errors
+    /// Where that cannot be assembled.
+    pub(super) fn plan_reduction(
+        &self,
+        schedule: &Schedule,
+        tolerance: Option<Controller>,
+    ) -> Result<(), SimulationError> {
+        let description = self.description;
+        if (description.reduced.is_empty() && description.requirements.is_empty()) || self.store.get().is_some() {
+            return Ok(());
+        }
+        let Divided { schedule, .. } = self.divided(schedule.clone());
+        let progress = Progress::new(usize::MAX, self.progress);
+        let motions = self.motions(&schedule, tolerance, &progress);
+        let (outputs, mut values) = (motions.outputs(), Vec::new());
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
+        let nominal = std::slice::from_ref(&self.domain.nominal);
+        motions.simulate(nominal, sampling, &mut |_, rows| values.extend_from_slice(rows)).map_err(simulation_error)?;
+        let times: Vec<f64> = (0..values.len() / outputs).map(|row| schedule.time(row)).collect();
+        let course = |output: usize| values.iter().skip(output).step_by(outputs).copied().collect::<Vec<f64>>();
+        self.store.get_or_init(|| Store::new(Plan::of(description, &times, &course)));
+        Ok(())
+    }
+
+    /// Bounds of reduced outputs and verdicts, from the samples of a schedule's bounds.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub(super) fn reduced(
+        &self,
+        rows: &Results,
+        tolerance: Option<Controller>,
+        progress: &Progress,
+    ) -> Result<Found, SimulationError> {
+        let Some(store) = self.store.get() else { return Ok(Found::default()) };
+        let begun = std::time::Instant::now();
+        let schedule = &rows.schedule;
+        let (halved, odd) = (schedule.refined(2), schedule.at_odds());
+        let finer = tolerance.map(|tolerance| tolerance.for_parts(2));
+        let motions = self.motions(schedule, tolerance, progress);
+        let [motions_halved, motions_odd] = [&halved, &odd].map(|schedule| self.motions(schedule, finer, progress));
+        let direct = ReducedEnsemble::new(&motions, store, schedule);
+        let with_halved = ReducedEnsemble::new(&motions_halved, store, &halved);
+        let with_odd = ReducedEnsemble::new(&motions_odd, store, &odd);
+        let ensembles =
+            Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
+        let results = self.bounds_of(ensembles, schedule, &halved)?;
+        let mut samples = Vec::new();
+        let all = store.samples(steps_of(schedule));
+        for (sample, channels) in &all {
+            let mut values = Vec::new();
+            store.plan.evaluate(channels, sample, &mut values);
+            if channels.iter().all(|value| value.is_finite()) {
+                samples.push((sample.clone(), values));
+            }
+        }
+        let values = Values {
+            unreliable: rows.unreliable_from().is_some(),
+            contributions: contributions(self, &results, 1),
+            whole: samples.len(),
+            samples,
+            results: &results,
+        };
+        let reduced = self.description.reduced.iter().enumerate();
+        let reduced = reduced.map(|place| self.summary_of(place, &values)).collect();
+        let requirements = self.verdicts(&values, rows, [&direct, &with_halved])?;
+        let simulations = motions.over() + motions_halved.over() + motions_odd.over();
+        let summary = (simulations > 0).then(|| MethodSummary {
+            method: "reduced outputs".to_owned(),
+            simulations,
+            steps: schedule.steps_before(schedule.rows - 1),
+            newton_iterations: 0,
+            rank_revealing_solves: 0,
+            order: None,
+            boxes: None,
+            expanded_outputs: Vec::new(),
+            seconds: Some(begun.elapsed().as_secs_f64()),
+        });
+        Ok(Found { reduced, requirements, summary })
+    }
+
+    /// What each sampled method finds of all values.
+    fn bounds_of(
+        &self,
+        ensembles: Ensembles,
+        schedule: &Schedule,
+        halved: &Schedule,
+    ) -> Result<Results, SimulationError> {
+        let ensemble = ensembles.direct;
+        let nominal = self.nominal_values(ensemble)?;
+        let (nominal, ()) = timed(schedule, "nominal", || Ok((nominal, ())))?;
+        let mut results = Results {
+            schedule: schedule.clone(),
+            unresolved_from: None,
+            damped: Vec::new(),
+            nominal,
+            singular: Vec::new(),
+            validation: None,
+            methods: Vec::new(),
+            halved: Vec::new(),
+            internal: Vec::new(),
+            found: Found::default(),
+        };
+        let mut request = self.request.clone();
+        if request.is_empty() {
+            return Ok(results);
+        }
+        if request.methods().iter().all(|(method, _)| !method.about().is_sampled) {
+            request.ask(Method::Chebyshev, &super::single::problem(self.description, &self.simulator));
+        }
+        // Channels are to reduced outputs what coordinates are to outputs.
+        if let Some(chebyshev) = &mut request.chebyshev {
+            chebyshev.expand = Expand::Coordinates;
+        }
+        let sampled = request.methods().into_iter().filter(|(method, _)| method.about().is_sampled);
+        let sampled: Vec<(Method, &dyn BoundingMethod)> = sampled.collect();
+        let summary = MethodSummary { method: "validation".to_owned(), ..results.nominal.summary.clone() };
+        if self.domain.dimension() == 0 {
+            let known = (&results.nominal.result.bands[..], 1);
+            let validation = Validation::of_nominal(ensembles, known).map_err(simulation_error)?;
+            for (method, _) in sampled {
+                let known = |range: &Range| if range.lower.is_nan() { f64::NAN } else { 0.0 };
+                let own = &results.nominal.result;
+                let surrogate = own.bands.iter().map(|ranges| ranges.iter().map(known).collect()).collect();
+                let result = MethodResult { surrogate, ..own.clone() };
+                results.methods.push((method, timed(schedule, method.name(), || Ok((result, ())))?.0));
+            }
+            results.validation = Some((validation, summary));
+            return Ok(results);
+        }
+        let validation =
+            Validation::run(ensembles, Observed::Motion, self.request.degree()).map_err(simulation_error)?;
+        let bound = |ensemble: &dyn Ensemble, schedule: &Schedule| {
+            let of_method = |&(method, own): &(Method, &dyn BoundingMethod)| {
+                let bound = || Ok((own.bound(ensemble, &validation, &request).map_err(simulation_error)?, ()));
+                Ok((method, timed(schedule, method.name(), bound)?.0))
+            };
+            sampled.iter().map(of_method).collect::<Result<Vec<(Method, Outcome)>, SimulationError>>()
+        };
+        results.methods = bound(ensemble, schedule)?;
+        if self.certify_time {
+            results.halved = bound(ensembles.halved, halved)?;
+        }
+        results.validation = Some((validation, summary));
+        Ok(results)
+    }
+
+    /// The nominal motion's values as bands without width.
+    fn nominal_values(&self, ensemble: &dyn Ensemble) -> Result<MethodResult, SimulationError> {
+        let mut bands = BandBuilder::new(ensemble.outputs(), 1);
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: true };
+        let nominal = std::slice::from_ref(&self.domain.nominal);
+        let mut take = |_, values: &[f64]| {
+            for (place, &value) in values.iter().enumerate() {
+                bands.set(0, place, Range { lower: value, upper: value }, 0.0);
+            }
+        };
+        ensemble.simulate(nominal, sampling, &mut take).map_err(simulation_error)?;
+        Ok(bands.finish(0, Simulated::default()))
+    }
+
+    fn summary_of(&self, (place, reduced): (usize, &ReducedOutput), values: &Values) -> ReducedSummary {
+        let band = |band: Band| ReducedBand {
+            method: band.method.name().to_owned(),
+            lower: band.lower[0],
+            upper: band.upper[0],
+            error: band.error.total[0],
+            surrogate: band.error.surrogate,
+            time: band.error.time,
+            unresolved: band.error.unresolved[0] || values.unreliable,
+        };
+        let of_parameter = |contribution: &Contribution| ReducedContribution {
+            parameter: contribution.parameter.clone(),
+            main: contribution.main[0],
+            total: contribution.total[0],
+            width_without: contribution.width_without[0],
+        };
+        let mut contributions: Vec<ReducedContribution> =
+            values.contributions.get(place).into_iter().flatten().map(of_parameter).collect();
+        contributions.retain(|contribution| contribution.total.is_finite());
+        contributions.sort_by(|a, b| b.total.total_cmp(&a.total));
+        let known = || values.samples.iter().filter(|(_, values)| !values[place].is_nan());
+        let case =
+            |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
+        let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
+        let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
+        let occurs = Occurrence { samples: known().count(), of: values.whole };
+        ReducedSummary {
+            name: reduced.name.clone(),
+            of: reduced.text.clone(),
+            unit: reduced.unit.clone(),
+            nominal: values.results.nominal.result.bands[place][0].lower,
+            bands: bands(self, values.results, place, 1).into_iter().map(band).collect(),
+            contributions,
+            worst: least.zip(greatest).map(|(least, greatest)| [least, greatest]),
+            occurs: (occurs.samples < occurs.of).then_some(occurs),
+        }
+    }
+}

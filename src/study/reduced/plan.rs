@@ -1,0 +1,369 @@
+//! Channels of a motion, and how reduced outputs follow from them.
+//!
+//! A maximum over the time has a kink over the box where it changes place. The time is therefore cut between the local extremes of the
+//! nominal motion: the extreme in each window is a channel of its own, which the surrogate expands, and the maximum is the largest of
+//! the channels' polynomials, kinks included. So it is with events: the windows lie around the humps in which they can occur.
+
+use symdiff::{Builder, Expr, Formula, Graph};
+
+use crate::model::{Description, ParameterValue, ReducedKind, ReducedOutput, Requirement};
+use crate::simulate::{Accumulation, Channel};
+
+/// Most windows of a reduced output: a motion with more extremes has them two by two in one.
+const MOST_WINDOWS: usize = 8;
+
+/// A dip between two humps cuts the time where it is deeper than this share of the range.
+const DEEP: f64 = 0.02;
+
+/// What is accumulated, and what follows from it.
+#[derive(Debug)]
+pub struct Plan {
+    /// Those that the surrogate expands, then those that are only looked up.
+    pub channels: Vec<Channel>,
+    /// Number of those that the surrogate expands.
+    pub expanded: usize,
+    /// Reduced outputs, then margins of requirements.
+    values: Vec<Value>,
+    /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
+    whens: Vec<Vec<(usize, usize)>>,
+}
+
+/// The extremes of an output in each window: value and time.
+#[derive(Debug)]
+struct Humps {
+    heights: Vec<usize>,
+    times: Vec<usize>,
+}
+
+/// How a value follows from channels.
+#[derive(Debug)]
+enum Value {
+    Greatest(Vec<usize>),
+    Least(Vec<usize>),
+    /// Greatest less least.
+    Range(Vec<usize>, Vec<usize>),
+    Magnitude(Vec<usize>, Vec<usize>),
+    /// A channel over a length of time.
+    Mean(usize, f64),
+    Rms(usize, f64),
+    /// The time in the window with the largest height times the sign.
+    TimeOf(Humps, f64),
+    First(Humps),
+    Last(Humps),
+    /// The same, from the beginning where there is none, unknown where it lasts to the end.
+    Settling(Humps, f64, f64),
+    Overshoot {
+        greatest: Vec<usize>,
+        least: Vec<usize>,
+        start: usize,
+        target: usize,
+    },
+    /// The least of formulas of reduced outputs (by number) and parameters.
+    Formulas(Box<Formulas>),
+}
+
+/// Formulas of reduced outputs and parameters.
+#[derive(Debug)]
+struct Formulas {
+    graph: Graph,
+    roots: Vec<Expr>,
+    reduced: Vec<Expr>,
+    parameters: Vec<Expr>,
+}
+
+/// Makes channels.
+struct Planner<'a> {
+    channels: Vec<Channel>,
+    /// Nominal course of an output in the rows, and their times.
+    nominal: &'a dyn Fn(usize) -> Vec<f64>,
+    times: &'a [f64],
+}
+
+impl Plan {
+    /// Of a model whose formulas have their places among its outputs, given the nominal course of an output in rows at `times`.
+    pub fn of(description: &Description, times: &[f64], nominal: &dyn Fn(usize) -> Vec<f64>) -> Self {
+        let end = description.simulation.duration;
+        let mut planner = Planner { channels: Vec::new(), nominal, times };
+        let mut values: Vec<Value> = description.reduced.iter().map(|reduced| planner.reduced(reduced, end)).collect();
+        values.extend(description.requirements.iter().map(|own| planner.margin(description, own)));
+        let expanded = planner.channels.len();
+        let when = |own: &Requirement| match own.times {
+            Some((from, to)) if from < to => {
+                let mut add = |place: usize, accumulation| planner.add(place, accumulation, (from, to));
+                let of = |&place: &usize| (add(place, Accumulation::WhenLeast), add(place, Accumulation::Least));
+                own.places.iter().map(of).collect()
+            }
+            _ => Vec::new(),
+        };
+        let whens = description.requirements.iter().map(when).collect();
+        Self { channels: planner.channels, expanded, values, whens }
+    }
+
+    /// Number of values.
+    pub fn values(&self) -> usize {
+        self.values.len()
+    }
+
+    /// All values of a motion with these channels and parameters.
+    pub fn evaluate(&self, channels: &[f64], parameters: &[f64], into: &mut Vec<f64>) {
+        into.clear();
+        for value in &self.values {
+            let found = value.of(channels, parameters, into);
+            into.push(found);
+        }
+    }
+
+    /// When a requirement is nearest to failing in a motion; `None` of what has no time.
+    pub fn when(&self, (number, own): (usize, &Requirement), channels: &[f64]) -> Option<f64> {
+        let (from, to) = own.times?;
+        if from == to {
+            return Some(from);
+        }
+        let nearest = self.whens[number].iter().min_by(|a, b| channels[a.1].total_cmp(&channels[b.1]))?;
+        Some(channels[nearest.0])
+    }
+}
+
+impl Planner<'_> {
+    fn add(&mut self, output: usize, accumulation: Accumulation, (from, to): (f64, f64)) -> usize {
+        let channel = Channel { output, accumulation, from, to };
+        // Two values may need the same.
+        self.channels.iter().position(|known| *known == channel).unwrap_or_else(|| {
+            self.channels.push(channel);
+            self.channels.len() - 1
+        })
+    }
+
+    /// A channel in each window.
+    fn windowed(&mut self, output: usize, accumulation: Accumulation, windows: &[(f64, f64)]) -> Vec<usize> {
+        windows.iter().map(|&window| self.add(output, accumulation, window)).collect()
+    }
+
+    fn extremes(&mut self, output: usize, sign: f64, span: (f64, f64)) -> Vec<usize> {
+        let windows = self.windows(output, sign, span);
+        let accumulation = if sign > 0.0 { Accumulation::Greatest } else { Accumulation::Least };
+        self.windowed(output, accumulation, &windows)
+    }
+
+    fn humps(&mut self, output: usize, accumulation: Accumulation, span: (f64, f64)) -> Humps {
+        let sign = if accumulation == Accumulation::WhenLeast { -1.0 } else { 1.0 };
+        let windows = self.windows(output, sign, span);
+        let height = if sign > 0.0 { Accumulation::Greatest } else { Accumulation::Least };
+        Humps { heights: self.windowed(output, height, &windows), times: self.windowed(output, accumulation, &windows) }
+    }
+
+    fn reduced(&mut self, reduced: &ReducedOutput, end: f64) -> Value {
+        let span = (reduced.from, reduced.to);
+        let length = reduced.to.min(end) - reduced.from;
+        let own = reduced.places[0];
+        let at = |time: f64| (time, time);
+        match reduced.kind {
+            ReducedKind::Range => Value::Range(self.extremes(own, 1.0, span), self.extremes(own, -1.0, span)),
+            ReducedKind::Max => Value::Greatest(self.extremes(own, 1.0, span)),
+            ReducedKind::Min => Value::Least(self.extremes(own, -1.0, span)),
+            ReducedKind::MaxAbs => Value::Magnitude(self.extremes(own, 1.0, span), self.extremes(own, -1.0, span)),
+            ReducedKind::Value => Value::Mean(self.add(own, Accumulation::AtEnd, at(reduced.to)), 1.0),
+            ReducedKind::Mean => Value::Mean(self.add(own, Accumulation::Integral, span), length),
+            ReducedKind::Integral => Value::Mean(self.add(own, Accumulation::Integral, span), 1.0),
+            ReducedKind::Rms => Value::Rms(self.add(own, Accumulation::IntegralOfSquare, span), length),
+            ReducedKind::TimeOfMax => Value::TimeOf(self.humps(own, Accumulation::WhenGreatest, span), 1.0),
+            ReducedKind::TimeOfMin => Value::TimeOf(self.humps(own, Accumulation::WhenLeast, span), -1.0),
+            ReducedKind::When => Value::First(self.humps(own, Accumulation::First, span)),
+            ReducedKind::LastWhen => Value::Last(self.humps(own, Accumulation::Last, span)),
+            ReducedKind::Settling => {
+                Value::Settling(self.humps(own, Accumulation::Last, span), reduced.from, reduced.to.min(end))
+            }
+            ReducedKind::Overshoot => {
+                let target = reduced.places.get(1).copied().unwrap_or(own);
+                Value::Overshoot {
+                    greatest: self.extremes(own, 1.0, span),
+                    least: self.extremes(own, -1.0, span),
+                    start: self.add(own, Accumulation::AtEnd, at(reduced.from)),
+                    target: self.add(target, Accumulation::AtEnd, at(reduced.to)),
+                }
+            }
+            ReducedKind::Straightness => {
+                let path = Accumulation::Zone { abscissa: own };
+                Value::Mean(self.add(reduced.places[1], path, span), 1.0)
+            }
+        }
+    }
+
+    /// The least slack.
+    fn margin(&mut self, description: &Description, own: &Requirement) -> Value {
+        match own.times {
+            Some((from, to)) if from == to => Value::Least(self.windowed_at(&own.places, from)),
+            Some(span) => Value::Least(own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect()),
+            None => Value::Formulas(Box::new(Formulas::of(description, &own.slacks))),
+        }
+    }
+
+    fn windowed_at(&mut self, places: &[usize], at: f64) -> Vec<usize> {
+        places.iter().map(|&place| self.add(place, Accumulation::AtEnd, (at, at))).collect()
+    }
+
+    /// The time cut at the dips between the humps of the nominal course times `sign`.
+    fn windows(&self, output: usize, sign: f64, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
+        let rows: Vec<usize> = (0..self.times.len()).filter(|&row| (from..=to).contains(&self.times[row])).collect();
+        let all = (self.nominal)(output);
+        let value = |place: usize| sign * all[rows[place]];
+        let (low, high) = (0..rows.len())
+            .map(value)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        // A dip with the depth below the lower one of the humps beside it.
+        let mut dips: Vec<(usize, f64)> = Vec::new();
+        for place in 1..rows.len().saturating_sub(1) {
+            if value(place) < value(place - 1) && value(place) <= value(place + 1) {
+                dips.push((place, 0.0));
+            }
+        }
+        loop {
+            let edges: Vec<usize> =
+                [0].into_iter().chain(dips.iter().map(|dip| dip.0)).chain([rows.len().saturating_sub(1)]).collect();
+            let tops: Vec<f64> =
+                edges.windows(2).map(|pair| (pair[0]..=pair[1]).map(value).fold(f64::NEG_INFINITY, f64::max)).collect();
+            for (number, dip) in dips.iter_mut().enumerate() {
+                dip.1 = tops[number].min(tops[number + 1]) - value(dip.0);
+            }
+            let shallowest = (0..dips.len()).min_by(|&a, &b| dips[a].1.total_cmp(&dips[b].1));
+            match shallowest {
+                Some(number) if dips[number].1 < DEEP * (high - low) || dips.len() >= MOST_WINDOWS => {
+                    dips.remove(number)
+                }
+                _ => break,
+            };
+        }
+        let cuts = dips.iter().map(|&(place, _)| self.times[rows[place]]);
+        let edges: Vec<f64> = [from].into_iter().chain(cuts).chain([to]).collect();
+        edges.windows(2).map(|pair| (pair[0], pair[1])).collect()
+    }
+}
+
+impl Value {
+    /// Given the values before it.
+    fn of(&self, channels: &[f64], parameters: &[f64], before: &[f64]) -> f64 {
+        // NaN is passed on.
+        let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+        let greatest = |places: &[usize]| places.iter().map(|&place| channels[place]).fold(f64::NEG_INFINITY, larger);
+        let least = |places: &[usize]| -places.iter().map(|&place| -channels[place]).fold(f64::NEG_INFINITY, larger);
+        match self {
+            Self::Greatest(places) => greatest(places),
+            Self::Least(places) => least(places),
+            Self::Range(above, below) => greatest(above) - least(below),
+            Self::Magnitude(above, below) => larger(greatest(above), -least(below)),
+            Self::Mean(place, length) => channels[*place] / length,
+            // A polynomial may be below zero where a square is not.
+            Self::Rms(place, length) => (channels[*place] / length).max(0.0).sqrt(),
+            Self::TimeOf(humps, sign) => {
+                let height = |window: usize| sign * channels[humps.heights[window]];
+                let best = (0..humps.heights.len()).fold(0, |a, b| if height(b) > height(a) { b } else { a });
+                channels[humps.times[best]]
+            }
+            Self::First(humps) => humps.occurring(channels).next().unwrap_or(f64::NAN),
+            Self::Last(humps) => humps.occurring(channels).last().unwrap_or(f64::NAN),
+            Self::Settling(humps, from, end) => match humps.occurring(channels).last() {
+                None => *from,
+                Some(last) if last >= *end => f64::NAN,
+                Some(last) => last,
+            },
+            Self::Overshoot { greatest: above, least: below, start, target } => {
+                let (start, target) = (channels[*start], channels[*target]);
+                let beyond = if start <= target { greatest(above) - target } else { target - least(below) };
+                larger(0.0, beyond)
+            }
+            Self::Formulas(formulas) => formulas.least(parameters, before),
+        }
+    }
+}
+
+impl Humps {
+    /// Times of the windows in which the event occurs.
+    fn occurring(&self, channels: &[f64]) -> impl Iterator<Item = f64> {
+        // NaN occurs, and is passed on.
+        let occurs = |&(height, _): &(&usize, &usize)| !(channels[*height] < 0.0);
+        self.heights.iter().zip(&self.times).filter(occurs).map(|(_, &time)| channels[time])
+    }
+}
+
+impl Formulas {
+    fn of(description: &Description, formulas: &[Formula]) -> Self {
+        let builder = Builder::new();
+        let reduced: Vec<_> = description.reduced.iter().map(|reduced| builder.variable(&reduced.name)).collect();
+        let mut known = Vec::new();
+        let mut parameters = Vec::new();
+        for parameter in &description.parameters {
+            let value = match &parameter.value {
+                ParameterValue::Interval { .. } => {
+                    let symbol = builder.variable(&parameter.name);
+                    parameters.push(symbol.expr());
+                    symbol
+                }
+                ParameterValue::Formula(formula) => build(&builder, formula, &known, &[]),
+            };
+            known.push((parameter.name.as_str(), value));
+        }
+        let names: Vec<_> =
+            description.reduced.iter().map(|own| own.name.as_str()).zip(reduced.iter().copied()).collect();
+        let roots = formulas.iter().map(|formula| build(&builder, formula, &known, &names).expr()).collect();
+        let reduced = reduced.iter().map(|reduced| reduced.expr()).collect();
+        Self { roots, reduced, parameters, graph: builder.finish() }
+    }
+
+    /// The least of them.
+    fn least(&self, parameters: &[f64], reduced: &[f64]) -> f64 {
+        let values = self.graph.evaluate(&self.roots, |symbol| {
+            let of = |symbols: &[Expr], values: &[f64]| {
+                symbols.iter().position(|own| *own == symbol).and_then(|place| values.get(place).copied())
+            };
+            of(&self.reduced, reduced).or_else(|| of(&self.parameters, parameters)).unwrap_or(f64::NAN)
+        });
+        values.into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+    }
+}
+
+/// A formula of names that are known; NaN for others, of which the reader leaves none.
+fn build<'g>(
+    builder: &'g Builder,
+    formula: &Formula,
+    known: &[(&str, symdiff::Scalar<'g>)],
+    reduced: &[(&str, symdiff::Scalar<'g>)],
+) -> symdiff::Scalar<'g> {
+    let find = |name: &str| {
+        let found = reduced.iter().chain(known).find(|(own, _)| *own == name).map(|(_, value)| *value);
+        Ok::<_, std::convert::Infallible>(found.unwrap_or_else(|| builder.number(f64::NAN)))
+    };
+    let Ok(built) = formula.build(builder, find);
+    built
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_is_cut_between_the_highest_humps() {
+        let times: Vec<f64> = (0..=400).map(|row| 0.05 * f64::from(row)).collect();
+        let course =
+            |frequency: f64| times.iter().map(|time| symdiff::math::cos(frequency * time)).collect::<Vec<f64>>();
+        let windows = |frequency: f64| {
+            let nominal = |_| course(frequency);
+            Planner { channels: vec![], nominal: &nominal, times: &times }.windows(0, 1.0, (0.0, f64::INFINITY))
+        };
+        let found = windows(1.0);
+        // Dips at π, 3π and 5π.
+        assert_eq!(found.len(), 4);
+        assert!((found[0].1 - std::f64::consts::PI).abs() < 0.05 && found[3].1.is_infinite());
+        assert_eq!(windows(5.0).len(), MOST_WINDOWS);
+        assert_eq!(windows(0.1), [(0.0, f64::INFINITY)]);
+    }
+
+    #[test]
+    fn an_event_that_does_not_occur_is_unknown() {
+        let humps = || Humps { heights: vec![0, 1], times: vec![2, 3] };
+        assert_eq!(Value::First(humps()).of(&[-0.1, 0.2, 1.0, 2.0], &[], &[]), 2.0);
+        assert_eq!(Value::Last(humps()).of(&[0.1, -0.2, 1.0, 2.0], &[], &[]), 1.0);
+        assert!(Value::First(humps()).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]).is_nan());
+        assert_eq!(Value::Settling(humps(), 0.5, 9.0).of(&[-0.1, -0.2, 1.0, 2.0], &[], &[]), 0.5);
+        assert_eq!(Value::TimeOf(humps(), 1.0).of(&[0.3, 0.2, 1.0, 2.0], &[], &[]), 1.0);
+    }
+}

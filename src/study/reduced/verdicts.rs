@@ -1,0 +1,213 @@
+//! Whether requirements are fulfilled.
+
+use super::super::conclude::bands;
+use super::super::outcome::Results;
+use super::super::single::{Study, simulation_error};
+use super::Values;
+use super::ensemble::ReducedEnsemble;
+use crate::methods::Method;
+use crate::model::Requirement;
+use crate::numerics::{Sample, step_error};
+use crate::results::{Band, LimitLine, NearestCase, RequirementSummary, Verdict, foremost};
+use crate::simulate::SimulationError;
+
+/// What the estimate of a sample's time error may be wrong by.
+const SAFETY: f64 = 1.25;
+
+/// Rounds of the search for a sample that fails, where bounds say that there may be one, and its first distance (of ξ).
+const ROUNDS: usize = 6;
+const REACH: f64 = 0.5;
+
+impl Study<'_> {
+    /// The verdict of each requirement.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub(super) fn verdicts(
+        &self,
+        values: &Values,
+        rows: &Results,
+        ensembles: [&ReducedEnsemble; 2],
+    ) -> Result<Vec<RequirementSummary>, SimulationError> {
+        let requirements = self.description.requirements.iter().enumerate();
+        requirements.map(|own| self.verdict(own, values, rows, ensembles)).collect()
+    }
+
+    fn verdict(
+        &self,
+        (number, own): (usize, &Requirement),
+        values: &Values,
+        rows: &Results,
+        ensembles: [&ReducedEnsemble; 2],
+    ) -> Result<RequirementSummary, SimulationError> {
+        let place = self.description.reduced.len() + number;
+        let bands = bands(self, values.results, place, 1);
+        let band = foremost(&bands, |band: &Band| !band.error.unresolved[0]);
+        let lower = band.map_or(f64::NAN, |band| band.lower[0]);
+        let error = band.map_or(f64::NAN, |band| band.error.total[0]);
+        let is_reliable = band.is_some_and(|band| !band.error.unresolved[0]) && !values.unreliable;
+        let holds = is_reliable && lower - error >= 0.0;
+        let nearest = self.nearest((number, own), values, holds, ensembles)?;
+        let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
+        let verdict = match (fails, holds) {
+            (true, _) => Verdict::Violated,
+            (false, true) => Verdict::Holds,
+            (false, false) => Verdict::Undecided,
+        };
+        let margin = match &nearest {
+            Some(case) if lower.is_nan() || case.margin < lower => case.margin,
+            _ => lower,
+        };
+        let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
+        let [surrogate, time] = [band.map(|band| band.error.surrogate), band.map(|band| band.error.time)];
+        let decides = (verdict == Verdict::Undecided)
+            .then(|| decides(lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_reliable));
+        Ok(RequirementSummary {
+            name: own.name.clone(),
+            text: own.text.clone(),
+            unit: own.unit.clone(),
+            verdict,
+            certified: verdict == Verdict::Holds && self.is_certified(own, rows),
+            margin,
+            percent: limit.map(|limit| 100.0 * margin / limit),
+            error,
+            surrogate: surrogate.unwrap_or(f64::NAN),
+            time: time.unwrap_or(f64::NAN),
+            method: band.map_or("nominal", |band| band.method.name()).to_owned(),
+            nearest,
+            decides,
+            limits: self.limit_lines(own),
+        })
+    }
+
+    /// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best are tried too.
+    fn nearest(
+        &self,
+        (number, own): (usize, &Requirement),
+        values: &Values,
+        holds: bool,
+        [direct, halved]: [&ReducedEnsemble; 2],
+    ) -> Result<Option<NearestCase>, SimulationError> {
+        let place = self.description.reduced.len() + number;
+        // What has no value fails more than what has one.
+        let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
+        let best = values.samples.iter().min_by(|a, b| key(a.1[place]).total_cmp(&key(b.1[place])));
+        let Some((sample, found)) = best else { return Ok(None) };
+        let mut best = (sample.clone(), found[place]);
+        if !holds && best.1 > 0.0 {
+            self.search(place, &mut best, direct)?;
+        }
+        let sample = std::slice::from_ref(&best.0);
+        let of = |ensemble: &ReducedEnsemble| {
+            let (mut channels, _) = ensemble.channels(sample, true).map_err(simulation_error)?;
+            let channels = channels.swap_remove(0);
+            let mut all = Vec::new();
+            ensemble.plan().evaluate(&channels, &sample[0], &mut all);
+            Ok::<_, SimulationError>((all[place], channels))
+        };
+        let ((margin, channels), (finer, _)) = (of(direct)?, of(halved)?);
+        let error = SAFETY * step_error(&[margin], &[finer]);
+        let xi = self.domain.xi(&best.0);
+        let known = self.simulator.system.parameters.iter().zip(best.0.iter());
+        Ok(Some(NearestCase {
+            parameters: best.0.to_vec(),
+            margin,
+            error: if error.is_nan() && !margin.is_nan() { f64::INFINITY } else { error },
+            time: direct.plan().when((number, own), &channels),
+            corner: !xi.is_empty() && xi.iter().all(|xi| (xi.abs() - 1.0).abs() < 1e-12),
+            settings: known.map(|(parameter, value)| setting(&parameter.name, *value, &parameter.unit)).collect(),
+            command: String::new(),
+        }))
+    }
+
+    /// Looks for a smaller margin around the best sample, along each axis and towards the corners of the box.
+    fn search(
+        &self,
+        place: usize,
+        best: &mut (Sample, f64),
+        ensemble: &ReducedEnsemble,
+    ) -> Result<(), SimulationError> {
+        let mut reach = REACH;
+        for _ in 0..ROUNDS {
+            let xi = self.domain.xi(&best.0);
+            let mut around: Vec<Vec<f64>> = Vec::new();
+            for axis in 0..xi.len() {
+                for sign in [-1.0, 1.0] {
+                    let mut next = xi.clone();
+                    next[axis] = (next[axis] + sign * reach).clamp(-1.0, 1.0);
+                    around.push(next);
+                }
+            }
+            let samples = self.domain.samples(&around);
+            let (channels, _) = ensemble.channels(&samples, true).map_err(simulation_error)?;
+            let mut values = Vec::new();
+            let before = best.1;
+            for (sample, channels) in samples.iter().zip(&channels) {
+                ensemble.plan().evaluate(channels, sample, &mut values);
+                if values[place] < best.1 {
+                    *best = (sample.clone(), values[place]);
+                }
+            }
+            if best.1 < 0.0 {
+                break;
+            }
+            if best.1 >= before {
+                reach *= 0.5;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether certified bounds of every slack prove the requirement. They are of the steps' ends, which are rows only where each row is
+    /// a step.
+    fn is_certified(&self, own: &Requirement, rows: &Results) -> bool {
+        let Some((from, to)) = own.times else { return false };
+        let Some((_, outcome)) = rows.methods.iter().find(|(method, _)| *method == Method::Certified) else {
+            return false;
+        };
+        let schedule = &rows.schedule;
+        let counts: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
+        let seen = schedule.steps_per_row() == Some(1) || (from == to && !counts.is_empty());
+        let holds = |place: &usize| counts.iter().all(|&row| outcome.result.bands[*place][row].lower >= 0.0);
+        seen && !counts.is_empty() && own.places.iter().all(holds)
+    }
+
+    /// Constant limits of outputs and reduced outputs.
+    fn limit_lines(&self, own: &Requirement) -> Vec<LimitLine> {
+        let end = self.description.simulation.duration;
+        let (from, to) = own.times.unwrap_or((0.0, end));
+        let is_output = |name: &str| {
+            self.description.outputs.iter().any(|output| output.name == name)
+                || self.description.reduced.iter().any(|reduced| reduced.name == name)
+        };
+        let line = |limit: &crate::model::Limit| LimitLine {
+            output: limit.of.clone(),
+            value: limit.value,
+            is_upper: limit.is_upper,
+            from,
+            to: to.min(end),
+        };
+        own.limits.iter().filter(|limit| is_output(&limit.of)).map(line).collect()
+    }
+}
+
+/// What would decide a requirement.
+fn decides(lower: f64, [surrogate, time]: [f64; 2], is_reliable: bool) -> String {
+    if !is_reliable || !(surrogate + time).is_finite() {
+        return "reliable bounds: a higher order, shorter steps, or `bounds: { tolerance: … }`".to_owned();
+    }
+    if lower + surrogate + time < 0.0 {
+        return "a sample that fails: the bounds pass the limit, but no simulated sample does; a higher order"
+            .to_owned();
+    }
+    match surrogate > time {
+        true => format!("a higher order, or a smaller tolerance: the surrogate's error is {surrogate:.1e}"),
+        false => format!("shorter steps: their error is {time:.1e}"),
+    }
+}
+
+/// `l1=0.15 m`
+fn setting(name: &str, value: f64, unit: &str) -> String {
+    let number = format!("{value:?}");
+    format!("{name}={} {unit}", number.strip_suffix(".0").unwrap_or(&number)).trim_end().to_owned()
+}

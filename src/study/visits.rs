@@ -1,0 +1,87 @@
+//! Analyses without time steps as an ensemble: each sample goes to every configuration by itself.
+
+use std::ops::Range as Rows;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+use symdiff::jet::JetSpace;
+
+use super::ensemble::{Motions, stopped_at};
+use crate::methods::{Effort, JET_WORK, Sampling, Simulated, Until};
+use crate::numerics::Sample;
+use crate::simulate::{SimulationError, Stop, Visit};
+
+/// Samples that are visited at once.
+const BLOCK: usize = 256;
+
+impl Motions<'_> {
+    fn times(&self) -> Vec<f64> {
+        (0..self.schedule.rows).map(|row| self.schedule.time(row)).collect()
+    }
+
+    /// Visits samples; `reduce` gets all rows at once. Rows that a sample does not reach are NaN.
+    pub(super) fn visit(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        let (times, outputs, count) = (self.times(), self.simulator.system.outputs.len(), samples.len());
+        let rows = times.len();
+        let mut values = vec![f64::NAN; rows * outputs * count];
+        let mut stops: Vec<Stop> = Vec::new();
+        let mut visited = 0;
+        for (block, samples) in samples.chunks(BLOCK).enumerate() {
+            let is_over = (self.interrupted)() && !sampling.finish;
+            if is_over || !stops.is_empty() && sampling.until == Until::FirstStop {
+                break;
+            }
+            let found: Vec<Result<Visit, SimulationError>> =
+                samples.par_iter().map(|sample| self.simulator.visit(sample, &times)).collect();
+            for (place, visit) in found.into_iter().enumerate() {
+                let (visit, sample) = (visit?, block * BLOCK + place);
+                for (line, value) in visit.values.into_iter().enumerate() {
+                    values[line * count + sample] = value;
+                }
+                stops.extend(visit.stop.map(|stop| Stop { sample, ..stop }));
+            }
+            visited += samples.len();
+            self.progress.advance(samples.len() * rows);
+        }
+        self.over.fetch_add(visited, Ordering::Relaxed);
+        let stop = stops.iter().copied().min_by_key(|stop| (stop.row, stop.sample));
+        let missing = match stop {
+            _ if visited < count && stop.is_none() => rows,
+            Some(stop) if sampling.until == Until::FirstStop => rows - stop.row,
+            _ => 0,
+        };
+        reduce(0..rows, &values);
+        Ok(Simulated {
+            effort: Effort::default(),
+            stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
+            stopped: stops.iter().map(|stop| stop.sample).collect(),
+            missing,
+            ..Simulated::default()
+        })
+    }
+
+    /// The same of the one jet about `center`.
+    pub(super) fn visit_jets(
+        &self,
+        space: &JetSpace,
+        center: &Sample,
+        half_widths: &[f64],
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        let times = self.times();
+        let mut next = 0;
+        let stop = self.simulator.visit_jets(space, center, half_widths, &times, &mut |values| {
+            reduce(next..next + 1, values);
+            self.progress.advance(JET_WORK * (space.monomials().order() + 1));
+            next += 1;
+        })?;
+        self.over.fetch_add(1, Ordering::Relaxed);
+        let stop = stop.map(|stop| (stopped_at(&stop), center.clone()));
+        Ok(Simulated { stop, missing: times.len() - next, ..Simulated::default() })
+    }
+}
