@@ -65,6 +65,8 @@ pub(super) struct Done {
     pub files: Vec<PathBuf>,
     /// Where they are; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
+    /// What was taken from where simulations are stored, and what was added, in words.
+    pub stored: Option<String>,
 }
 
 impl Request {
@@ -177,7 +179,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted).map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
     let status = if summary.failure.is_some() { Status::Failed } else { resolution(&bounds) };
-    Ok(Done { status, bounds, summary, files, folder })
+    let stored = request.store.as_ref().zip(store.as_ref()).map(|(kept, store)| kept.told(store));
+    Ok(Done { status, bounds, summary, files, folder, stored })
 }
 
 /// The folder for an interrupted run's results beside those of a complete one.

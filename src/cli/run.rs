@@ -87,6 +87,9 @@ fn run_and_report(job: &Job, request: &Request, console: &mut Console) -> Result
     let done = run_one(job, request)?;
     if !request.quiet {
         console.print(&overview(&done.summary, &done.folder, &done.files))?;
+        if let Some(stored) = &done.stored {
+            console.print(&format!("  {stored}\n"))?;
+        }
     }
     report(&done, console);
     Ok(done.status)

@@ -15,6 +15,7 @@ mod readme;
 mod rooms;
 mod scenes;
 mod schema;
+mod shards;
 mod shells;
 mod show;
 mod snapshot;

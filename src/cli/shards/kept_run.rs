@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
+use crate::cli::console::count;
 use crate::cli::job::{Job, Request};
 use crate::store::{Missing, PartStore, Shard, StoreError};
 
@@ -39,6 +40,13 @@ impl KeptRun {
         let deferred = store.deferred();
         self.shards.borrow_mut().extend(Shard::of(job.number, job.scene.as_deref(), &deferred));
         deferred.is_empty() && !self.plans
+    }
+
+    /// What was taken from the folder, and what was added.
+    pub fn told(&self, store: &PartStore) -> String {
+        let (found, simulated) = store.counts();
+        let found = count(found - simulated.min(found), "part", "parts");
+        format!("{found} from {}, {} simulated", self.folder.display(), count(simulated, "part", "parts"))
     }
 
     /// All that was left.
