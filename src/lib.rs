@@ -23,6 +23,7 @@ mod numerics;
 mod reduce;
 mod results;
 mod simulate;
+mod store;
 mod study;
 mod syntax;
 

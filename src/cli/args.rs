@@ -9,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::listing::Listing;
+use super::shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 use super::{Failure, status};
 use crate::model::Override;
 use crate::results::Method;
@@ -44,6 +45,16 @@ pub(super) enum Command {
     Snapshot(SnapshotArgs),
     /// Explain what a model is compiled to and what is left out, or list what the language offers.
     Explain(ExplainArgs),
+    /// Cut what models ask for into shards, for many machines.
+    Plan(PlanArgs),
+    /// Simulate a shard of a plan; what is there already is skipped.
+    Shard(ShardArgs),
+    /// Print which shards of a plan are missing.
+    Status(StatusArgs),
+    /// Make the results of a plan from its shards, the very files that `mbint run` writes.
+    Merge(MergeArgs),
+    /// Submit the shards of a plan, and its merging, to a cluster.
+    Submit(SubmitArgs),
     /// Print the JSON Schema of model files, for editors.
     Schema,
     /// Write a small, commented model as a starting point.
@@ -125,10 +136,14 @@ pub(super) struct RunArgs {
     /// Run again whenever a model, its URDF or its tables change, and print which bounds moved; Ctrl-C ends it.
     #[arg(short, long, conflicts_with = "format")]
     pub watch: bool,
+
+    /// Keep all simulations in this folder, and take from it those that are there: a run that was interrupted goes on.
+    #[arg(long, value_name = "DIR")]
+    pub store: Option<PathBuf>,
 }
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
-const MOST_THREADS: i64 = 1024;
+pub(super) const MOST_THREADS: i64 = 1024;
 
 const RUN_HELP: &str = "\
 Writes bounds.csv (columns: t; NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
@@ -229,6 +244,11 @@ pub(super) struct SetArgs {
 }
 
 impl SetArgs {
+    /// Of overrides that were read already.
+    pub fn new(set: Vec<Override>) -> Self {
+        Self { set }
+    }
+
     /// What is set; every parameter at most once.
     ///
     /// # Errors
@@ -395,7 +415,7 @@ pub(super) enum Color {
 }
 
 /// Methods by their names.
-fn methods() -> impl TypedValueParser<Value = Method> {
+pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(Method::ALL.map(Method::name))
         .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("no such method"))
 }

@@ -7,11 +7,14 @@ use super::args::RunArgs;
 use super::console::Console;
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
+use super::shards::KeptRun;
 use super::verdicts::{self, Junit};
 use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, write_results};
 use crate::model::{Description, Override};
 use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
+use crate::simulate::SimulationError;
+use crate::store::{Missing, PartStore};
 use crate::study;
 
 /// The arguments of a run, checked.
@@ -31,6 +34,8 @@ pub(super) struct Request {
     timings: bool,
     overwrite: bool,
     settings: Settings,
+    /// Where simulations are kept, if they are.
+    pub store: Option<KeptRun>,
 }
 
 /// How a model is run.
@@ -63,6 +68,10 @@ pub(super) struct Job {
     pub share: usize,
     /// Whether the report is beside the results, and not that of all scenes.
     pub page: bool,
+    /// Number of the model among those of the command.
+    pub number: usize,
+    /// Name of its scene, where it has some.
+    pub scene: Option<String>,
 }
 
 /// Outcome of a run.
@@ -73,6 +82,8 @@ pub(super) struct Done {
     pub files: Vec<PathBuf>,
     /// Where they are; an interrupted run does not replace a complete one.
     pub folder: PathBuf,
+    /// What was taken from where simulations are stored, and what was added, in words.
+    pub stored: Option<String>,
 }
 
 /// Told of each job, with its model's file, how it ended.
@@ -98,6 +109,7 @@ impl Request {
             junit: args.junit.map(Junit::new),
             timings: args.timings,
             overwrite: args.overwrite,
+            store: args.store.map(|folder| KeptRun::new(folder, Missing::Simulate)),
             settings: Settings {
                 methods: if methods.is_empty() { None } else { Some(methods) },
                 threads: args.threads.map(usize::from),
@@ -112,7 +124,7 @@ impl Request {
 
 impl Request {
     /// What the results depend on.
-    fn asked(&self) -> RunRequest {
+    pub fn asked(&self) -> RunRequest {
         let methods = self.settings.methods.as_ref();
         RunRequest {
             set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
@@ -140,6 +152,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,
+    store: Option<&PartStore>,
     begun: &(dyn Fn() + Sync),
 ) -> Result<(Bounds, Summary), Failure> {
     let progress = Progress::new(&model.name, !settings.quiet);
@@ -153,20 +166,37 @@ pub(super) fn bounds(
         certify_time: settings.certify_time,
         skip_infeasible: settings.skip_infeasible,
         costly: settings.yes,
+        store,
         progress: &set_progress,
         stage: &|stage| progress.stage(stage),
         interrupted: &interrupt::asked,
     };
     study::run(model, options).map_err(|error| {
         let message = format!("{}: {error}", model.name);
-        if matches!(error, study::RunError::Costly(_)) { Failure::Wrong(message) } else { Failure::Failed(message) }
+        match error {
+            study::RunError::Costly(_) => Failure::Wrong(message),
+            study::RunError::Simulation(SimulationError::Deferred) => Failure::Deferred,
+            _ => Failure::Failed(message),
+        }
     })
 }
 
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
     // From the first rows on there is something to keep.
-    let (bounds, mut summary) = bounds(&job.model, &request.settings, &|| interrupt::keep_results(true))?;
+    let store = request.store.as_ref().map(|kept| kept.open(job, request)).transpose();
+    let store = store.map_err(|error| failed(&error))?;
+    let found = bounds(&job.model, &request.settings, store.as_ref(), &|| interrupt::keep_results(true));
+    if let (Some(kept), Some(store)) = (&request.store, &store)
+        && !kept.close(job, store)
+    {
+        found.map_or_else(
+            |failure| if matches!(failure, Failure::Deferred) { Ok(()) } else { Err(failure) },
+            |_| Ok(()),
+        )?;
+        return Err(Failure::Deferred);
+    }
+    let (bounds, mut summary) = found?;
     verdicts::add_commands(&mut summary, &job.path, &request.overrides);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
@@ -181,7 +211,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     interrupt::keep_results(false);
     let resolved = || resolution(&bounds).max(verdicts::status(&summary));
     let status = if summary.failure.is_some() { Status::Failed } else { resolved() };
-    Ok(Done { status, bounds, summary, files, folder })
+    let stored = request.store.as_ref().zip(store.as_ref()).map(|(kept, store)| kept.told(store));
+    Ok(Done { status, bounds, summary, files, folder, stored })
 }
 
 /// The folder for an interrupted run's results beside those of a complete one.

@@ -16,11 +16,12 @@ mod methods;
 mod new;
 mod overview;
 mod progress;
-mod report;
 mod record;
+mod report;
 mod run;
 mod run_command;
 mod scenes;
+mod shards;
 mod show;
 mod snapshot;
 mod statistics;
@@ -49,18 +50,24 @@ enum Failure {
     Wrong(String),
     /// The command was valid and failed.
     Failed(String),
+    /// Simulations are left to shards.
+    Deferred,
 }
 
 impl Failure {
     /// Reports it, and tells what it comes to.
     fn report(&self, console: &Console) -> Status {
-        console.error(self.message());
+        // What comes next is said once for all models.
+        if !matches!(self, Self::Deferred) {
+            console.error(self.message());
+        }
         self.status()
     }
 
     fn message(&self) -> &str {
         match self {
             Self::Wrong(message) | Self::Failed(message) => message,
+            Self::Deferred => "simulations are left to shards",
         }
     }
 
@@ -68,6 +75,7 @@ impl Failure {
         match self {
             Self::Wrong(_) => Status::Wrong,
             Self::Failed(_) => Status::Failed,
+            Self::Deferred => Status::Deferred,
         }
     }
 }
@@ -109,6 +117,11 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Explain(args) => explain::explain(&args, console),
         Command::Report(args) => report::report(&args, console),
         Command::Show(args) => show::show(&args, console),
+        Command::Plan(args) => shards::plan(args, console),
+        Command::Shard(args) => shards::shard(&args, console),
+        Command::Status(args) => shards::status(&args, console),
+        Command::Merge(args) => shards::merge(args, console),
+        Command::Submit(args) => shards::submit(&args, console),
         Command::Schema => console.print(&crate::model::schema()).map(|()| Status::Done),
         Command::New(args) => new::new(&args, console),
         Command::Man(args) => man::man(&args, console),

@@ -13,7 +13,6 @@ fn errors(errors: &[ErrorSummary]) -> String {
     const MOST: usize = 24;
     let mut table = Table::new([
         ("bounds", Align::Left),
-        ("unit", Align::Left),
         ("largest width", Align::Right),
         ("error", Align::Right),
         ("of the surrogate", Align::Right),

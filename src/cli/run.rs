@@ -96,6 +96,9 @@ fn run_and_report(
     let done = done?;
     if !request.quiet {
         console.print(&overview(&done.summary, &done.folder, &done.files))?;
+        if let Some(stored) = &done.stored {
+            console.print(&format!("  {stored}\n"))?;
+        }
     }
     report(&done, console);
     Ok(done.status)
@@ -111,7 +114,7 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
     let several = request.models.len() > 1;
     let mut taken: HashMap<String, PathBuf> = HashMap::new();
     let mut work = Vec::new();
-    for load::Model { path, name, scenes, all, files, texts } in models {
+    for (number, load::Model { path, name, scenes, all, files, texts }) in models.into_iter().enumerate() {
         let stem = file_stem(&name);
         // Some systems do not distinguish upper and lower case.
         if let Some(other) = taken.insert(stem.to_lowercase(), path.clone()) {
@@ -135,7 +138,9 @@ fn work(models: Vec<load::Model>, request: &Request) -> Result<Vec<Work>, Failur
             let folder = scene.as_ref().map_or_else(|| folder.clone(), |scene| folder.join(file_stem(scene)));
             let (files, texts, beside) = (files.clone(), texts.clone(), beside.clone());
             let page = alone || scene.is_none();
-            (scene, Job { model, path: path.clone(), folder, files, texts, beside, share, page })
+            let path = path.clone();
+            let job = Job { model, path, folder, files, texts, beside, share, page, number, scene: scene.clone() };
+            (scene, job)
         });
         let first = jobs.next();
         let scenes: Vec<(String, Job)> = match first {

@@ -72,7 +72,8 @@ impl Scenes {
             .iter()
             .filter_map(|ran| Some(SceneBounds { name: ran.scene, bounds: &ran.done.as_ref()?.bounds }))
             .collect();
-        let files = if found.is_empty() {
+        // What compares scenes is written when all are there.
+        let files = if found.is_empty() || status == Status::Deferred {
             Ok(Vec::new())
         } else {
             write_scenes(&self.folder, &self.model, &self.all, &found, request.report)

@@ -76,7 +76,7 @@ impl Job {
 
     /// The snapshot's table as it is now.
     fn table(&self, settings: &Settings) -> Result<String, Failure> {
-        let (bounds, summary) = job::bounds(&self.model, settings, &|| ())?;
+        let (bounds, summary) = job::bounds(&self.model, settings, None, &|| ())?;
         match summary.failure {
             Some(failure) => Err(Failure::Failed(format!("{}: {failure}", self.model.name))),
             None => Ok(snapshot_table(&bounds)),

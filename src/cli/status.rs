@@ -10,6 +10,7 @@ pub(super) enum Status {
     Done,
     Unresolved,
     NotMet,
+    Deferred,
     Failed,
     Interrupted,
     Wrong,
@@ -25,8 +26,8 @@ pub(super) struct StatusDocs {
 
 impl Status {
     /// All of them, by their codes.
-    pub const ALL: [Self; 6] =
-        [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::NotMet, Self::Interrupted];
+    pub const ALL: [Self; 7] =
+        [Self::Done, Self::Failed, Self::Wrong, Self::Unresolved, Self::NotMet, Self::Deferred, Self::Interrupted];
 
     pub const fn docs(self) -> StatusDocs {
         let (code, meaning, results) = match self {
@@ -50,6 +51,12 @@ impl Status {
                 4,
                 "what was to hold does not: a requirement is violated; with `mbint snapshot --check`, a bound is not as it was recorded, or nothing is recorded",
                 "all results; `mbint snapshot --check` writes nothing",
+            ),
+            // EX_TEMPFAIL of sysexits.h.
+            Self::Deferred => (
+                75,
+                "`mbint merge`: another round of shards is needed; `mbint status`: shards are missing",
+                "results of the models that are complete",
             ),
             // 128 and SIGINT's number, as a shell reports it.
             Self::Interrupted => (

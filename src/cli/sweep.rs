@@ -95,7 +95,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
             return Err(Failure::Wrong(format!("{}: {message}", args.model.display())));
         }
         name.clone_from(&description.name);
-        let point = match job::bounds(&description, &settings, &|| ()) {
+        let point = match job::bounds(&description, &settings, None, &|| ()) {
             Ok((_, summary)) => {
                 status = status.max(verdicts::status(&summary));
                 SweepPoint { values, summary: Some(summary) }

@@ -70,7 +70,8 @@ pub fn contribution_columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json:
         #[serde(skip_serializing_if = "Option::is_none")]
         parameter: Option<&'b str>,
     }
-    let time = Column { column: "t".to_owned(), quantity: "time", unit: "s".to_owned(), output: None, method: None };
+    let (unit, display) = ("s".to_owned(), None);
+    let time = Column { column: "t".to_owned(), quantity: "time", unit, display, output: None, method: None };
     let mut columns = vec![OfParameter { column: time, parameter: None }];
     for (output, contributions) in bounds.outputs.iter().zip(&bounds.contributions) {
         for contribution in contributions {
@@ -79,6 +80,7 @@ pub fn contribution_columns_json(bounds: &Bounds) -> Result<Vec<u8>, serde_json:
                     column: format!("{}.{}.{quantity}", output.name, contribution.parameter),
                     quantity,
                     unit: unit.to_owned(),
+                    display: output.display.clone().filter(|_| quantity == "width_without"),
                     output: Some(output.name.clone()),
                     method: None,
                 };

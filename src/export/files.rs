@@ -10,10 +10,11 @@ use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
 use crate::export::owned::{PAGE, SCHEMA, SUMMARY, owned};
 use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_json, page};
-use crate::export::stems::unique_stems;
 use crate::export::statistics::statistics_csv;
+use crate::export::stems::unique_stems;
 use crate::export::{
-    bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg, reduced_csv,
+    bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
+    reduced_csv,
 };
 use crate::grammar::display_unit::DisplayUnit;
 use crate::results::{Bounds, OutputBounds, PeakSummary, Provenance, Summary};

@@ -7,8 +7,8 @@ use svg::node::element::{Group, Line, Path as Curve, Polygon, Rectangle, Text, T
 
 use super::csv::number;
 use super::error::ExportError;
-use super::files::unique_stems;
 use super::folder::AtomicFiles;
+use super::stems::unique_stems;
 use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, foremost};
 
 /// A parameter that is swept.

@@ -5,10 +5,11 @@
 
 use std::ops::Range as Rows;
 
+use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use crate::numerics::{ParameterBox, Sample};
+use crate::numerics::{ParameterBox, Sample, ScanBounds, ScanGrid};
 
 /// Why an ensemble has no result at all, in its own terms.
 pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
@@ -17,7 +18,7 @@ pub type EnsembleError = Box<dyn std::error::Error + Send + Sync>;
 pub const JET_WORK: usize = 5;
 
 /// What is kept of a simulation in each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Observed {
     /// The outputs.
     Outputs,
@@ -26,7 +27,7 @@ pub enum Observed {
 }
 
 /// How long samples are simulated together of which one stops early.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Until {
     /// Until the first stops: without it the others are of no use.
     FirstStop,
@@ -46,7 +47,7 @@ pub struct Sampling {
 }
 
 /// Why a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StopCause {
     /// A step did not converge; the equation with the largest residual.
     NotConverged {
@@ -65,7 +66,7 @@ pub enum StopCause {
 }
 
 /// Where a sample stopped.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// Number of the sample.
     pub sample: usize,
@@ -85,7 +86,7 @@ impl Stop {
 }
 
 /// What simulations took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// Newton iterations.
     pub iterations: u64,
@@ -101,7 +102,7 @@ impl std::ops::AddAssign for Effort {
 }
 
 /// What came of samples that were simulated together.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulated {
     /// What they took.
     pub effort: Effort,
@@ -113,6 +114,8 @@ pub struct Simulated {
     pub stop: Option<(Stop, Sample)>,
     /// Numbers of all samples that stopped.
     pub stopped: Vec<usize>,
+    /// What outputs were reduced to, channel by channel, sample by sample; empty where they are not, and in a sum.
+    pub reduced: Vec<f64>,
     /// Rows at the end that are not known.
     pub missing: usize,
 }
@@ -175,6 +178,14 @@ pub trait Ensemble: Sync {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
 
+    /// Simulates all samples of a scan's grid to the end, and bounds the outputs over them.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce))
+    }
+
     /// Taylor coefficients of the outputs about the middle of the box, in scaled parameters; `reduce` gets the rows of a block
     /// and their coefficients (row, output, monomial).
     ///
@@ -200,6 +211,43 @@ pub trait Ensemble: Sync {
     /// # Errors
     /// Where it cannot be compiled.
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn Closure + '_>, EnsembleError>;
+}
+
+/// Bounds of the outputs over a scan's grid, by simulations of its shards. A part of the grid bounds nothing: after an interruption
+/// all rows are missing.
+///
+/// # Errors
+/// The simulations' own.
+pub fn scan<E>(
+    ensemble: &(impl Ensemble + ?Sized),
+    grid: &ScanGrid,
+    mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
+) -> Result<(ScanBounds, Simulated), E> {
+    let mut bounds = ScanBounds::new(ensemble.rows(), ensemble.outputs(), grid.points());
+    let mut total = Simulated::default();
+    for first in grid.shards() {
+        if ensemble.is_interrupted() {
+            total.missing = ensemble.rows();
+            break;
+        }
+        let samples = grid.samples(first, ensemble.domain());
+        total.add(first, scan_shard(&mut bounds, first, &samples, &mut simulate)?);
+    }
+    Ok((bounds, total))
+}
+
+/// Adds consecutive samples of a scan's grid, from number `first` on, to its bounds.
+///
+/// # Errors
+/// The simulation's own.
+pub fn scan_shard<E>(
+    bounds: &mut ScanBounds,
+    first: usize,
+    samples: &[Sample],
+    mut simulate: impl FnMut(&[Sample], Sampling, &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, E>,
+) -> Result<Simulated, E> {
+    let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+    simulate(samples, sampling, &mut |rows, values| bounds.observe(rows, (first, samples.len()), values))
 }
 
 /// Number of values that a row has for each sample.

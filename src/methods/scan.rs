@@ -2,17 +2,13 @@
 //! go beyond them between the samples.
 
 use super::BoundsRequest;
-use super::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until};
+use super::ensemble::{Ensemble, EnsembleError};
 use super::registry::{About, BoundingMethod, CostCurve, Refusal, Registered, Varied};
 use super::request::{self, MOST_SIMULATIONS, Problem};
 use super::result::{BandBuilder, MethodResult};
 use super::validation::Validation;
 use crate::grammar::{Fields, Reader, SymbolTable};
-use crate::numerics::{ParameterBox, Sample, ScanBounds, TensorGrid, largest};
-
-/// Fewest and most samples that are simulated at once.
-const SHARD: usize = 2048;
-const LARGEST_SHARD: usize = 16384;
+use crate::numerics::{ParameterBox, ScanGrid, largest};
 
 /// Most points along an axis.
 pub(super) const MOST_POINTS: usize = 1_000_000;
@@ -118,27 +114,9 @@ impl BoundingMethod for Scan {
         validation: &Validation,
         _: &BoundsRequest,
     ) -> Result<MethodResult, EnsembleError> {
-        let grid = TensorGrid::full_factorial(&self.points);
+        let grid = ScanGrid::new(&self.points);
         let (outputs, rows) = (ensemble.outputs(), ensemble.rows());
-        let mut bounds = ScanBounds::new(rows, outputs, &self.points);
-        let mut total = Simulated::default();
-        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
-        // Slabs of the first axis stay together, so that neighbours do.
-        let slab = grid.len() / self.points.first().copied().unwrap_or(1);
-        let shard_size = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
-        for first in (0..grid.len()).step_by(shard_size) {
-            if ensemble.is_interrupted() {
-                // A part of the grid bounds nothing.
-                total.missing = rows;
-                break;
-            }
-            let sample = |index| ensemble.domain().sample(&grid.sample(index));
-            let shard: Vec<Sample> = (first..(first + shard_size).min(grid.len())).map(sample).collect();
-            let simulated = ensemble.simulate(&shard, sampling, &mut |rows, values| {
-                bounds.observe(rows, (first, shard.len()), values);
-            })?;
-            total.add(first, simulated);
-        }
+        let (bounds, total) = ensemble.scan(&grid)?;
         let mut bands = BandBuilder::new(outputs, rows);
         for (row, output) in (0..rows).flat_map(|row| (0..outputs).map(move |output| (row, output))) {
             let range = bounds.range(row, output);

@@ -4,8 +4,10 @@
 
 use std::ops::Deref;
 
+use serde::{Deserialize, Serialize};
+
 /// Values of the k parameters in their units: what one simulation runs with.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample(Vec<f64>);
 
 impl From<Vec<f64>> for Sample {

@@ -52,7 +52,7 @@ pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};
 pub use row_space::{RowSpace, combined, dot};
 pub use samples::{TensorGrid, corners, spread, step_validation, validation};
-pub use scan::ScanBounds;
+pub use scan::{ScanBounds, ScanGrid};
 pub use search::{ExtremeSearch, Extremes};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;

@@ -10,12 +10,60 @@
 use std::ops::Range as Rows;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use super::domain::{ParameterBox, Sample};
 use super::range::Range;
+use super::samples::TensorGrid;
+
+/// Fewest and most samples that are simulated at once.
+const SHARD: usize = 2048;
+const LARGEST_SHARD: usize = 16384;
+
+/// The samples of a scan, in shards of consecutive ones.
+#[derive(Clone, Debug)]
+pub struct ScanGrid {
+    grid: TensorGrid,
+    points: Vec<usize>,
+    shard: usize,
+}
+
+impl ScanGrid {
+    /// With so many points along each axis, both ends included.
+    pub fn new(points: &[usize]) -> Self {
+        let grid = TensorGrid::full_factorial(points);
+        // Slabs of the first axis stay together, so that neighbours do.
+        let slab = grid.len() / points.first().copied().unwrap_or(1);
+        let shard = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
+        Self { grid, points: points.to_vec(), shard }
+    }
+
+    /// Points along each axis, the last fastest.
+    pub fn points(&self) -> &[usize] {
+        &self.points
+    }
+
+    /// Number of samples.
+    #[allow(clippy::len_without_is_empty)] // every axis has a point
+    pub fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// Number of the first sample of each shard.
+    pub fn shards(&self) -> std::iter::StepBy<Rows<usize>> {
+        (0..self.grid.len()).step_by(self.shard)
+    }
+
+    /// The samples of the shard that begins with number `first`.
+    pub fn samples(&self, first: usize, domain: &ParameterBox) -> Vec<Sample> {
+        let end = (first + self.shard).min(self.grid.len());
+        (first..end).map(|index| domain.sample(&self.grid.sample(index))).collect()
+    }
+}
 
 /// Running bounds of every output at every time. Parts of a scan can be taken apart and merged in any order, with
 /// the same result to the bit.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScanBounds {
     outputs: usize,
     /// Points along each axis, the last fastest.
@@ -27,7 +75,7 @@ pub struct ScanBounds {
 }
 
 /// The least or largest value, and how far the response may go between the samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Extreme {
     value: f64,
     reach: f64,
@@ -52,6 +100,20 @@ impl ScanBounds {
             points: points.to_vec(),
             extremes: vec![EMPTY; times * outputs],
             gaps: vec![false; times * outputs],
+        }
+    }
+
+    /// Adds what another part of the same scan found.
+    ///
+    /// # Panics
+    /// If it has other rows or outputs.
+    pub fn merge(&mut self, part: &Self) {
+        assert_eq!(self.extremes.len(), part.extremes.len(), "parts of one scan");
+        for (mine, &theirs) in self.extremes.iter_mut().zip(&part.extremes) {
+            include(mine, theirs);
+        }
+        for (mine, theirs) in self.gaps.iter_mut().zip(&part.gaps) {
+            *mine |= theirs;
         }
     }
 

@@ -1,7 +1,6 @@
 //! What a run yields: bounds of every output over time.
 
 use crate::grammar::display_unit::DisplayUnit;
-use super::analysis::ResponsePoint;
 use crate::methods::Method;
 use crate::model::Analysis;
 use crate::numerics::BandError;

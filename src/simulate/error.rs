@@ -72,6 +72,15 @@ pub enum SimulationError {
         /// The sample.
         parameters: NamedValues,
     },
+    /// Simulations were left to shards.
+    #[error("simulations are missing")]
+    Deferred,
+    /// The folder of kept simulations cannot be used.
+    #[error("{message}")]
+    Store {
+        /// Why.
+        message: String,
+    },
     /// The program would have more operations than allowed.
     #[error("the equations take too many operations")]
     TooLong,

@@ -7,16 +7,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use super::price::instructions_of_step;
 use super::reduced::{Store, steps_of};
+use super::stored::Stored;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
 };
-use crate::numerics::{ParameterBox, Range, Sample};
+use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Closure, Controller, Counters, Enclosure, EnclosureError, ExplicitJets, ExtrapolatedJets, Integration,
-    JetRun, Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop,
-    choose_independent,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, ExplicitJets, ExtrapolatedJets,
+    Integration, JetRun, Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator,
+    SingularPass, Stop, choose_independent,
 };
 
 /// Values (rows × lines × samples) that one block holds.
@@ -59,10 +61,13 @@ pub(super) struct Motions<'a> {
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Where outputs are reduced to one number: keeps what samples are reduced to.
     store: Option<&'a Store>,
+    channels: &'a [Channel],
     /// Simulations that are over: at the end, or where they stopped.
     pub(super) over: AtomicUsize,
     /// Made when something is enclosed.
     certifier: OnceLock<Certifier<'a>>,
+    /// Where simulations are stored, if they are.
+    stored: Option<Stored<'a>>,
 }
 
 impl<'a> Motions<'a> {
@@ -77,21 +82,73 @@ impl<'a> Motions<'a> {
     ) -> Self {
         let over = AtomicUsize::new(0);
         let certifier = OnceLock::new();
-        Self { simulator, domain, schedule, tolerance, progress, interrupted, store: None, over, certifier }
+        let (store, stored, channels) = (None, None, &[][..]);
+        Self { simulator, domain, schedule, tolerance, progress, interrupted, store, channels, over, certifier, stored }
     }
 
     /// The same, which also reduces outputs to one number.
     pub fn keeping(self, store: Option<&'a Store>) -> Self {
-        Self { store, ..self }
+        Self { store, channels: store.map_or(&[], |store| &store.plan.channels), ..self }
+    }
+
+    /// The same, whose simulations are stored.
+    pub fn stored(self, stored: Option<Stored<'a>>) -> Self {
+        Self { stored, ..self }
+    }
+
+    /// The same, which reduces outputs to one number by these channels, for others to keep.
+    pub fn reducing(self, channels: &'a [Channel]) -> Self {
+        Self { channels, ..self }
+    }
+
+    /// By what outputs are reduced to one number.
+    pub fn channels(&self) -> &'a [Channel] {
+        self.channels
+    }
+
+    /// Keeps what outputs of samples were reduced to elsewhere.
+    pub fn keep_reduced(&self, samples: &[Sample], reduced: &[f64]) {
+        if let Some(store) = self.store.filter(|_| !reduced.is_empty()) {
+            store.keep(steps_of(self.schedule), samples, reduced);
+        }
+    }
+
+    /// Steps, and the tolerance of their local errors.
+    pub fn steps(&self) -> (&Schedule, Option<Controller>) {
+        (self.schedule, self.tolerance)
+    }
+
+    /// Instructions of a step of one sample.
+    pub fn instructions_of_step(&self) -> f64 {
+        instructions_of_step(self.simulator)
+    }
+
+    /// Rows of a block with so many lines of so many samples.
+    pub fn rows_a_block(lines: usize, samples: usize) -> usize {
+        (BLOCK / (lines * samples).max(1)).clamp(1, MOST_ROWS)
+    }
+
+    /// As [`Ensemble::simulate`], whether or not simulations are stored.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    pub fn simulate_here(
+        &self,
+        samples: &[Sample],
+        sampling: Sampling,
+        reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
+    ) -> Result<Simulated, SimulationError> {
+        if self.simulator.system.analysis.visits() {
+            return self.visit(samples, sampling, reduce);
+        }
+        let mut run = self.start(samples)?;
+        Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 
     /// Samples at their start.
     fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
         let run = SampleRun::start(self.simulator, samples, self.schedule)?;
-        Ok(match self.store {
-            Some(store) => run.reducing(&store.plan.channels),
-            None => run,
-        })
+        Ok(run.reducing(self.channels))
     }
 
     /// Simulations that are over: at the end, or where they stopped.
@@ -142,7 +199,7 @@ impl<'a> Motions<'a> {
             methods::Observed::Motion => Observed::Motion,
         };
         let Sampling { until, finish, .. } = sampling;
-        let rows_a_block = (BLOCK / (observed.count(self.simulator) * samples.len()).max(1)).clamp(1, MOST_ROWS);
+        let rows_a_block = Self::rows_a_block(observed.count(self.simulator), samples.len());
         let mut values = Vec::new();
         let mut stop: Option<Stop> = None;
         let mut stopped = Vec::new();
@@ -157,9 +214,8 @@ impl<'a> Motions<'a> {
             self.progress.advance(samples.len() * rows.len());
             next = rows.end;
         }
-        if let Some(store) = self.store.filter(|_| next == self.schedule.rows) {
-            store.keep(steps_of(self.schedule), samples, &run.reduced());
-        }
+        let reduced = if next == self.schedule.rows { run.reduced() } else { Vec::new() };
+        self.keep_reduced(samples, &reduced);
         if next == self.schedule.rows || !goes_on(&stop) {
             self.over.fetch_add(samples.len(), Ordering::Relaxed);
         }
@@ -174,6 +230,7 @@ impl<'a> Motions<'a> {
             worst_ratio: run.largest_error_ratio().map(|(sample, ratio)| (samples[sample].clone(), ratio)),
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped,
+            reduced,
             missing: self.schedule.rows - reached,
         }
     }
@@ -289,11 +346,17 @@ impl Ensemble for Motions<'_> {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError> {
-        if self.simulator.system.analysis.visits() {
-            return Ok(self.visit(samples, sampling, reduce)?);
+        match &self.stored {
+            Some(stored) => Ok(stored.simulate(self, samples, sampling, reduce)?),
+            None => Ok(self.simulate_here(samples, sampling, reduce)?),
         }
-        let mut run = self.start(samples)?;
-        Ok(self.advance(&mut run, samples, sampling, reduce))
+    }
+
+    fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
+        match &self.stored {
+            Some(stored) => Ok(stored.scan(self, grid)?),
+            None => methods::scan(self, grid, |samples, sampling, reduce| self.simulate(samples, sampling, reduce)),
+        }
     }
 
     fn jets(&self, space: &JetSpace, reduce: &mut dyn FnMut(Rows<usize>, &[f64])) -> Result<Simulated, EnsembleError> {

@@ -28,10 +28,12 @@ mod motion;
 mod outcome;
 mod price;
 mod reduced;
+mod shard;
 mod single;
 mod statistics;
 mod step_search;
 mod steps;
+mod stored;
 mod structure;
 mod subsystems;
 mod switches;
@@ -45,6 +47,7 @@ use crate::model::{Description, Stepping};
 use crate::reduce::Reduction;
 use crate::results::{Bounds, Summary};
 use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::store::PartStore;
 
 use subsystems::Prepared;
 
@@ -57,6 +60,7 @@ pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
+pub use shard::simulate_parts;
 pub use structure::structure;
 
 /// How to run.
@@ -71,6 +75,8 @@ pub struct Options<'a> {
     pub skip_infeasible: bool,
     /// Whether to run what takes long without being allowed by the model.
     pub costly: bool,
+    /// Where simulations are stored, if they are.
+    pub store: Option<&'a PartStore>,
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Told what is being done, in a few words, whenever something else begins.
@@ -88,6 +94,7 @@ impl Default for Options<'_> {
             certify_time: false,
             skip_infeasible: false,
             costly: true,
+            store: None,
             progress: &|_| (),
             stage: &|_| (),
             interrupted: &|| false,

@@ -2,7 +2,7 @@
 
 use super::single::Study;
 use crate::model::Stepping;
-use crate::simulate::Schedule;
+use crate::simulate::{Schedule, Simulator};
 
 /// Most simulations that run unasked.
 const MOST_SIMULATIONS: f64 = 20_000.0;
@@ -11,7 +11,7 @@ const MOST_SIMULATIONS: f64 = 20_000.0;
 const MOST_SECONDS: f64 = 60.0;
 
 /// Time of an instruction of one sample, s: a processor of today with all its lanes, so that what is refused does take so long.
-const INSTRUCTION: f64 = 2e-10;
+pub(super) const INSTRUCTION_SECONDS: f64 = 2e-10;
 
 /// Corrections of a step.
 const CORRECTIONS: f64 = 2.0;
@@ -29,6 +29,13 @@ pub struct Price {
     threads: usize,
 }
 
+/// Instructions of a step of one sample.
+pub(super) fn instructions_of_step(simulator: &Simulator) -> f64 {
+    let program = &simulator.program;
+    (program.step().len() + program.factor().len() + program.advance().len()) as f64
+        + CORRECTIONS * program.correct().len() as f64
+}
+
 impl Price {
     /// What the methods' own numbers of samples come to; where a tolerance decides, the budget does.
     pub(super) fn of(studies: &[Study]) -> Self {
@@ -44,11 +51,9 @@ impl Price {
                 }
                 Stepping::Tolerance(_) => 0.0,
             };
-            let program = &study.simulator.program;
-            let of_step = (program.step().len() + program.factor().len() + program.advance().len()) as f64
-                + CORRECTIONS * program.correct().len() as f64;
+            let of_step = instructions_of_step(&study.simulator);
             simulations += of_study;
-            seconds += of_study * steps * of_step * INSTRUCTION / threads as f64;
+            seconds += of_study * steps * of_step * INSTRUCTION_SECONDS / threads as f64;
         }
         Self { simulations, seconds, threads }
     }

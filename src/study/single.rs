@@ -6,13 +6,14 @@ use super::ensemble::{Motions, Progress};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
+use super::stored::Stored;
 use super::{Options, RunError};
 use crate::methods::{
-    BandBuilder, BoundingMethod, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated,
-    Stop, Validation, can_compose,
+    BandBuilder, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated, Stop, Validation,
+    can_compose,
 };
 use crate::model::{Description, SchemeChoice, Stepping};
-use crate::numerics::{ParameterBox, Sample, step_validation, validation};
+use crate::numerics::{ParameterBox, Sample};
 use crate::results::MethodSummary;
 use crate::simulate::{
     Controller, Divided, Schedule, SimulationError, Simulator, TimeFunctions, schedule_for_tolerance,
@@ -35,6 +36,8 @@ pub(super) struct Study<'a> {
     pub(super) stage: &'a (dyn Fn(&str) + Sync),
     /// Whether what is finished is enough.
     pub(super) interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Where simulations are stored, if they are.
+    pub(super) stored: Option<Stored<'a>>,
 }
 
 /// What a subsystem is to its bounding methods.
@@ -85,6 +88,7 @@ impl<'a> Study<'a> {
             progress,
             stage,
             interrupted,
+            stored: None,
         })
     }
 
@@ -109,7 +113,7 @@ impl<'a> Study<'a> {
         progress: &'s Progress<'s>,
     ) -> Motions<'s> {
         let motions = Motions::new(&self.simulator, &self.domain, schedule, tolerance, progress, self.interrupted);
-        motions.keeping(self.store.get())
+        motions.keeping(self.store.get()).stored(self.stored)
     }
 
     /// Whether samples reach the end: the validation samples, or with a tolerance the controlling samples.
@@ -245,6 +249,8 @@ impl<'a> Study<'a> {
             let bound = || request.bound(motions, validation, &self.request).map_err(simulation_error);
             let before = motions.over();
             let mut outcome = match caught(method.name(), || timed(schedule, method.name(), || Ok((bound()?, ())))) {
+                // Others may be complete.
+                Ok(Err(SimulationError::Deferred)) => self.unknown(schedule, method.name())?,
                 Ok(timed) => timed?.0,
                 Err(error) => {
                     internal.push(error);

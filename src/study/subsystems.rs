@@ -11,6 +11,7 @@ use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
+use super::stored::Stored;
 use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};
@@ -96,6 +97,14 @@ fn as_far_as_joints_go<T>(
     }
 }
 
+/// How a model is reduced to be run.
+pub(super) fn choices(description: &Description, options: &Options) -> Choices {
+    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
+    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
+    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
+    Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() }
+}
+
 /// Runs every subsystem and merges the results.
 ///
 /// # Errors
@@ -106,11 +115,7 @@ pub(super) fn run(
     keep: bool,
 ) -> Result<(Bounds, Summary, Option<Kept>), RunError> {
     (options.stage)("compiling");
-    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
-    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
-    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
-    let choices = Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() };
-    let (reduction, mut prepared) = prepare(description, choices)?;
+    let (reduction, mut prepared) = prepare(description, choices(description, options))?;
     share_budget(&mut prepared);
     let count = prepared.len();
     let report = |place: usize| move |fraction: f64| (options.progress)((place as f64 + fraction) / count as f64);
@@ -122,9 +127,10 @@ pub(super) fn run(
         studies.push((simulator, progress));
     }
     // All that can be refused is, before the first is run.
-    let studies = subsystems.iter().zip(studies).map(|(subsystem, (simulator, progress))| {
+    let studies = subsystems.iter().zip(studies).enumerate().map(|(number, (subsystem, (simulator, progress)))| {
         let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
+        study.stored = options.store.map(|store| Stored { store, subsystem: number });
         if keep {
             study.keep_surrogate()?;
         }

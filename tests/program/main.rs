@@ -17,6 +17,7 @@ mod rooms;
 mod run_modes;
 mod scenes;
 mod schema;
+mod shards;
 mod shells;
 mod show;
 mod snapshot;

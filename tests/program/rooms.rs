@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Each room stands on those before it, and knows none after it.
-const ROOMS: [&str; 17] = [
+const ROOMS: [&str; 18] = [
     "syntax",
     "grammar",
     "multibody",
@@ -18,6 +18,7 @@ const ROOMS: [&str; 17] = [
     "compile",
     "simulate",
     "results",
+    "store",
     "study",
     "export",
     "api",

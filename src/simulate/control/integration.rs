@@ -1,7 +1,9 @@
 //! How the steps of a schedule are taken.
 
+use serde::{Deserialize, Serialize};
+
 /// How the steps of a schedule are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integration {
     /// By the scheme, once.
     #[default]

@@ -4,9 +4,10 @@
 //! Where the step does not divide the time between these two, the last step is shorter.
 
 use super::integration::Integration;
+use serde::{Deserialize, Serialize};
 
 /// Rows of output, and the steps that lead from row to row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Schedule {
     /// s between rows of output, but for the last.
     pub output_step: f64,
@@ -19,7 +20,7 @@ pub struct Schedule {
     pub integration: Integration,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Steps {
     /// This many steps of equal length between rows, and those before the last row.
     Fixed { step: f64, per_row: usize, last: LastSteps },
@@ -37,7 +38,7 @@ fn are_coprime(a: usize, b: usize) -> bool {
 }
 
 /// Steps before the last row: whole ones, then so many of the length `rest`, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct LastSteps {
     whole: usize,
     rests: usize,

@@ -263,8 +263,9 @@ impl Posed {
         let every = self.every(rows, samples.len());
         let times: Vec<f64> =
             (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
+        let schedule = Schedule::fixed(duration, output_step, output_step);
         let outputs = self.simulator.system.outputs.len();
-        let found: Vec<_> = samples.par_iter().map(|sample| self.simulator.visit(sample, &times)).collect();
+        let found: Vec<_> = samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None))).collect();
         for (&sample, visit) in running.iter().zip(found) {
             let visit = match visit {
                 Err(error) if sample == 0 => return Err(error.into()),
@@ -274,8 +275,8 @@ impl Posed {
                 }
                 Ok(visit) => visit,
             };
-            recorded[sample].stopped = visit.stop.map(|stop| stop.row);
-            for (row, values) in visit.values.chunks_exact(outputs).enumerate() {
+            recorded[sample].stopped = visit.stop.map(|stop| stop.row.div_ceil(every));
+            for (row, values) in visit.values.chunks_exact(outputs).step_by(every).enumerate() {
                 self.keep(Values(values.to_vec()), row == 0, drawing, &mut recorded[sample]);
             }
         }

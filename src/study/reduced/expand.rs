@@ -37,7 +37,8 @@ fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula) -> usize {
 /// Results with the model's own outputs only.
 pub fn shown(description: &Description, (mut bounds, mut summary): (Bounds, Summary)) -> (Bounds, Summary) {
     let own = description.outputs.len();
-    if bounds.outputs.len() > own {
+    // An analysis without a motion adds outputs of its own, and has nothing reduced.
+    if bounds.outputs.len() > own && !description.analysis.visits() {
         bounds.outputs.truncate(own);
         bounds.contributions.truncate(own);
         summary.errors = ErrorSummary::of(&bounds);

@@ -7,10 +7,11 @@ mod piece;
 mod zone;
 
 use piece::Piece;
+use serde::{Deserialize, Serialize};
 use zone::Zone;
 
 /// What is accumulated of an output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Accumulation {
     /// The greatest value.
     Greatest,
@@ -38,7 +39,7 @@ pub enum Accumulation {
 }
 
 /// Something accumulated of an output between two times.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
     /// Number of the output.
     pub output: usize,

@@ -1,0 +1,14 @@
+"""Bounds of a mechanism's motion under parameter tolerances.
+
+    >>> import mbint
+    >>> study = mbint.run("models/slider_crank.yaml", set={"l1": "0.15 m ± 2%"})
+    >>> study.bounds.chebyshev.sel(output="x3", bound="upper").max()
+
+The command ``mbint`` does the work; this package writes its input and reads its results.
+"""
+
+from ._command import MbintError, command, version
+from .result import Result
+from .study import Study, run
+
+__all__ = ["MbintError", "Result", "Study", "command", "run", "version"]

@@ -1,0 +1,67 @@
+"""The command ``mbint``: where it is, and how it is run."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Sequence
+from pathlib import Path
+
+#: Exit statuses of ``mbint run`` after which there are results (see docs/reference/exit-codes.md).
+WITH_RESULTS = frozenset({0, 3, 4})
+
+
+class MbintError(RuntimeError):
+    """The command failed.
+
+    Attributes:
+        status: its exit status.
+        message: what it printed, with the places in the model.
+    """
+
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message or f"mbint ended with status {status}")
+        self.status = status
+        self.message = message
+
+
+def command() -> str:
+    """Path of the command.
+
+    It is looked for in the variable ``MBINT``, among the scripts of this Python, and on the PATH, in this order.
+
+    Raises:
+        FileNotFoundError: there is none.
+    """
+    if chosen := os.environ.get("MBINT"):
+        return chosen
+    name = "mbint" + sysconfig.get_config_var("EXE") if sysconfig.get_config_var("EXE") else "mbint"
+    schemes = (sysconfig.get_path("scripts"), sysconfig.get_path("scripts", f"{os.name}_user"))
+    for folder in (*schemes, str(Path(sys.executable).parent)):
+        if folder and (path := Path(folder) / name).is_file():
+            return str(path)
+    if path_on_path := shutil.which("mbint"):
+        return path_on_path
+    raise FileNotFoundError("the command `mbint` is not installed; `pip install mbint` brings it")
+
+
+def invoke(arguments: Sequence[str], *, accepted: frozenset[int] = frozenset({0})) -> subprocess.CompletedProcess[str]:
+    """Runs the command.
+
+    Raises:
+        MbintError: its exit status is not one of ``accepted``.
+    """
+    done = subprocess.run(
+        [command(), *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True, encoding="utf-8", check=False
+    )
+    if done.returncode not in accepted:
+        raise MbintError(done.returncode, done.stderr.strip())
+    return done
+
+
+def version() -> str:
+    """Version of the command."""
+    return invoke(["--version"]).stdout.split()[-1]

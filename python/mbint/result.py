@@ -1,0 +1,118 @@
+"""The results folder of one model or scene, as arrays."""
+
+from __future__ import annotations
+
+import json
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Curves of a band, in the order of the dimension ``bound``.
+BOUNDS = ("lower", "upper", "error")
+
+
+class Result:
+    """Bounds over time of one model or scene.
+
+    Args:
+        folder: where ``mbint run`` wrote them.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+
+    def __repr__(self) -> str:
+        return f"Result({self.summary['model']!r}, outputs={list(self.units)}, folder={str(self.folder)!r})"
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """``summary.json``: what was run, and how far it can be relied on. SI units."""
+        with open(self.folder / "summary.json", encoding="utf-8") as file:
+            summary: dict[str, Any] = json.load(file)
+        return summary
+
+    @cached_property
+    def columns(self) -> list[dict[str, str]]:
+        """``columns.json``: quantity, unit, output and method of each column of ``bounds.csv``."""
+        with open(self.folder / "columns.json", encoding="utf-8") as file:
+            columns: list[dict[str, str]] = json.load(file)
+        return columns
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Unit of each output; empty where there is none."""
+        return {column["output"]: column["unit"] for column in self.columns if column["quantity"] == "nominal"}
+
+    @cached_property
+    def frame(self) -> pd.DataFrame:
+        """``bounds.csv`` with the time as index; ``attrs["units"]`` has the unit of every column."""
+        unresolved = [column["column"] for column in self.columns if column["quantity"] == "unresolved"]
+        numbers = [column["column"] for column in self.columns if column["quantity"] != "unresolved"]
+        frame = pd.read_csv(
+            self.folder / "bounds.csv",
+            index_col="t",
+            float_precision="round_trip",
+            dtype=dict.fromkeys(unresolved, str),
+            keep_default_na=False,
+            na_values={heading: ["NaN"] for heading in numbers},
+        )
+        frame.attrs["units"] = {column["column"]: column["unit"] for column in self.columns}
+        return frame
+
+    @cached_property
+    def nominal(self) -> xr.DataArray:
+        """Nominal outputs over (time, output)."""
+        names = list(self.units)
+        values = np.stack([self.frame[f"{name}.nominal"].to_numpy(float) for name in names], axis=1)
+        return self._array(values, ("time", "output"), "nominal")
+
+    @cached_property
+    def bounds(self) -> xr.Dataset:
+        """Bounds: a variable for each method over (time, output, bound), where bound is ``lower``, ``upper`` or ``error``."""
+        outputs = {name: number for number, name in enumerate(self.units)}
+        values: dict[str, np.ndarray[Any, Any]] = {}
+        for column in self.columns:
+            if column["quantity"] in BOUNDS:
+                band = values.setdefault(column["method"], np.full((len(self.frame), len(outputs), len(BOUNDS)), np.nan))
+                curve = self.frame[column["column"]].to_numpy(float)
+                band[:, outputs[column["output"]], BOUNDS.index(column["quantity"])] = curve
+        arrays = {method: self._array(band, ("time", "output", "bound"), method) for method, band in values.items()}
+        bounds = {method: array.assign_coords(bound=list(BOUNDS)) for method, array in arrays.items()}
+        return xr.Dataset(bounds, attrs=self._attributes())
+
+    @cached_property
+    def unreliable(self) -> xr.Dataset:
+        """Where the stated error of a band is not to be relied on: a variable for each method over (time, output)."""
+        named = [set(cell.split()) for cell in self.frame["unresolved"]] if "unresolved" in self.frame else []
+        flags = {}
+        for method in self.bounds:
+            flagged = np.array([[f"{output}.{method}" in row for output in self.units] for row in named])
+            flags[method] = self._array(flagged, ("time", "output"), str(method))
+        return xr.Dataset(flags, attrs=self._attributes())
+
+    def _array(self, values: np.ndarray[Any, Any], dims: tuple[str, ...], name: str) -> xr.DataArray:
+        coords: dict[str, Any] = {
+            "time": ("time", self.frame.index.to_numpy(float), {"units": "s"}),
+            "output": list(self.units),
+            "units": ("output", list(self.units.values())),
+        }
+        return xr.DataArray(values, coords=coords, dims=dims, name=name, attrs=self._attributes())
+
+    def _attributes(self) -> dict[str, Any]:
+        """Where the numbers come from; the unit where all outputs have the same."""
+        attributes = {"model": self.summary["model"], "mbint": self.summary["mbint"]}
+        units = set(self.units.values())
+        return attributes | ({"units": units.pop()} if len(units) == 1 else {})
+
+    def plot(self, output: str | None = None, methods: list[str] | None = None) -> Figure:
+        """Bounds of an output over time; by default of all outputs, one below the other. Needs matplotlib."""
+        from .plot import figure
+
+        return figure(self, [output] if output else list(self.units), methods)

@@ -1,0 +1,179 @@
+"""A study: a model, what is asked of it, and its results."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ._command import WITH_RESULTS, invoke
+from .result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: A model: the path of a YAML or URDF file, or the content of a YAML file as a dictionary.
+Model = str | Path | Mapping[str, Any]
+
+
+class Study:
+    """A model, and what is asked of it.
+
+    Args:
+        model: path of a model file, or its content as a dictionary (formulas and values with units as strings).
+        set: parameters that differ from the file's, as ``{"l1": "0.16 m ± 2%", "tau": 0.4}``; numbers are in SI units.
+        methods: methods to run; by default the model's.
+        scenes: scenes to run; by default all.
+        certify: whether to add certified bounds.
+        threads: number of threads; results do not depend on it.
+        skip_infeasible: whether to leave out parameter values with which the mechanism cannot be assembled.
+        costly: whether to run what takes more than about a minute.
+        folder: where the results are written; by default a temporary folder, which is removed with the study.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        *,
+        set: Mapping[str, str | float] | None = None,  # the name of the command's option
+        methods: Sequence[str] | None = None,
+        scenes: Sequence[str] | None = None,
+        certify: bool = False,
+        threads: int | None = None,
+        skip_infeasible: bool = False,
+        costly: bool = False,
+        folder: str | Path | None = None,
+    ) -> None:
+        self._temporary = tempfile.TemporaryDirectory(prefix="mbint-")
+        self.folder = Path(folder) if folder is not None else Path(self._temporary.name) / "results"
+        self.model = self._file(model)
+        self.options: list[str] = []
+        for name, value in (set or {}).items():
+            self.options += ["--set", f"{name}={value if isinstance(value, str) else repr(float(value))}"]
+        for method in methods or ():
+            self.options += ["--method", method]
+        for scene in scenes or ():
+            self.options += ["--scene", scene]
+        if threads is not None:
+            self.options += ["--threads", str(threads)]
+        flags = {"--certify": certify, "--skip-infeasible": skip_infeasible, "--yes": costly}
+        self.options += [flag for flag, wanted in flags.items() if wanted]
+        self.messages = ""
+
+    def _file(self, model: Model) -> Path:
+        """The model's file; a dictionary is written to one. JSON is YAML."""
+        if not isinstance(model, Mapping):
+            return Path(model)
+        path = Path(self._temporary.name) / "model.yaml"
+        path.write_text(json.dumps(model, ensure_ascii=False, indent=1, default=_plain), encoding="utf-8")
+        return path
+
+    def run(self) -> Study:
+        """Runs the study, and returns it.
+
+        Warnings of the command are in ``messages``.
+
+        Raises:
+            MbintError: the model has errors, or a run failed.
+        """
+        self._forget()
+        arguments = ["run", str(self.model), "--output", str(self.folder), "--quiet", "--color", "never"]
+        self.messages = invoke([*arguments, *self.options], accepted=WITH_RESULTS).stderr.strip()
+        return self
+
+    def _forget(self) -> None:
+        for name in ("results", "result"):
+            self.__dict__.pop(name, None)
+
+    @cached_property
+    def results(self) -> dict[str, Result]:
+        """Results by scene; of a model without scenes there is one, under its name.
+
+        Raises:
+            FileNotFoundError: the study was not run.
+        """
+        if (self.folder / "summary.json").is_file():
+            alone = Result(self.folder)
+            return {alone.summary["model"]: alone}
+        scenes = json.loads((self.folder / "scenes.json").read_text(encoding="utf-8"))
+        return {scene: Result(self.folder / scene) for scene in scenes["folders"]}
+
+    @cached_property
+    def result(self) -> Result:
+        """The only result.
+
+        Raises:
+            ValueError: there are several scenes; take ``study[name]``.
+        """
+        if len(self.results) != 1:
+            raise ValueError(f"the model has scenes: {', '.join(self.results)}; take study[name]")
+        return next(iter(self.results.values()))
+
+    def __getitem__(self, scene: str) -> Result:
+        return self.results[scene]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.results)
+
+    def __len__(self) -> int:
+        return len(self.results)
+
+    def __repr__(self) -> str:
+        return f"Study({str(self.model)!r}, {self.options})"
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """``summary.json`` of the only result."""
+        return self.result.summary
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each output."""
+        return self.result.units
+
+    @property
+    def nominal(self) -> xr.DataArray:
+        """Nominal outputs over (time, output)."""
+        return self.result.nominal
+
+    @property
+    def bounds(self) -> xr.Dataset:
+        """Bounds: a variable for each method over (time, output, bound)."""
+        return self.result.bounds
+
+    @property
+    def unreliable(self) -> xr.Dataset:
+        """Where the stated error is not to be relied on: a variable for each method over (time, output)."""
+        return self.result.unreliable
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """``bounds.csv`` with the time as index."""
+        return self.result.frame
+
+    def plot(self, output: str | None = None, methods: list[str] | None = None) -> Figure:
+        """Bounds over time; needs matplotlib."""
+        return self.result.plot(output, methods)
+
+
+def run(model: Model, **options: Any) -> Study:
+    """Runs a study; arguments are those of :class:`Study`.
+
+    Raises:
+        MbintError: the model has errors, or a run failed.
+    """
+    return Study(model, **options).run()
+
+
+def _plain(value: object) -> object:
+    """What JSON has for numbers of numpy."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"a model cannot have a {type(value).__name__}")

@@ -1,0 +1,222 @@
+//! `mbint plan`, `shard`, `status` and `merge`: a study on many machines that share a folder.
+
+mod args;
+mod kept_run;
+mod submit;
+
+use std::fmt::Write;
+
+pub(super) use self::args::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
+pub(super) use self::kept_run::KeptRun;
+pub(super) use self::submit::submit;
+use super::args::{Format, RunArgs};
+use super::console::{Console, count};
+use super::job::Request;
+use super::run::run_all;
+use super::{Failure, Status, load};
+use crate::methods::Method;
+use crate::model::Override;
+use crate::results::ModelFile;
+use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFolder};
+use crate::study;
+
+fn failed(error: &StoreError) -> Failure {
+    Failure::Failed(error.to_string())
+}
+
+/// `mbint plan`: decides what is to be simulated, and cuts it into shards.
+pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Failure> {
+    let folder = StudyFolder::new(&args.output);
+    let mut models = Vec::new();
+    for model in &args.models {
+        if crate::model::is_standard_input(model) {
+            return Err(Failure::Wrong("a study needs its models as files: shards read them again".to_owned()));
+        }
+        let path = std::path::absolute(model);
+        models.push(path.map_err(|error| Failure::Wrong(format!("{}: {error}", model.display())))?);
+    }
+    let asked = Asked {
+        models,
+        set: args.set.overrides()?.iter().map(|setting| setting.text.clone()).collect(),
+        scenes: args.scene.clone(),
+        methods: args.method.iter().map(|method| method.name().to_owned()).collect(),
+        certify: args.certify,
+        certify_time: args.certify_time,
+        skip_infeasible: args.skip_infeasible,
+        at_once: args.at_once,
+    };
+    let kept = KeptRun::planning(args.output.clone(), Missing::Defer(asked.at_once));
+    let request = request(&asked, args.threads, kept)?;
+    let status = run_all(&request, console, &mut |_, _, _| ())?;
+    if status > Status::Deferred {
+        return Ok(status);
+    }
+    let shards = request.store.map(KeptRun::shards).unwrap_or_default();
+    let text = overview(&shards);
+    folder.write(1, asked, shards).map_err(|error| failed(&error))?;
+    console.print(&format!("{text}in {}\n", args.output.display()))?;
+    Ok(Status::Done)
+}
+
+/// `mbint merge`: the results, or the next round's plan.
+pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Failure> {
+    let folder = StudyFolder::new(&args.study);
+    let plan = folder.plan().map_err(|error| failed(&error))?;
+    let missing = folder.missing(&plan).map_err(|error| failed(&error))?;
+    if !missing.is_empty() {
+        let shards = ranges(&missing);
+        return Err(Failure::Failed(format!("{}: shards {shards} are missing; run them first", args.study.display())));
+    }
+    let kept = KeptRun::new(args.study.clone(), Missing::Defer(plan.asked.at_once));
+    let mut request = request(&plan.asked, args.threads, kept)?;
+    request.output = args.output;
+    request.quiet = args.quiet;
+    let status = run_all(&request, console, &mut |_, _, _| ())?;
+    if status == Status::Deferred {
+        let shards = request.store.map(KeptRun::shards).unwrap_or_default();
+        let text = overview(&shards);
+        folder.write(plan.round + 1, plan.asked, shards).map_err(|error| failed(&error))?;
+        console.print(&format!("another round: {text}in {}\n", args.study.display()))?;
+    }
+    Ok(status)
+}
+
+/// `mbint shard`: simulates what one shard has and is not there yet.
+pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, Failure> {
+    let folder = StudyFolder::new(&args.study);
+    let Plan { asked, shards, .. } = folder.plan().map_err(|error| failed(&error))?;
+    let Some(shard) = shards.get(args.index) else {
+        let last = shards.len().checked_sub(1).map_or_else(|| "none".to_owned(), |last| format!("0 to {last}"));
+        return Err(Failure::Wrong(format!("there is no shard {}; there are: {last}", args.index)));
+    };
+    let overrides = overrides(&asked)?;
+    let path = asked.models.get(shard.model).ok_or_else(|| failed(&StoreError::damaged(folder.path())))?;
+    let scenes: Vec<String> = shard.scene.iter().cloned().collect();
+    let Some(loaded) = load::load_all(std::slice::from_ref(path), &overrides, &scenes, console)? else {
+        return Ok(Status::Wrong);
+    };
+    let Some((model, (_, mut description))) =
+        loaded.models.into_iter().next().and_then(|mut model| model.scenes.pop().map(|scene| (model.files, scene)))
+    else {
+        return Ok(Status::Failed);
+    };
+    if asked.certify {
+        description.bounds.certified = Some(crate::methods::Certified);
+    }
+    let context = context(&model, &asked.set, shard.scene.as_deref(), asked.skip_infeasible);
+    let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
+    super::interrupt::listen();
+    let options = study::Options {
+        methods: methods(&asked)?,
+        threads: args.threads.map(usize::from),
+        skip_infeasible: asked.skip_infeasible,
+        store: Some(&store),
+        interrupted: &super::interrupt::asked,
+        ..study::Options::default()
+    };
+    let name = &description.name;
+    study::simulate_parts(&description, &options, &store, &shard.parts)
+        .map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
+    if super::interrupt::asked() { Ok(Status::Interrupted) } else { Ok(Status::Done) }
+}
+
+/// `mbint status`: what is missing of a plan.
+pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status, Failure> {
+    let folder = StudyFolder::new(&args.study);
+    let plan = folder.plan().map_err(|error| failed(&error))?;
+    let missing = folder.missing(&plan).map_err(|error| failed(&error))?;
+    let numbers = ranges(&missing);
+    if args.missing {
+        console.print(&format!("{numbers}\n"))?;
+    } else if missing.is_empty() {
+        let all = count(plan.shards.len(), "shard", "shards");
+        console.print(&format!("round {}: all of {all} are there; next: mbint merge\n", plan.round))?;
+    } else {
+        let left: Vec<Shard> = missing.iter().map(|&number| plan.shards[number].clone()).collect();
+        let all = plan.shards.len();
+        console.print(&format!(
+            "round {}: of {all} shards, {numbers} are missing\n{}to go\n",
+            plan.round,
+            overview(&left)
+        ))?;
+    }
+    Ok(if missing.is_empty() { Status::Done } else { Status::Deferred })
+}
+
+/// What `mbint run` would be asked for.
+fn request(asked: &Asked, threads: Option<u16>, kept: KeptRun) -> Result<Request, Failure> {
+    let args = RunArgs {
+        models: asked.models.clone(),
+        output: None,
+        method: methods(asked)?.unwrap_or_default(),
+        certify: asked.certify,
+        set: super::args::SetArgs::new(overrides(asked)?),
+        scene: asked.scenes.clone(),
+        threads,
+        skip_infeasible: asked.skip_infeasible,
+        quiet: true,
+        certify_time: asked.certify_time,
+        timings: false,
+        yes: true,
+        overwrite: false,
+        store: None,
+        no_report: false,
+        junit: None,
+        format: Format::Text,
+        watch: false,
+    };
+    let mut request = Request::check(args)?;
+    request.store = Some(kept);
+    Ok(request)
+}
+
+fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {
+    let method = |name: &String| {
+        let known = Method::ALL.into_iter().find(|method| method.name() == name);
+        known.ok_or_else(|| Failure::Failed(format!("there is no method `{name}`")))
+    };
+    let methods = asked.methods.iter().map(method).collect::<Result<Vec<_>, _>>()?;
+    Ok((!methods.is_empty()).then_some(methods))
+}
+
+fn overrides(asked: &Asked) -> Result<Vec<Override>, Failure> {
+    let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
+    asked.set.iter().map(parse).collect()
+}
+
+/// All that decides a model's results beside the tasks, unambiguously.
+fn context(files: &[ModelFile], set: &[String], scene: Option<&str>, skip_infeasible: bool) -> Vec<u8> {
+    format!("{files:?}{set:?}{scene:?}{skip_infeasible}").into_bytes()
+}
+
+/// Number of shards, what they take on one core, and their size on the disk.
+fn overview(shards: &[Shard]) -> String {
+    let simulations: usize = shards.iter().map(|shard| shard.simulations).sum();
+    let seconds: f64 = shards.iter().map(|shard| shard.seconds).sum();
+    let bytes: u64 = shards.iter().map(|shard| shard.bytes).sum();
+    let mut text = format!("{}, {simulations} simulations", count(shards.len(), "shard", "shards"));
+    let _ = write!(text, ", at least {seconds:.0} s on one core, {} on the disk ", indicatif::HumanBytes(bytes));
+    text
+}
+
+/// Numbers as `3,7-9`.
+fn ranges(numbers: &[usize]) -> String {
+    let consecutive = numbers.chunk_by(|a, b| a + 1 == *b);
+    let range = |range: &[usize]| match range {
+        [first, .., last] => format!("{first}-{last}"),
+        [only] => only.to_string(),
+        [] => String::new(),
+    };
+    consecutive.map(range).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ranges;
+
+    #[test]
+    fn consecutive_numbers_are_ranges() {
+        assert_eq!(ranges(&[3, 7, 8, 9, 11, 12]), "3,7-9,11-12");
+        assert_eq!(ranges(&[]), "");
+    }
+}

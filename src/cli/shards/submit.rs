@@ -1,0 +1,150 @@
+//! `mbint submit`: a study's shards as a job array of Slurm, and its merging as the job after it.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::args::SubmitArgs;
+use crate::cli::console::{Console, count};
+use crate::cli::{Failure, Status};
+use crate::store::StudyFolder;
+
+/// Most tasks of an array that every cluster takes: Slurm's default `MaxArraySize` less one.
+const MOST_TASKS: usize = 1000;
+
+/// So many times a task that failed is put into the queue again.
+const MOST_REQUEUES: usize = 3;
+
+/// Writes the scripts of a round into the study's folder, and submits them.
+pub(in crate::cli) fn submit(args: &SubmitArgs, console: &mut Console) -> Result<Status, Failure> {
+    let failed = |message: String| Failure::Failed(message);
+    let folder =
+        std::path::absolute(&args.study).map_err(|error| failed(format!("{}: {error}", args.study.display())))?;
+    let output = args.output.as_ref().map(std::path::absolute).transpose();
+    let output = output.map_err(|error| failed(error.to_string()))?;
+    let program = std::env::current_exe().map_err(|error| failed(format!("where this program is: {error}")))?;
+    let study = StudyFolder::new(&folder);
+    let plan = study.plan().map_err(|error| failed(error.to_string()))?;
+    let missing = study.missing(&plan).map_err(|error| failed(error.to_string()))?;
+    let job = Job { program, folder, output, options: &args.options, round: plan.round };
+    let array = if missing.is_empty() { None } else { Some(job.submit_array(&missing).map_err(failed)?) };
+    let merge = job.submit_merge(array.as_deref()).map_err(failed)?;
+    let shards = array.map(|array| format!("{} as job {array}, then ", count(missing.len(), "shard", "shards")));
+    console.print(&format!(
+        "{}merging as job {merge}; scripts in {}\n",
+        shards.unwrap_or_default(),
+        job.folder.display()
+    ))?;
+    Ok(Status::Done)
+}
+
+/// What the scripts of a round have in common.
+struct Job<'a> {
+    program: PathBuf,
+    folder: PathBuf,
+    output: Option<PathBuf>,
+    /// Options of `sbatch`.
+    options: &'a [String],
+    round: usize,
+}
+
+impl Job<'_> {
+    /// The shards, each task every so many of them.
+    fn submit_array(&self, missing: &[usize]) -> Result<String, String> {
+        let tasks = missing.len().min(MOST_TASKS);
+        let list = self.write("shards", &missing.iter().map(|number| format!("{number}\n")).collect::<String>())?;
+        let (program, folder) = (quoted(&self.program), quoted(&self.folder));
+        let mut script = self.head("shards", "%A_%a");
+        let _ = write!(
+            script,
+            "#SBATCH --array=0-{last}\n\
+             #SBATCH --requeue\n\n\
+             # Task t takes every {tasks}th line of the list, from the t-th on. What is there already is skipped.\n\
+             for shard in $(awk -v t=\"$SLURM_ARRAY_TASK_ID\" 'NR % {tasks} == (t + 1) % {tasks}' {list}); do\n  \
+               if ! {program} shard {folder} --index \"$shard\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"; then\n    \
+                 # The task goes into the queue again.\n    \
+                 if [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {MOST_REQUEUES} ]; then\n      \
+                   scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}\"\n    \
+                 fi\n    \
+                 exit 1\n  \
+               fi\n\
+             done\n",
+            last = tasks - 1,
+            list = quoted(&list),
+        );
+        self.sbatch("array.sh", &script, None)
+    }
+
+    /// Merging, when all tasks of the array ended; it submits the next round where there is one.
+    fn submit_merge(&self, array: Option<&str>) -> Result<String, String> {
+        let (program, folder) = (quoted(&self.program), quoted(&self.folder));
+        let output = self.output.as_ref().map_or_else(String::new, |output| format!(" --output {}", quoted(output)));
+        let options: String = self.options.iter().map(|option| format!(" {}", quoted(Path::new(option)))).collect();
+        let options = if options.is_empty() { options } else { format!(" --{options}") };
+        let mut script = self.head("merge", "%j");
+        let _ = write!(
+            script,
+            "\n{program} merge {folder}{output} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n\
+             status=$?\n\
+             # 75: the study goes on with another round.\n\
+             if [ $status -eq 75 ]; then exec {program} submit {folder} --slurm{output}{options}; fi\n\
+             exit $status\n"
+        );
+        self.sbatch("merge.sh", &script, array)
+    }
+
+    fn head(&self, what: &str, log: &str) -> String {
+        let logs = self.folder.join(format!("logs/round-{}-{what}-{log}.log", self.round));
+        format!(
+            "#!/bin/bash\n#SBATCH --job-name=mbint-{what}\n#SBATCH --output={}\n#SBATCH --open-mode=append\n",
+            logs.display()
+        )
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<PathBuf, String> {
+        let path = self.folder.join(format!("round-{}-{name}", self.round));
+        let logs = self.folder.join("logs");
+        let written = std::fs::create_dir_all(&logs).and_then(|()| std::fs::write(&path, text));
+        written.map(|()| path.clone()).map_err(|error| format!("{}: {error}", path.display()))
+    }
+
+    fn sbatch(&self, name: &str, script: &str, after: Option<&str>) -> Result<String, String> {
+        let path = self.write(name, script)?;
+        let mut command = Command::new("sbatch");
+        command
+            .arg("--parsable")
+            .args(after.map(|job| format!("--dependency=afterany:{job}")))
+            .args(self.options)
+            .arg(&path);
+        let done = command.output().map_err(|error| format!("`sbatch` cannot be run: {error}"))?;
+        let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
+        if !done.status.success() {
+            return Err(format!("`sbatch` refused {}: {}", path.display(), said(&done.stderr)));
+        }
+        // Behind a semicolon stands the cluster's name.
+        Ok(said(&done.stdout).split(';').next().unwrap_or_default().to_owned())
+    }
+}
+
+/// A path as one word of a shell.
+fn quoted(path: &Path) -> String {
+    let text = path.to_string_lossy();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-=+,:@%".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.into_owned()
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_one_word_of_a_shell() {
+        assert_eq!(quoted(Path::new("/a/b-1.yaml")), "/a/b-1.yaml");
+        assert_eq!(quoted(Path::new("it's $HOME")), r"'it'\''s $HOME'");
+        assert_eq!(quoted(Path::new("")), "''");
+    }
+}

@@ -1,0 +1,37 @@
+//! Why a store cannot be used.
+
+use std::path::{Path, PathBuf};
+
+/// Why a store cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// A file or folder cannot be read or written.
+    #[error("{}: {error}", path.display())]
+    Io {
+        /// Which.
+        path: PathBuf,
+        /// The system's reason.
+        error: std::io::Error,
+    },
+    /// A file is not what its name says.
+    #[error("{} is damaged, or of another version of mbint; remove it and plan again", path.display())]
+    Damaged {
+        /// Which.
+        path: PathBuf,
+    },
+    /// Something cannot be written in the files' format.
+    #[error("a value cannot be written: {0}")]
+    Encoding(#[from] postcard::Error),
+}
+
+impl StoreError {
+    /// Of a file or folder.
+    pub(super) fn io(path: &Path, error: std::io::Error) -> Self {
+        Self::Io { path: path.to_owned(), error }
+    }
+
+    /// Of a file that is not what its name says.
+    pub fn damaged(path: &Path) -> Self {
+        Self::Damaged { path: path.to_owned() }
+    }
+}

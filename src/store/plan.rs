@@ -1,0 +1,153 @@
+//! `plan.json`: what is to be simulated in a round of a study, cut into shards.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::error::StoreError;
+use super::part::write_whole;
+use super::{Deferred, FORMAT, PARTS};
+
+/// Shards that take less than this are joined with the next, s.
+pub const SHARD_SECONDS: f64 = 60.0;
+
+/// A study's round.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Version of the format.
+    pub format: u32,
+    /// Version of mbint; another one makes other parts.
+    pub mbint: String,
+    /// Rounds planned so far; what a study asks for next may depend on the results of the round before.
+    pub round: usize,
+    /// What was asked for.
+    pub asked: Asked,
+    /// What is to be simulated, by number of the shard.
+    pub shards: Vec<Shard>,
+}
+
+/// What was asked for: the arguments of `mbint run` that decide results.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Absolute paths of the models.
+    pub models: Vec<PathBuf>,
+    /// Parameters that are set.
+    pub set: Vec<String>,
+    /// Scenes; all where empty.
+    pub scenes: Vec<String>,
+    /// Methods; the model's where empty.
+    pub methods: Vec<String>,
+    /// Whether certified bounds are added.
+    pub certify: bool,
+    /// Whether every sample is simulated with halved steps too.
+    pub certify_time: bool,
+    /// Whether infeasible parameter values are left out.
+    pub skip_infeasible: bool,
+    /// What takes less is simulated when planning and merging, s.
+    pub at_once: f64,
+}
+
+/// What one call of `mbint shard` simulates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shard {
+    /// Number of the model among those asked for.
+    pub model: usize,
+    /// Name of its scene, where it has some.
+    pub scene: Option<String>,
+    /// Names of the parts.
+    pub parts: Vec<String>,
+    /// Samples.
+    pub simulations: usize,
+    /// What it is expected to take on one core, s.
+    pub seconds: f64,
+    /// Size of the parts.
+    pub bytes: u64,
+}
+
+impl Shard {
+    /// Shards of about [`SHARD_SECONDS`] from what was deferred of a model.
+    pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred]) -> Vec<Self> {
+        let mut shards: Vec<Self> = Vec::new();
+        for task in deferred {
+            match shards.last_mut().filter(|shard| shard.seconds + task.seconds <= SHARD_SECONDS) {
+                Some(shard) => {
+                    shard.parts.push(task.part.clone());
+                    shard.simulations += task.simulations;
+                    shard.seconds += task.seconds;
+                    shard.bytes += task.bytes;
+                }
+                None => shards.push(Self {
+                    model,
+                    scene: scene.map(str::to_owned),
+                    parts: vec![task.part.clone()],
+                    simulations: task.simulations,
+                    seconds: task.seconds,
+                    bytes: task.bytes,
+                }),
+            }
+        }
+        shards
+    }
+}
+
+/// The folder of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyFolder(PathBuf);
+
+impl StudyFolder {
+    /// At a path.
+    pub fn new(path: &Path) -> Self {
+        Self(path.to_owned())
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn plan_file(&self) -> PathBuf {
+        self.0.join("plan.json")
+    }
+
+    /// Reads the plan.
+    ///
+    /// # Errors
+    /// Where there is none, or it is of another version.
+    pub fn plan(&self) -> Result<Plan, StoreError> {
+        let path = self.plan_file();
+        let bytes = std::fs::read(&path).map_err(|error| StoreError::io(&path, error))?;
+        let plan = serde_json::from_slice::<Plan>(&bytes).ok();
+        plan.filter(|plan| plan.format == FORMAT && plan.mbint == env!("CARGO_PKG_VERSION"))
+            .ok_or_else(|| StoreError::damaged(&path))
+    }
+
+    /// Writes the plan of a round.
+    ///
+    /// # Errors
+    /// Where it cannot be written.
+    pub fn write(&self, round: usize, asked: Asked, shards: Vec<Shard>) -> Result<(), StoreError> {
+        std::fs::create_dir_all(&self.0).map_err(|error| StoreError::io(&self.0, error))?;
+        let plan = Plan { format: FORMAT, mbint: env!("CARGO_PKG_VERSION").to_owned(), round, asked, shards };
+        let mut text = serde_json::to_vec_pretty(&plan)
+            .map_err(|error| StoreError::io(&self.plan_file(), std::io::Error::other(error)))?;
+        text.push(b'\n');
+        write_whole(&self.plan_file(), &text)
+    }
+
+    /// Numbers of shards of which a part is missing. Only names are looked at.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn missing(&self, plan: &Plan) -> Result<Vec<usize>, StoreError> {
+        let folder = self.0.join(PARTS);
+        let entries = std::fs::read_dir(&folder).map_err(|error| StoreError::io(&folder, error))?;
+        let mut there = std::collections::HashSet::new();
+        for entry in entries {
+            let entry = entry.map_err(|error| StoreError::io(&folder, error))?;
+            there.insert(entry.file_name());
+        }
+        let is_there = |part: &String| there.contains(std::ffi::OsStr::new(&format!("{part}.part")));
+        let lacks = |(number, shard): (usize, &Shard)| (!shard.parts.iter().all(is_there)).then_some(number);
+        Ok(plan.shards.iter().enumerate().filter_map(lacks).collect())
+    }
+}
