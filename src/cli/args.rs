@@ -1,5 +1,7 @@
 //! The arguments of the command line.
 
+mod explain;
+mod shards;
 mod sweep;
 
 use std::path::PathBuf;
@@ -8,11 +10,11 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use super::listing::Listing;
-use super::shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 use super::{Failure, status};
 use crate::model::Override;
 use crate::results::Method;
+pub(super) use explain::ExplainArgs;
+pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
@@ -304,77 +306,6 @@ pub(super) struct ShowArgs {
 const SHOW_HELP: &str = "\
 Writes mechanism.svg: a mechanism of the plane in its true shape, one of space from three
 quarters and along the three axes. Uncertain lengths of bodies have their tolerances beside them.";
-
-#[derive(Debug, Args)]
-pub(super) struct ExplainArgs {
-    /// Model file; `-` is standard input.
-    #[arg(value_name = "MODEL", required_unless_present = "list")]
-    pub model: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub set: SetArgs,
-
-    /// Use this scene of the model.
-    #[arg(long, value_name = "NAME", conflicts_with = "list")]
-    pub scene: Option<String>,
-
-    #[command(flatten)]
-    pub list: ListArgs,
-
-    /// Text for people, or JSON.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub format: Format,
-
-    /// Print a list as a page of the book.
-    #[arg(long, hide = true, requires = "list", conflicts_with_all = ["format", "effects", "joints", "methods"])]
-    pub page: bool,
-}
-
-/// What to list instead of explaining a model.
-#[derive(Debug, Args)]
-#[group(id = "list", multiple = false, conflicts_with = "model")]
-pub(super) struct ListArgs {
-    /// List every effect with its keys, units, equation and source.
-    #[arg(long)]
-    effects: bool,
-
-    /// List every joint with its keys, units, equations and the signs of its reaction.
-    #[arg(long)]
-    pub joints: bool,
-
-    /// List every bounding method with its keys and source.
-    #[arg(long)]
-    pub methods: bool,
-
-    /// List every unit with its value in SI units.
-    #[arg(long)]
-    units: bool,
-
-    /// List every function of formulas with its domain.
-    #[arg(long)]
-    functions: bool,
-
-    /// List every output of bodies, joints and effects with unit, sign and frame.
-    #[arg(long)]
-    outputs: bool,
-
-    /// List the exit codes.
-    #[arg(long)]
-    exit_codes: bool,
-}
-
-impl ListArgs {
-    /// The list that is asked for, other than that of effects.
-    pub fn listing(&self) -> Option<Listing> {
-        let listings = [
-            (self.units, Listing::Units),
-            (self.functions, Listing::Functions),
-            (self.outputs, Listing::Outputs),
-            (self.exit_codes, Listing::ExitCodes),
-        ];
-        listings.into_iter().find(|(asked, _)| *asked).map(|(_, listing)| listing)
-    }
-}
 
 #[derive(Debug, Args)]
 pub(super) struct NewArgs {

@@ -1,78 +1,20 @@
 //! One job of `mbint run`: a model or a scene, its run, its files and what is reported of it.
 
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
-use super::args::RunArgs;
 use super::console::Console;
+use super::kept_run::context;
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
-use super::shards::KeptRun;
-use super::verdicts::{self, Junit};
+use super::request::{Job, Request, Settings};
+use super::verdicts;
 use super::{Failure, Status, interrupt, report as page};
 use crate::export::{holds_complete_results, write_results};
-use crate::model::{Description, Override};
-use crate::results::{Bounds, Method, ModelFile, OutputBounds, Provenance, RunRequest, Summary};
+use crate::model::Description;
+use crate::results::{Bounds, OutputBounds, Provenance, Summary};
 use crate::simulate::SimulationError;
-use crate::store::{Missing, PartStore};
+use crate::store::PartStore;
 use crate::study;
-
-/// The arguments of a run, checked.
-pub(super) struct Request {
-    pub models: Vec<PathBuf>,
-    pub overrides: Vec<Override>,
-    /// Empty for all scenes.
-    pub scenes: Vec<String>,
-    pub certify: bool,
-    pub output: Option<PathBuf>,
-    /// Whether no overview is printed.
-    pub quiet: bool,
-    /// Whether a report is written.
-    pub report: bool,
-    /// Where verdicts are written, too.
-    pub junit: Option<Junit>,
-    timings: bool,
-    overwrite: bool,
-    settings: Settings,
-    /// Where simulations are kept, if they are.
-    pub store: Option<KeptRun>,
-}
-
-/// How a model is run.
-#[derive(Default)]
-pub(super) struct Settings {
-    /// `None` for the model's own methods.
-    pub methods: Option<Vec<Method>>,
-    pub threads: Option<usize>,
-    /// Whether what takes long is run.
-    pub yes: bool,
-    pub certify_time: bool,
-    pub skip_infeasible: bool,
-    /// Whether no progress is shown.
-    pub quiet: bool,
-}
-
-/// A model, or a scene of it, with the folder for its results.
-pub(super) struct Job {
-    pub model: Description,
-    /// The model's file.
-    pub path: PathBuf,
-    pub folder: PathBuf,
-    /// The files that the model was read from.
-    pub files: Vec<ModelFile>,
-    /// Their names and texts.
-    pub texts: Rc<[(String, String)]>,
-    /// The folder of the model's file.
-    pub beside: PathBuf,
-    /// Jobs that share a report.
-    pub share: usize,
-    /// Whether the report is beside the results, and not that of all scenes.
-    pub page: bool,
-    /// Number of the model among those of the command.
-    pub number: usize,
-    /// Name of its scene, where it has some.
-    pub scene: Option<String>,
-}
 
 /// Outcome of a run.
 pub(super) struct Done {
@@ -88,53 +30,6 @@ pub(super) struct Done {
 
 /// Told of each job, with its model's file, how it ended.
 pub(super) type Told<'t> = dyn FnMut(&Path, &Job, Result<&Done, &Failure>) + 't;
-
-impl Request {
-    pub fn check(args: RunArgs) -> Result<Self, Failure> {
-        let overrides = args.set.overrides()?.to_vec();
-        let mut scenes = args.scene;
-        scenes.sort_unstable();
-        scenes.dedup();
-        let mut methods = args.method;
-        methods.sort_unstable();
-        methods.dedup();
-        Ok(Self {
-            models: args.models,
-            overrides,
-            scenes,
-            certify: args.certify,
-            output: args.output,
-            quiet: args.quiet,
-            report: !args.no_report,
-            junit: args.junit.map(Junit::new),
-            timings: args.timings,
-            overwrite: args.overwrite,
-            store: args.store.map(|folder| KeptRun::new(folder, Missing::Simulate)),
-            settings: Settings {
-                methods: if methods.is_empty() { None } else { Some(methods) },
-                threads: args.threads.map(usize::from),
-                yes: args.yes,
-                certify_time: args.certify_time,
-                skip_infeasible: args.skip_infeasible,
-                quiet: args.quiet,
-            },
-        })
-    }
-}
-
-impl Request {
-    /// What the results depend on.
-    pub fn asked(&self) -> RunRequest {
-        let methods = self.settings.methods.as_ref();
-        RunRequest {
-            set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
-            methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
-            certify: self.certify,
-            certify_time: self.settings.certify_time,
-            skip_infeasible: self.settings.skip_infeasible,
-        }
-    }
-}
 
 /// Runs a model and writes its results. The status says whether they are reliable; [`report`] prints why not.
 pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
@@ -184,11 +79,13 @@ pub(super) fn bounds(
 fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", job.model.name));
     // From the first rows on there is something to keep.
-    let store = request.store.as_ref().map(|kept| kept.open(job, request)).transpose();
+    let asked = request.asked();
+    let context = || context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
+    let store = request.store.as_ref().map(|kept| kept.open(&context())).transpose();
     let store = store.map_err(|error| failed(&error))?;
     let found = bounds(&job.model, &request.settings, store.as_ref(), &|| interrupt::keep_results(true));
     if let (Some(kept), Some(store)) = (&request.store, &store)
-        && !kept.close(job, store)
+        && !kept.close((job.number, job.scene.as_deref()), store)
     {
         found.map_or_else(
             |failure| if matches!(failure, Failure::Deferred) { Ok(()) } else { Err(failure) },
@@ -204,7 +101,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         true => beside(&job.folder),
         false => job.folder.clone(),
     };
-    let provenance = Provenance { model_files: job.files.clone(), request: Some(request.asked()) };
+    let provenance = Provenance { model_files: job.files.clone(), request: Some(asked) };
     let parts = (request.report && !interrupted).then(|| page::parts(job, request.settings.threads));
     let files = write_results(&folder, &bounds, &written, &provenance, interrupted, parts.as_ref());
     let files = files.map_err(|error| failed(&error))?;

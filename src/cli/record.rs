@@ -6,7 +6,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::Failure;
-use super::job::{Done, Job};
+use super::job::Done;
+use super::request::Job;
 use crate::export::SUMMARY;
 use crate::model;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::ReportArgs;
 use super::console::Console;
-use super::job::Job;
+use super::request::Job;
 use super::{Failure, Status};
 use crate::export::{ReportParts, stl_corners, write_report};
 use crate::study::{self, MotionOptions};

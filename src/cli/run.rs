@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::console::Console;
-use super::job::{Job, Request, Told, report, run_one};
+use super::job::{Told, report, run_one};
 use super::overview::overview;
+use super::request::{Job, Request};
 use super::scenes::Scenes;
 use super::{Failure, Status, interrupt, load};
 use crate::assemble;

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::args::{Format, RunArgs};
 use super::console::{Console, to_json};
-use super::job::{Done, Job, Request};
+use super::job::Done;
 use super::record::Record;
+use super::request::{Job, Request};
 use super::run::run_all;
 use super::watch::watch;
 use super::{Failure, Status};

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::console::{BOLD, Console, count, file_names};
-use super::job::{Done, Job, Request, Told, report, run_one};
+use super::job::{Done, Told, report, run_one};
+use super::request::{Job, Request};
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt};
 use crate::export::{SceneBounds, write_scenes};

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::args::SnapshotArgs;
 use super::console::{BOLD, Console, count};
-use super::job::{self, Settings};
+use super::job;
+use super::request::Settings;
 use super::table::{Align, Table};
 use super::{Failure, Status, interrupt, load};
 use crate::export::{Moved, Snapshot, file_stem, moved, snapshot_file, snapshot_table, write_snapshot};

@@ -2,7 +2,8 @@
 
 use super::args::SweepArgs;
 use super::console::{BOLD, Console, count, file_names};
-use super::job::{self, Settings};
+use super::job;
+use super::request::Settings;
 use super::run::results_of;
 use super::table::{Align, Table};
 use super::verdicts::{band, short};

@@ -7,7 +7,8 @@ use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
 use super::console::{BOLD, Console, count};
-use super::job::{Done, Job, Request};
+use super::job::Done;
+use super::request::{Job, Request};
 use super::run::run_all;
 use super::snapshot::moves;
 use super::{Failure, Status, interrupt};

@@ -9,6 +9,7 @@
 //! - [`ScanBounds`]: responses on a [`TensorGrid`] → least and largest;
 //! - [`ExtremeSearch`]: a function that is cheap to evaluate → its extremes, for many parameters.
 
+mod along;
 mod bernstein;
 mod chebyshev;
 mod decay;
@@ -28,6 +29,7 @@ mod range;
 mod row_space;
 mod samples;
 mod scan;
+mod scan_grid;
 mod search;
 mod separation;
 mod sobol;
@@ -52,7 +54,8 @@ pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};
 pub use row_space::{RowSpace, combined, dot};
 pub use samples::{TensorGrid, corners, spread, step_validation, validation};
-pub use scan::{ScanBounds, ScanGrid};
+pub use scan::ScanBounds;
+pub use scan_grid::ScanGrid;
 pub use search::{ExtremeSearch, Extremes};
 pub use separation::Separation;
 pub use sobol::SobolDecomposition;

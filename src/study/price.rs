@@ -1,20 +1,15 @@
 //! What a run costs, before it is spent.
 
+use super::effort::{INSTRUCTION_SECONDS, instructions_of_step};
 use super::single::Study;
 use crate::model::Stepping;
-use crate::simulate::{Schedule, Simulator};
+use crate::simulate::Schedule;
 
 /// Most simulations that run unasked.
 const MOST_SIMULATIONS: f64 = 20_000.0;
 
 /// Most time that is spent unasked, s.
 const MOST_SECONDS: f64 = 60.0;
-
-/// Time of an instruction of one sample, s: a processor of today with all its lanes, so that what is refused does take so long.
-pub(super) const INSTRUCTION_SECONDS: f64 = 2e-10;
-
-/// Corrections of a step.
-const CORRECTIONS: f64 = 2.0;
 
 /// What a run is expected to take.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -27,13 +22,6 @@ pub struct Price {
     simulations: f64,
     seconds: f64,
     threads: usize,
-}
-
-/// Instructions of a step of one sample.
-pub(super) fn instructions_of_step(simulator: &Simulator) -> f64 {
-    let program = &simulator.program;
-    (program.step().len() + program.factor().len() + program.advance().len()) as f64
-        + CORRECTIONS * program.correct().len() as f64
 }
 
 impl Price {

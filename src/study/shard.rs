@@ -1,8 +1,7 @@
 //! The simulations of a shard.
 
-use super::ensemble::Progress;
+use super::ensemble::{Progress, simulate_part};
 use super::single::Study;
-use super::stored::simulate_part;
 use super::subsystems::{Prepared, choices, prepare};
 use super::{Options, RunError, reduced};
 use crate::model::Description;

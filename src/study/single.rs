@@ -2,11 +2,10 @@
 
 use std::sync::OnceLock;
 
-use super::ensemble::{Motions, Progress};
+use super::ensemble::{Motions, Progress, Stored};
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results, Tried};
 use super::reduced::{Found, Store};
-use super::stored::Stored;
 use super::{Options, RunError};
 use crate::methods::{
     BandBuilder, BoundsRequest, EnsembleError, Method, MethodResult, Observed, Problem, Simulated, Stop, Validation,

@@ -6,12 +6,12 @@
 
 use symdiff::Formula;
 
+use super::ensemble::Stored;
 use super::internal::caught;
 use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
 use super::single::Study;
-use super::stored::Stored;
 use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};

@@ -1,22 +1,18 @@
 //! `mbint plan`, `shard`, `status` and `merge`: a study on many machines that share a folder.
 
-mod args;
-mod kept_run;
 mod submit;
 
 use std::fmt::Write;
 
-pub(super) use self::args::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
-pub(super) use self::kept_run::KeptRun;
 pub(super) use self::submit::submit;
-use super::args::{Format, RunArgs};
+use super::args::{Format, MergeArgs, PlanArgs, RunArgs, ShardArgs, StatusArgs};
 use super::console::{Console, count};
-use super::job::Request;
+use super::kept_run::{KeptRun, context};
+use super::request::Request;
 use super::run::run_all;
 use super::{Failure, Status, load};
 use crate::methods::Method;
 use crate::model::Override;
-use crate::results::ModelFile;
 use crate::store::{Asked, Missing, PartStore, Plan, Shard, StoreError, StudyFolder};
 use crate::study;
 
@@ -182,11 +178,6 @@ fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {
 fn overrides(asked: &Asked) -> Result<Vec<Override>, Failure> {
     let parse = |text: &String| Override::parse(text).map_err(|_| Failure::Failed(format!("`{text}` cannot be read")));
     asked.set.iter().map(parse).collect()
-}
-
-/// All that decides a model's results beside the tasks, unambiguously.
-fn context(files: &[ModelFile], set: &[String], scene: Option<&str>, skip_infeasible: bool) -> Vec<u8> {
-    format!("{files:?}{set:?}{scene:?}{skip_infeasible}").into_bytes()
 }
 
 /// Number of shards, what they take on one core, and their size on the disk.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::args::SubmitArgs;
+use crate::cli::args::SubmitArgs;
 use crate::cli::console::{Console, count};
 use crate::cli::{Failure, Status};
 use crate::store::StudyFolder;

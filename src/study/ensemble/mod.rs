@@ -1,5 +1,9 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
+mod jet;
+mod progress;
+mod stored;
+
 use std::ops::Range as Rows;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,19 +11,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
-use super::price::instructions_of_step;
+use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
-use super::stored::Stored;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
 };
 use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, ExplicitJets, ExtrapolatedJets,
-    Integration, JetRun, Observed, OpenConstraint, Points, SampleRun, Schedule, SimulationError, Simulator,
-    SingularPass, Stop, choose_independent,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, OpenConstraint, Points,
+    SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
+
+use jet::SampleJet;
+pub(super) use progress::Progress;
+pub(super) use stored::{Stored, simulate_part};
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;
@@ -30,25 +36,6 @@ const MOST_ROWS: usize = 64;
 /// A range that is narrower than this, relative to the model's size and the run's duration, is rounding: Newton's iteration ends at 1e-12 or
 /// so.
 const AT_REST: f64 = 1e-10;
-
-/// How far a run has come, in simulations times rows.
-pub(super) struct Progress<'a> {
-    done: AtomicUsize,
-    total: usize,
-    report: &'a (dyn Fn(f64) + Sync),
-}
-
-impl<'a> Progress<'a> {
-    /// Before the first simulation.
-    pub fn new(total: usize, report: &'a (dyn Fn(f64) + Sync)) -> Self {
-        Self { done: AtomicUsize::new(0), total, report }
-    }
-
-    pub fn advance(&self, work: usize) {
-        let done = self.done.fetch_add(work, Ordering::Relaxed) + work;
-        (self.report)((done as f64 / self.total as f64).min(1.0));
-    }
-}
 
 /// A mechanism under one schedule.
 pub(super) struct Motions<'a> {
@@ -232,58 +219,6 @@ impl<'a> Motions<'a> {
             stopped,
             reduced,
             missing: self.schedule.rows - reached,
-        }
-    }
-}
-
-/// The run of one jet, however the schedule's steps are taken.
-enum SampleJet<'s> {
-    Plain(Box<JetRun<'s>>),
-    Extrapolated(Box<ExtrapolatedJets<'s>>),
-    Explicit(Box<ExplicitJets<'s>>),
-}
-
-impl<'s> SampleJet<'s> {
-    fn start(
-        simulator: &'s Simulator,
-        space: &'s JetSpace,
-        (center, half_widths): (&[f64], &[f64]),
-        schedule: &Schedule,
-        controlled: bool,
-    ) -> Result<Self, SimulationError> {
-        let first_step = schedule.first_step();
-        Ok(match schedule.integration {
-            Integration::Plain => {
-                let jet = JetRun::start(simulator, space, center, half_widths, first_step)?;
-                Self::Plain(Box::new(if controlled { jet.controlled() } else { jet }))
-            }
-            Integration::Extrapolated { levels } => {
-                let jets = ExtrapolatedJets::start(simulator, space, (center, half_widths), first_step, levels)?;
-                Self::Extrapolated(Box::new(jets))
-            }
-            Integration::Explicit => {
-                Self::Explicit(Box::new(ExplicitJets::start(simulator, space, (center, half_widths))?))
-            }
-        })
-    }
-
-    fn advance(&mut self, schedule: &Schedule, rows: Rows<usize>, into: &mut Vec<f64>) -> Option<Stop> {
-        match self {
-            Self::Plain(jet) => jet.advance(schedule, rows, into),
-            Self::Extrapolated(jets) => jets.advance(schedule, rows, into),
-            Self::Explicit(jets) => jets.advance(schedule, rows, into),
-        }
-    }
-
-    fn effort(&self) -> Effort {
-        match self {
-            Self::Plain(jet) => effort(jet.counters()),
-            Self::Extrapolated(jets) => {
-                let mut total = Effort::default();
-                jets.levels().iter().for_each(|jet| total += effort(jet.counters()));
-                total
-            }
-            Self::Explicit(_) => Effort::default(),
         }
     }
 }

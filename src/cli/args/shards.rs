@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::args::{MOST_THREADS, SetArgs, methods};
+use super::{MOST_THREADS, SetArgs, methods};
 use crate::results::Method;
 
 #[derive(Debug, Args)]

@@ -2,12 +2,12 @@
 
 use std::ops::Range as Rows;
 
-use super::ensemble::Motions;
-use super::price::INSTRUCTION_SECONDS;
+use super::Motions;
 use crate::methods::{Ensemble, Observed, Sampling, Simulated, Until, lines, scan_shard};
 use crate::numerics::{Sample, ScanBounds, ScanGrid};
 use crate::simulate::SimulationError;
 use crate::store::{PartReader, PartStore, ScanPart, StoreError, Task};
+use crate::study::effort::INSTRUCTION_SECONDS;
 
 /// Values of a part are about so many bytes, in samples between [`FEWEST`] and [`MOST`], a whole number of the widest tiles.
 const PART_BYTES: usize = 64 << 20;
@@ -19,7 +19,7 @@ const NUMBERS_OF_SCAN: usize = 5;
 
 /// Where the simulations of a study are stored.
 #[derive(Clone, Copy)]
-pub(super) struct Stored<'a> {
+pub(in crate::study) struct Stored<'a> {
     pub store: &'a PartStore,
     /// Number of the subsystem.
     pub subsystem: usize,
@@ -133,7 +133,7 @@ impl Stored<'_> {
 }
 
 /// Simulates a task and stores its part.
-pub(super) fn simulate_part(
+pub(in crate::study) fn simulate_part(
     motions: &Motions,
     store: &PartStore,
     name: &str,

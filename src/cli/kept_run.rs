@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use crate::cli::console::count;
-use crate::cli::job::{Job, Request};
+use super::console::count;
+use crate::results::ModelFile;
 use crate::store::{Missing, PartStore, Shard, StoreError};
 
 /// Where a run's simulations are kept, and what it left to shards.
 #[derive(Debug)]
-pub(in crate::cli) struct KeptRun {
+pub(super) struct KeptRun {
     folder: PathBuf,
     missing: Missing,
     /// Whether nothing is written but the plan.
@@ -28,17 +28,15 @@ impl KeptRun {
         Self { plans: true, ..Self::new(folder, missing) }
     }
 
-    /// The store of a job.
-    pub fn open(&self, job: &Job, request: &Request) -> Result<PartStore, StoreError> {
-        let asked = request.asked();
-        let context = super::context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
-        PartStore::open(&self.folder, &context, self.missing)
+    /// The store of a job, given all that decides its results beside the tasks.
+    pub fn open(&self, context: &[u8]) -> Result<PartStore, StoreError> {
+        PartStore::open(&self.folder, context, self.missing)
     }
 
-    /// Notes what a job left to shards. Whether its results are complete and to be written.
-    pub fn close(&self, job: &Job, store: &PartStore) -> bool {
+    /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and to be written.
+    pub fn close(&self, (model, scene): (usize, Option<&str>), store: &PartStore) -> bool {
         let deferred = store.deferred();
-        self.shards.borrow_mut().extend(Shard::of(job.number, job.scene.as_deref(), &deferred));
+        self.shards.borrow_mut().extend(Shard::of(model, scene, &deferred));
         deferred.is_empty() && !self.plans
     }
 
@@ -53,4 +51,9 @@ impl KeptRun {
     pub fn shards(self) -> Vec<Shard> {
         self.shards.into_inner()
     }
+}
+
+/// All that decides a model's results beside the tasks, unambiguously.
+pub(super) fn context(files: &[ModelFile], set: &[String], scene: Option<&str>, skip_infeasible: bool) -> Vec<u8> {
+    format!("{files:?}{set:?}{scene:?}{skip_infeasible}").into_bytes()
 }

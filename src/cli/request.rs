@@ -1,0 +1,115 @@
+//! What is asked of `mbint run`: its arguments, checked, and a job for each model or scene.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use super::Failure;
+use super::args::RunArgs;
+use super::kept_run::KeptRun;
+use super::verdicts::Junit;
+use crate::model::{Description, Override};
+use crate::results::{Method, ModelFile, RunRequest};
+use crate::store::Missing;
+
+/// The arguments of a run, checked.
+pub(super) struct Request {
+    pub models: Vec<PathBuf>,
+    pub overrides: Vec<Override>,
+    /// Empty for all scenes.
+    pub scenes: Vec<String>,
+    pub certify: bool,
+    pub output: Option<PathBuf>,
+    /// Whether no overview is printed.
+    pub quiet: bool,
+    /// Whether a report is written.
+    pub report: bool,
+    /// Where verdicts are written, too.
+    pub junit: Option<Junit>,
+    /// Whether computing times are written.
+    pub timings: bool,
+    pub overwrite: bool,
+    pub settings: Settings,
+    /// Where simulations are kept, if they are.
+    pub store: Option<KeptRun>,
+}
+
+/// How a model is run.
+#[derive(Default)]
+pub(super) struct Settings {
+    /// `None` for the model's own methods.
+    pub methods: Option<Vec<Method>>,
+    pub threads: Option<usize>,
+    /// Whether what takes long is run.
+    pub yes: bool,
+    pub certify_time: bool,
+    pub skip_infeasible: bool,
+    /// Whether no progress is shown.
+    pub quiet: bool,
+}
+
+/// A model, or a scene of it, with the folder for its results.
+pub(super) struct Job {
+    pub model: Description,
+    /// The model's file.
+    pub path: PathBuf,
+    pub folder: PathBuf,
+    /// The files that the model was read from.
+    pub files: Vec<ModelFile>,
+    /// Their names and texts.
+    pub texts: Rc<[(String, String)]>,
+    /// The folder of the model's file.
+    pub beside: PathBuf,
+    /// Jobs that share a report.
+    pub share: usize,
+    /// Whether the report is beside the results, and not that of all scenes.
+    pub page: bool,
+    /// Number of the model among those of the command.
+    pub number: usize,
+    /// Name of its scene, where it has some.
+    pub scene: Option<String>,
+}
+
+impl Request {
+    pub fn check(args: RunArgs) -> Result<Self, Failure> {
+        let overrides = args.set.overrides()?.to_vec();
+        let mut scenes = args.scene;
+        scenes.sort_unstable();
+        scenes.dedup();
+        let mut methods = args.method;
+        methods.sort_unstable();
+        methods.dedup();
+        Ok(Self {
+            models: args.models,
+            overrides,
+            scenes,
+            certify: args.certify,
+            output: args.output,
+            quiet: args.quiet,
+            report: !args.no_report,
+            junit: args.junit.map(Junit::new),
+            timings: args.timings,
+            overwrite: args.overwrite,
+            store: args.store.map(|folder| KeptRun::new(folder, Missing::Simulate)),
+            settings: Settings {
+                methods: if methods.is_empty() { None } else { Some(methods) },
+                threads: args.threads.map(usize::from),
+                yes: args.yes,
+                certify_time: args.certify_time,
+                skip_infeasible: args.skip_infeasible,
+                quiet: args.quiet,
+            },
+        })
+    }
+
+    /// What the results depend on.
+    pub fn asked(&self) -> RunRequest {
+        let methods = self.settings.methods.as_ref();
+        RunRequest {
+            set: self.overrides.iter().map(|setting| setting.text.clone()).collect(),
+            methods: methods.map(|methods| methods.iter().map(|method| method.name().to_owned()).collect()),
+            certify: self.certify,
+            certify_time: self.settings.certify_time,
+            skip_infeasible: self.settings.skip_infeasible,
+        }
+    }
+}

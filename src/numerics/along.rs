@@ -1,0 +1,113 @@
+//! How far a response may go beyond a sample and its neighbours along an axis.
+
+/// A sample among those along one axis.
+pub(super) struct Along<'a> {
+    /// Values of the part's samples.
+    pub values: &'a [f64],
+    /// Its number among these.
+    pub place: usize,
+    /// From one sample of the axis to the next.
+    pub stride: usize,
+    /// Its number along the axis,
+    pub at: usize,
+    /// and the axis' samples.
+    pub count: usize,
+}
+
+/// Second differences may grow so much from one sample to the next where the response is smooth, and so much more where those before
+/// grow, as far as that goes.
+const GROWTH: f64 = 1.5;
+const MOST_GROWTH: f64 = 8.0;
+
+/// The slope at the first of a row of samples is known to this share of their second difference, or better; and so is the second difference of three.
+const UNSURE: f64 = 0.25;
+
+impl Along<'_> {
+    /// The value so many samples further; `None` beyond the axis' ends, and in another part of the scan.
+    fn value(&self, away: isize) -> Option<f64> {
+        let at = self.at.checked_add_signed(away).filter(|&at| at < self.count)?;
+        let place = (self.place + self.stride * at).checked_sub(self.stride * self.at)?;
+        self.values.get(place).copied()
+    }
+
+    /// The second difference so many samples further.
+    fn bend(&self, away: isize) -> Option<f64> {
+        Some(self.value(away - 1)? - 2.0 * self.value(away)? + self.value(away + 1)?)
+    }
+
+    /// How far a smooth response may go below and above an inner sample; `None` at the ends.
+    pub fn smooth(&self) -> Option<[f64; 2]> {
+        let (here, before, after) = (self.value(0)?, self.value(-1)?, self.value(1)?);
+        // Three samples do not tell how the second difference changes between them.
+        let unsure = if self.count == 3 { 1.0 + UNSURE } else { 1.0 };
+        let height = unsure * (before - 2.0 * here + after).abs() / 8.0;
+        let lowest = here <= before && here <= after;
+        let highest = here >= before && here >= after;
+        Some([if lowest { height } else { 0.0 }, if highest { height } else { 0.0 }])
+    }
+
+    /// How far below and above a sample at the axis' end a response may go that bends back between it and its neighbour: the parabola through it
+    /// and the two next to it, as far as that may turn by what is not known of its slope.
+    pub fn bending_back(&self) -> [f64; 2] {
+        let side = match self.at {
+            0 => 1,
+            last if last + 1 == self.count => -1,
+            _ => return [0.0; 2],
+        };
+        let (Some(here), Some(there), Some(bend)) = (self.value(0), self.value(side), self.bend(side)) else {
+            return [0.0; 2];
+        };
+        // Differences forwards: Δ − Δ²/2 + Δ³/3.
+        let third = self.bend(2 * side).map(|next| next - bend);
+        let slope = there - here - bend / 2.0 + third.unwrap_or_default() / 3.0;
+        let unsure = third.map_or(f64::INFINITY, |third| third.abs() / 3.0).min(UNSURE * bend.abs());
+        // Towards the neighbour it rises if it bends upwards, and falls if it bends downwards.
+        let back = unsure - slope * bend.signum();
+        let is_end = (there - here) * bend >= 0.0;
+        let depth = if is_end && back > 0.0 { 0.5 * bend.abs() * (back / bend.abs()).min(1.0).powi(2) } else { 0.0 };
+        if bend > 0.0 { [depth, 0.0] } else { [0.0, depth] }
+    }
+
+    /// How far below and above the sample and its neighbour on one side a response that is not smooth between them may go.
+    pub fn irregular(&self, side: isize) -> [f64; 2] {
+        let (Some(here), Some(there)) = (self.value(0), self.value(side)) else { return [0.0; 2] };
+        let excess = |away: isize, others: [isize; 2]| {
+            let bend = self.bend(away)?;
+            let expected = others.into_iter().filter_map(|other| self.expected(bend, away, other)).reduce(f64::max)?;
+            Some(bend.signum() * (bend.abs() - expected).max(0.0))
+        };
+        let outer = [-side, 2 * side];
+        let excess = [excess(0, outer), excess(side, outer)];
+        let share = if excess.contains(&None) { 0.5 } else { 0.25 };
+        let [a, b] = excess.map(Option::unwrap_or_default);
+        if a * b < 0.0 {
+            return [share * (a.abs() + b.abs()); 2];
+        }
+        let total = share * (a + b);
+        // Lines through the pairs on both sides meet at a kink's tip.
+        let tip = || {
+            let (left, right) = (here - self.value(-side)?, there - self.value(2 * side)?);
+            let at = (there + right - here) / (left + right);
+            // To rounding, where it is at one of the two.
+            (-0.01..=1.01).contains(&at).then_some(here + at.clamp(0.0, 1.0) * left)
+        };
+        let most = |beyond: Option<f64>| beyond.map_or(total.abs(), |beyond| beyond.clamp(0.0, total.abs()));
+        if total > 0.0 {
+            [most(tip().map(|tip| here.min(there) - tip)), 0.0]
+        } else if total < 0.0 {
+            [0.0, most(tip().map(|tip| tip - here.max(there)))]
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// The largest second difference `away` from here that a smooth response has, by those beyond, from number `outer` on; of the same
+    /// sign, since one that changes it is too short a wave to tell.
+    fn expected(&self, bend: f64, away: isize, outer: isize) -> Option<f64> {
+        let (beside, beyond) = (self.bend(outer)?, self.bend(outer + (outer - away).signum())?);
+        let growth = (beside / beyond).abs().clamp(1.0, MOST_GROWTH);
+        let growth = if growth.is_nan() { 1.0 } else { growth };
+        let distance = (outer - away).unsigned_abs() as i32;
+        Some(if beside * bend < 0.0 { 0.0 } else { GROWTH * beside.abs() * growth.powi(distance) })
+    }
+}

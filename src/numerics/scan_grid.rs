@@ -1,0 +1,52 @@
+//! The samples of a scan.
+
+use std::iter::StepBy;
+use std::ops::Range;
+
+use super::domain::{ParameterBox, Sample};
+use super::samples::TensorGrid;
+
+/// Fewest and most samples that are simulated at once.
+const SHARD: usize = 2048;
+const LARGEST_SHARD: usize = 16384;
+
+/// The samples of a scan, in shards of consecutive ones.
+#[derive(Clone, Debug)]
+pub struct ScanGrid {
+    grid: TensorGrid,
+    points: Vec<usize>,
+    shard: usize,
+}
+
+impl ScanGrid {
+    /// With so many points along each axis, both ends included.
+    pub fn new(points: &[usize]) -> Self {
+        let grid = TensorGrid::full_factorial(points);
+        // Slabs of the first axis stay together, so that neighbours do.
+        let slab = grid.len() / points.first().copied().unwrap_or(1);
+        let shard = slab.saturating_mul(3).clamp(SHARD, LARGEST_SHARD);
+        Self { grid, points: points.to_vec(), shard }
+    }
+
+    /// Points along each axis, the last fastest.
+    pub fn points(&self) -> &[usize] {
+        &self.points
+    }
+
+    /// Number of samples.
+    #[allow(clippy::len_without_is_empty)] // every axis has a point
+    pub fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// Number of the first sample of each shard.
+    pub fn shards(&self) -> StepBy<Range<usize>> {
+        (0..self.grid.len()).step_by(self.shard)
+    }
+
+    /// The samples of the shard that begins with number `first`.
+    pub fn samples(&self, first: usize, domain: &ParameterBox) -> Vec<Sample> {
+        let end = (first + self.shard).min(self.grid.len());
+        (first..end).map(|index| domain.sample(&self.grid.sample(index))).collect()
+    }
+}
