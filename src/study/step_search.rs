@@ -166,11 +166,17 @@ mod tests {
             while search.adjust(error(search.integration, search.count as f64 / 10.0)) {}
             (search.integration, search.count)
         };
-        let smooth = |c: f64| move |how: Integration, parts: f64| c / parts.powi(how.order() as i32);
+        // Each order gains a factor of 20.
+        let smooth = |c: f64| {
+            move |how: Integration, parts: f64| {
+                let order = how.order() as i32;
+                c * 0.05_f64.powi(order - 2) / parts.powi(order)
+            }
+        };
         let of_levels = Integration::of_levels;
         assert_eq!(search(&smooth(2.0)), (of_levels(1), 23), "a few more steps are cheaper");
         assert_eq!(search(&smooth(5.0)).0, of_levels(3));
-        assert_eq!(search(&smooth(1e3)).0, of_levels(4));
+        assert_eq!(search(&smooth(1e4)).0, of_levels(4));
         let kinked = |_: Integration, parts: f64| 5.0 / parts.powi(2);
         assert_eq!(search(&kinked), (of_levels(1), 36));
     }

@@ -132,7 +132,8 @@ fn what_cannot_be_certified_is_refused() {
     );
     assert_eq!(refused(&many), "certified bounds are for at most two uncertain parameters, not 3");
     let controlled = model("pendulum").tolerance(1e-6);
-    assert!(refused(&controlled).starts_with("certified bounds need a fixed `step`"));
+    let message = refused(&controlled);
+    assert!(message.starts_with("certified bounds enclose HHT-I3 itself with a fixed `step`"), "{message}");
 }
 
 /// An effect without an enclosure is named; one with friction proportional to its reaction has one, and a stop as long as the

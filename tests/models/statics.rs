@@ -173,10 +173,12 @@ joints:
 effects:
   weight: {{ gravity: {{ acceleration: [0, -9.81{}] }} }}
   pull: {{ spring_damper: {{ between: [ground.wall, plate.b], stiffness: 40, damping: 1, free_length: 0.2 }} }}
-guess: {{ plate.x: 0.5, plate.y: -0.5 }}
+guess: {{ plate.x: 0.5, plate.y: -0.5{} }}
 outputs: {{ x: plate.x, y: plate.y, pull: pull.force }}
 ",
-            if space == "spatial" { ", 0" } else { "" }
+            if space == "spatial" { ", 0" } else { "" },
+            // In the plane the links may cross.
+            if space == "spatial" { "" } else { ", left.angle: 0, right.angle: 0, plate.angle: 0" },
         )
     };
     let [plane, spatial] = ["planar", "spatial"].map(|space| nominal(&read(&model(space))));

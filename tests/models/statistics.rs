@@ -51,28 +51,28 @@ fn a_linear_stack_of_normal_laws() {
     let found = statistics(&at_rest(SUM, "a + b - c", "statistics: { distribution: normal }"));
     // σ = 1, 0.5 and 2 mm.
     let sigma = (1.0_f64 + 0.25 + 4.0).sqrt() * 1e-3;
-    near(found.mean[1], 0.1, 1e-6);
-    near(found.deviation[1], sigma, 1e-5);
-    near(found.quantiles[0][1], 0.1 - 2.999_977 * sigma, 1e-4);
-    near(found.quantiles[1][1], 0.1, 1e-5);
-    near(found.quantiles[2][1], 0.1 + 2.999_977 * sigma, 1e-4);
+    near(found.mean[0], 0.1, 1e-6);
+    near(found.deviation[0], sigma, 1e-5);
+    near(found.quantiles[0][0], 0.1 - 2.999_977 * sigma, 1e-4);
+    near(found.quantiles[1][0], 0.1, 1e-5);
+    near(found.quantiles[2][0], 0.1 + 2.999_977 * sigma, 1e-4);
     // As tolerance engineers know them: Σ t, and √Σ t².
-    assert!((found.linear[1] - 10.5e-3).abs() < 1e-9);
-    assert!((found.rss[1] - (9.0_f64 + 2.25 + 36.0).sqrt() * 1e-3).abs() < 1e-9);
+    assert!((found.linear[0] - 10.5e-3).abs() < 1e-9);
+    assert!((found.rss[0] - (9.0_f64 + 2.25 + 36.0).sqrt() * 1e-3).abs() < 1e-9);
 }
 
 #[test]
 fn a_linear_stack_of_uniform_laws_and_correlated_normal_ones() {
     let found = statistics(&at_rest(SUM, "a + b - c", "statistics: {}"));
-    near(found.deviation[1], ((9.0_f64 + 2.25 + 36.0) / 3.0).sqrt() * 1e-3, 1e-5);
+    near(found.deviation[0], ((9.0_f64 + 2.25 + 36.0) / 3.0).sqrt() * 1e-3, 1e-5);
     let more = "statistics: { distribution: normal, correlation: [{ of: [a, c], coefficient: 0.8 }] }";
     let found = statistics(&at_rest(SUM, "a + b - c", more));
-    near(found.deviation[1], (1.0_f64 + 0.25 + 4.0 - 2.0 * 0.8 * 2.0).sqrt() * 1e-3, 1e-5);
+    near(found.deviation[0], (1.0_f64 + 0.25 + 4.0 - 2.0 * 0.8 * 2.0).sqrt() * 1e-3, 1e-5);
     let matrix = "[[1, 0.5, 0.2], [0.5, 1, 0.1], [0.2, 0.1, 1]]";
     let more = format!("statistics: {{ distribution: normal, correlation: [{{ of: [a, b, c], matrix: {matrix} }}] }}");
     let found = statistics(&at_rest(SUM, "a + b - c", &more));
     let variance: f64 = 1.0 + 0.25 + 4.0 + 2.0 * (0.5 * 0.5 - 0.2 * 2.0 - 0.1 * 0.5 * 2.0);
-    near(found.deviation[1], variance.sqrt() * 1e-3, 1e-5);
+    near(found.deviation[0], variance.sqrt() * 1e-3, 1e-5);
 }
 
 #[test]
@@ -82,15 +82,15 @@ fn a_product_of_normal_laws_and_a_square() {
   b: { value: 0.4, unit: m, tolerance: 0.06 m, distribution: { normal: { sigma: 0.03 m } } }";
     let found = statistics(&at_rest(two, "a*b/(1 m)", ""));
     let (ma, sa, mb, sb) = (0.5, 0.05, 0.4, 0.03);
-    near(found.mean[1], ma * mb, 1e-5);
+    near(found.mean[0], ma * mb, 1e-5);
     let variance: f64 = ma * ma * sb * sb + mb * mb * sa * sa + sa * sa * sb * sb;
-    near(found.deviation[1], variance.sqrt(), 1e-4);
+    near(found.deviation[0], variance.sqrt(), 1e-4);
     // The square of a uniform number of [0.1, 0.3]: quantiles are squares of quantiles.
     let one = "\n  a: { interval: [0.1, 0.3], unit: m }";
     let found = statistics(&at_rest(one, "a^2/(1 m)", "statistics: { quantiles: [10%, 90%] }"));
-    near(found.quantiles[0][1], 0.12 * 0.12, 1e-5);
-    near(found.quantiles[1][1], 0.28 * 0.28, 1e-5);
-    near(found.mean[1], (0.027 - 0.001) / 3.0 / 0.2, 1e-6);
+    near(found.quantiles[0][0], 0.12 * 0.12, 1e-5);
+    near(found.quantiles[1][0], 0.28 * 0.28, 1e-5);
+    near(found.mean[0], (0.027 - 0.001) / 3.0 / 0.2, 1e-6);
 }
 
 #[test]
@@ -106,9 +106,9 @@ fn every_law_has_its_mean_and_deviation() {
     ] {
         let one = format!("\n  a: {{ value: 10 mm, tolerance: 1 mm, distribution: {law} }}");
         let found = statistics(&at_rest(&one, "a", ""));
-        near(found.mean[1], 1e-3 * (10.0 + mean), 1e-6);
-        let off = (found.deviation[1].value - 1e-3 * deviation).abs();
-        assert!(off < 2e-7, "{law}: {:?} {deviation}", found.deviation[1]);
+        near(found.mean[0], 1e-3 * (10.0 + mean), 1e-6);
+        let off = (found.deviation[0].value - 1e-3 * deviation).abs();
+        assert!(off < 2e-7, "{law}: {:?} {deviation}", found.deviation[0]);
     }
 }
 

@@ -251,7 +251,7 @@ fn scenes_are_run_each_by_itself_and_shown_side_by_side() {
         assert!(output.contains(text), "{text} in\n{output}");
     }
     assert!(
-        output.ends_with("  results/door: angle.svg, scenes.csv, scenes.json; ideal/, friction/, long/\n"),
+        output.ends_with("  results/door: angle.svg, scenes.csv, report.html, scenes.json; ideal/, friction/, long/\n"),
         "{output}"
     );
     let summary = fs::read_to_string(place.path().join("results/door/ideal/summary.json")).unwrap();
@@ -395,7 +395,7 @@ bounds: { scan: { points: 3 } }
     assert_eq!(errors.matches("error").count(), 1, "{errors}");
     let failed = output.lines().find(|line| line.trim_start().starts_with("short")).unwrap();
     assert!(failed.ends_with("failed"), "{output}");
-    assert!(output.ends_with("angle.svg, scenes.csv, scenes.json; fine/, also_fine/\n"), "{output}");
+    assert!(output.ends_with("angle.svg, scenes.csv, report.html, scenes.json; fine/, also_fine/\n"), "{output}");
     let table = fs::read_to_string(place.path().join("results/rocker/scenes.csv")).unwrap();
     let named: BTreeSet<&str> = table.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(named.into_iter().collect::<Vec<_>>(), ["also_fine", "fine"]);
