@@ -32,7 +32,7 @@ impl DisplayUnit {
 
     /// A value in SI, in this unit.
     pub fn of_si(&self, value: f64) -> f64 {
-        self.unit.from_si(value)
+        self.unit.of_si(value)
     }
 }
 

@@ -27,7 +27,7 @@ impl Unit {
     }
 
     /// A value in SI, in this unit.
-    pub fn from_si(self, value: f64) -> f64 {
+    pub fn of_si(self, value: f64) -> f64 {
         value * self.over / self.times
     }
 

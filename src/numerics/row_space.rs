@@ -37,7 +37,7 @@ impl RowSpace {
             orthogonalise(&mut vector, &space.basis, &mut part);
             let size = norm(&vector);
             // NaN is dependent.
-            if !(size > DEPENDENT * sizes[row]) || space.basis.len() == n {
+            if size.is_nan() || size <= DEPENDENT * sizes[row] || space.basis.len() == n {
                 break;
             }
             vector.iter_mut().for_each(|entry| *entry /= size);

@@ -421,7 +421,7 @@ fn a_robots_effects_are_left_out_and_its_limits_become_stops() {
             "model: {name}\nurdf: arm.urdf\nparameters: {{ link.arm.mass: 5%, joint.hinge.damping: 10%, joint.hinge.limit.upper: ± 0.05 }}\n\
              effects: {{ weight: {{ gravity: {{ acceleration: [0, 0, -9.81] }} }}{more}\n\
              outputs: {{ angle: hinge.angle, speed: hinge.angular_velocity }}\n\
-             simulation: {{ duration: 1, step: 1e-3, output_step: 0.02 }}\nbounds: {{ scan: {{ points: 3 }} }}\n"
+             simulation: {{ duration: 1, step: 1e-3, output_step: 0.02 }}\nbounds: {{ scan: {{ points: 5 }} }}\n"
         );
         fs::write(place.path().join(format!("{name}.yaml")), text).unwrap();
     };

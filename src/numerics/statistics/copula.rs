@@ -25,11 +25,11 @@ impl Copula {
             return Ok(Self::default());
         }
         let mut rows: Vec<Vec<f64>> = Vec::with_capacity(k);
-        for i in 0..k {
+        for (i, of_matrix) in matrix.iter().enumerate() {
             let mut row = Vec::with_capacity(i + 1);
-            for j in 0..=i {
+            for (j, entry) in of_matrix[..=i].iter().enumerate() {
                 let known: f64 = (0..j).map(|m| row[m] * if j == i { row[m] } else { rows[j][m] }).sum();
-                let rest = matrix[i][j] - known;
+                let rest = entry - known;
                 if j < i {
                     row.push(rest / rows[j][j]);
                 } else if rest > 1e-12 {

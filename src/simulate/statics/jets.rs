@@ -73,7 +73,8 @@ impl Equilibrium {
         let matrix = DMatrix::from_fn(size, size, |row, column| entry(kept[row], kept[column]));
         let factors = matrix.full_piv_lu();
         let pivots = factors.u().diagonal().map(f64::abs);
-        if !(pivots.min() > SINGULAR * pivots.max()) {
+        let (least, most) = (pivots.min(), pivots.max());
+        if least.is_nan() || most.is_nan() || least <= SINGULAR * most {
             return None;
         }
         let scale = |place: usize| if place < n { self.scale[place] } else { 1.0 };

@@ -351,7 +351,6 @@ impl Posed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compile::Tapes;
     use crate::model;
 
     fn four_bar() -> Description {
