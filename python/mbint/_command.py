@@ -13,6 +13,9 @@ from pathlib import Path
 #: Exit statuses of ``mbint run`` after which there are results (see docs/reference/exit-codes.md).
 WITH_RESULTS = frozenset({0, 3, 4})
 
+#: Exit status of ``mbint merge`` where another round of shards is needed.
+ANOTHER_ROUND = 75
+
 
 class MbintError(RuntimeError):
     """The command failed.

@@ -53,16 +53,10 @@ class Result:
     @cached_property
     def frame(self) -> pd.DataFrame:
         """``bounds.csv`` with the time as index; ``attrs["units"]`` has the unit of every column."""
-        unresolved = [column["column"] for column in self.columns if column["quantity"] == "unresolved"]
+        # As text first: numbers then are those that were written, to the last bit.
+        frame = pd.read_csv(self.folder / "bounds.csv", dtype=str, keep_default_na=False)
         numbers = [column["column"] for column in self.columns if column["quantity"] != "unresolved"]
-        frame = pd.read_csv(
-            self.folder / "bounds.csv",
-            index_col="t",
-            float_precision="round_trip",
-            dtype=dict.fromkeys(unresolved, str),
-            keep_default_na=False,
-            na_values={heading: ["NaN"] for heading in numbers},
-        )
+        frame = frame.astype(dict.fromkeys(numbers, float)).set_index("t")
         frame.attrs["units"] = {column["column"]: column["unit"] for column in self.columns}
         return frame
 
@@ -80,7 +74,9 @@ class Result:
         values: dict[str, np.ndarray[Any, Any]] = {}
         for column in self.columns:
             if column["quantity"] in BOUNDS:
-                band = values.setdefault(column["method"], np.full((len(self.frame), len(outputs), len(BOUNDS)), np.nan))
+                band = values.setdefault(
+                    column["method"], np.full((len(self.frame), len(outputs), len(BOUNDS)), np.nan)
+                )
                 curve = self.frame[column["column"]].to_numpy(float)
                 band[:, outputs[column["output"]], BOUNDS.index(column["quantity"])] = curve
         arrays = {method: self._array(band, ("time", "output", "bound"), method) for method, band in values.items()}

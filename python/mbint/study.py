@@ -13,10 +13,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ._command import WITH_RESULTS, invoke
+from ._command import ANOTHER_ROUND, WITH_RESULTS, invoke
 from .result import Result
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from matplotlib.figure import Figure
 
 #: A model: the path of a YAML or URDF file, or the content of a YAML file as a dictionary.
@@ -75,18 +77,40 @@ class Study:
         path.write_text(json.dumps(model, ensure_ascii=False, indent=1, default=_plain), encoding="utf-8")
         return path
 
-    def run(self) -> Study:
+    def run(self, executor: Executor | None = None, *, store: str | Path | None = None, at_once: float = 10.0) -> Study:
         """Runs the study, and returns it.
 
         Warnings of the command are in ``messages``.
+
+        Args:
+            executor: any executor of :mod:`concurrent.futures` runs the shards, such as Dask's ``client.get_executor()``,
+                ``mpi4py.futures`` or submitit's; without one, the command runs here. Results are the same to the bit. The
+                workers need this package, and see the same files.
+            store: folder for what is simulated, where a run that was interrupted goes on; by default temporary.
+            at_once: with an executor, what takes less than this on one core, in s, is simulated here.
 
         Raises:
             MbintError: the model has errors, or a run failed.
         """
         self._forget()
-        arguments = ["run", str(self.model), "--output", str(self.folder), "--quiet", "--color", "never"]
-        self.messages = invoke([*arguments, *self.options], accepted=WITH_RESULTS).stderr.strip()
-        return self
+        output = ["--output", str(self.folder), "--quiet", "--color", "never"]
+        if executor is None:
+            kept = ["--store", str(store)] if store is not None else []
+            self.messages = invoke(
+                ["run", str(self.model), *output, *kept, *self.options], accepted=WITH_RESULTS
+            ).stderr.strip()
+            return self
+        study = str(Path(store) if store is not None else Path(self._temporary.name) / "study")
+        planned = [option for option in self.options if option != "--yes"]
+        invoke(["plan", str(self.model), "--output", study, "--at-once", repr(at_once), "--color", "never", *planned])
+        while True:
+            plan = json.loads((Path(study) / "plan.json").read_text(encoding="utf-8"))
+            for done in [executor.submit(shard, study, index) for index in range(len(plan["shards"]))]:
+                done.result()
+            merged = invoke(["merge", study, *output], accepted=WITH_RESULTS | {ANOTHER_ROUND})
+            if merged.returncode != ANOTHER_ROUND:
+                self.messages = merged.stderr.strip()
+                return self
 
     def _forget(self) -> None:
         for name in ("results", "result"):
@@ -103,7 +127,7 @@ class Study:
             alone = Result(self.folder)
             return {alone.summary["model"]: alone}
         scenes = json.loads((self.folder / "scenes.json").read_text(encoding="utf-8"))
-        return {scene: Result(self.folder / scene) for scene in scenes["folders"]}
+        return {scene: Result(self.folder / scene) for scene in scenes["scenes"]}
 
     @cached_property
     def result(self) -> Result:
@@ -161,6 +185,15 @@ class Study:
     def plot(self, output: str | None = None, methods: list[str] | None = None) -> Figure:
         """Bounds over time; needs matplotlib."""
         return self.result.plot(output, methods)
+
+
+def shard(study: str, index: int) -> None:
+    """Simulates one shard of a planned study, on one thread, where it is not there yet.
+
+    Raises:
+        MbintError: it failed.
+    """
+    invoke(["shard", study, "--index", str(index), "--threads", "1", "--color", "never"])
 
 
 def run(model: Model, **options: Any) -> Study:

@@ -116,8 +116,9 @@ fn reduced(all: &[ReducedSummary]) -> String {
         ("tolerances that matter", Align::Left),
     ]);
     for own in all {
+        let shown = |value: f64| own.display.as_ref().map_or(value, |display| display.of_si(value));
         let numbers = match band(own) {
-            Some(band) => [short(band.lower), short(band.upper), format!("{:.1e}", band.error)],
+            Some(band) => [short(shown(band.lower)), short(shown(band.upper)), format!("{:.1e}", shown(band.error))],
             None => [(); 3].map(|()| "unknown".to_owned()),
         };
         let [lower, upper, error] = numbers;
@@ -130,8 +131,8 @@ fn reduced(all: &[ReducedSummary]) -> String {
         } else if band(own).is_some_and(|band| band.unresolved) {
             notes.push("unreliable".to_owned());
         }
-        let unit = own.unit.clone();
-        table.row([own.name.clone(), short(own.nominal), lower, upper, error, unit, notes.join(", ")]);
+        let unit = own.display.as_ref().map_or(&own.unit, |display| &display.text).clone();
+        table.row([own.name.clone(), short(shown(own.nominal)), lower, upper, error, unit, notes.join(", ")]);
     }
     table.render(2)
 }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::grammar::display_unit::DisplayUnit;
+
 /// A reduced output's bounds. Numbers are in the output's SI unit, `null` where unknown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReducedSummary {
@@ -11,6 +13,9 @@ pub struct ReducedSummary {
     pub of: String,
     /// Its SI unit; empty where dimensionless or unknown.
     pub unit: String,
+    /// The unit in which people see it, where the model names one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub display: Option<DisplayUnit>,
     /// With every parameter at its nominal value.
     pub nominal: f64,
     /// Bounds by every method, in the order of [`Method`](super::Method).

@@ -14,6 +14,7 @@ mod place;
 mod readme;
 mod report;
 mod rooms;
+mod requirements;
 mod run_modes;
 mod scenes;
 mod schema;

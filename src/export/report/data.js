@@ -35,8 +35,14 @@ export const readData = () => JSON.parse(document.getElementById('mbint-data')?.
 export function digits(value) {
   if (value === 0 || !Number.isFinite(value)) return value === 0 ? '0' : '–';
   const size = Math.abs(value);
-  return size >= 1e-3 && size < 1e5 ? String(Number(value.toPrecision(4))) : value.toExponential(2).replace('e', '·10^');
+  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(4)));
+  const [mantissa, exponent] = value.toExponential(2).split('e');
+  return `${mantissa}·10${superscript(exponent)}`;
 }
+
+/** @param {string} exponent */
+const superscript = (exponent) =>
+  exponent.replace('+', '').replace('-', '⁻').replace(/\d/g, (digit) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)]);
 
 /** An element with attributes and children. @param {string} tag @param {Record<string, string>} [attributes] @param {(Node | string)[]} [children] @returns {HTMLElement} */
 export function element(tag, attributes = {}, children = []) {

@@ -259,6 +259,7 @@ impl Study<'_> {
             name: reduced.name.clone(),
             of: reduced.text.clone(),
             unit: reduced.unit.clone(),
+            display: self.description.display.get(&reduced.name).cloned(),
             nominal: values.results.nominal.result.bands[place][0].lower,
             bands: bands(self, values.results, place, 1).into_iter().map(band).collect(),
             contributions,

@@ -1,0 +1,78 @@
+"""The package against the command, and against closed forms. The variable MBINT names the command."""
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mbint
+
+#: A falling ball: y = -g t^2 / 2.
+FALL = {
+    "model": "fall",
+    "parameters": {"g": {"value": 9.81, "unit": "m/s^2", "tolerance": "1%"}},
+    "bodies": {"ball": {"mass": np.float64(1.0), "coordinates": ["y"]}},
+    "effects": {"weight": {"gravity": {"acceleration": [0, "-g"]}}},
+    "initial": {"ball.y": 0, "ball.vy": 0},
+    "outputs": {"y": "ball.y", "speed": "ball.vy"},
+    "simulation": {"duration": "0.5 s", "step": 1e-3, "output_step": 0.05},
+    "bounds": {"chebyshev": {"order": 3}, "scan": {"points": 5}},
+}
+
+
+def test_bounds_are_those_of_free_fall() -> None:
+    study = mbint.run(FALL)
+    assert study.units == {"y": "m", "speed": "m/s"}
+    bounds = study.bounds.chebyshev.sel(output="y")
+    time = bounds.time.to_numpy()
+    error = bounds.sel(bound="error").to_numpy() + 1e-12
+    for bound, g in (("lower", 9.81 * 1.01), ("upper", 9.81 * 0.99)):
+        assert np.all(np.abs(bounds.sel(bound=bound).to_numpy() + g * time**2 / 2) <= error)
+    np.testing.assert_allclose(study.nominal.sel(output="speed"), -9.81 * time, atol=1e-12)
+    assert study.nominal.time.attrs["units"] == "s"
+    assert not study.unreliable.to_array().any()
+    assert list(study.frame.columns[:2]) == ["y.nominal", "y.chebyshev.lower"]
+    assert study.frame.attrs["units"]["y.chebyshev.error"] == "m"
+
+
+def test_parameters_are_set() -> None:
+    study = mbint.run(FALL, set={"g": "9 m/s^2 ± 2%"}, methods=["chebyshev"])
+    assert list(study.bounds) == ["chebyshev"]
+    (parameter,) = study.summary["parameters"]
+    assert (parameter["lower"], parameter["upper"]) == pytest.approx((8.82, 9.18))
+    assert mbint.run(FALL, set={"g": 9.0}).nominal[-1, 0] == pytest.approx(-9.0 / 8)
+
+
+def test_scenes_are_results_of_their_own() -> None:
+    study = mbint.run(FALL | {"scenes": {"earth": {}, "moon": {"parameters": {"g": "1.62 m/s^2"}}}})
+    assert list(study) == ["earth", "moon"] and len(study) == 2
+    assert study["moon"].nominal[-1, 0] == pytest.approx(-1.62 / 8)
+    with pytest.raises(ValueError, match="earth, moon"):
+        _ = study.result
+
+
+def test_errors_are_those_of_the_command() -> None:
+    with pytest.raises(mbint.MbintError, match="no key `mas`|has no `mas`") as caught:
+        mbint.run(FALL | {"bodies": {"ball": {"mas": 1, "coordinates": ["y"]}}})
+    assert caught.value.status == 2
+
+
+def test_an_executor_gives_the_same_bytes(tmp_path: Path) -> None:
+    direct = mbint.Study(FALL, folder=tmp_path / "direct").run()
+    with ThreadPoolExecutor(2) as pool:
+        merged = mbint.Study(FALL, folder=tmp_path / "merged").run(pool, at_once=0)
+    for name in direct.summary["files"]:
+        assert (direct.folder / name).read_bytes() == (merged.folder / name).read_bytes(), name
+
+
+def test_plots_have_a_panel_for_each_output() -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    figure = mbint.run(FALL).plot()
+    assert [axes.get_ylabel() for axes in figure.axes] == ["y in m", "speed in m/s"]
+
+
+def test_a_summary_is_json() -> None:
+    study = mbint.run(FALL)
+    assert json.loads((study.folder / "summary.json").read_text())["model"] == "fall"

@@ -1,0 +1,88 @@
+//! Requirements and sweeps as commands: exit statuses, JUnit XML, tables, against free fall.
+
+use std::fs;
+
+use super::place::Place;
+
+/// A falling ball: y = −g t²/2, with g ± 1 %.
+fn fall(place: &Place, limit: &str) {
+    let text = format!(
+        "
+model: fall
+parameters: {{ g: {{ value: 9.81, unit: m/s^2, tolerance: 1% }} }}
+bodies: {{ ball: {{ mass: 1, coordinates: [y] }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -g] }} }} }}
+initial: {{ ball.y: 0, ball.vy: 0 }}
+outputs:
+  y: ball.y
+  deepest: {{ min: y, unit: mm }}
+  late: {{ when: y <= -1 m }}
+requirements:
+  stays: y >= {limit}
+  early: {{ output: late, max: 0.46 s }}
+simulation: {{ duration: 0.5 s, step: 1e-3, output_step: 0.01 }}
+bounds: {{ chebyshev: {{ order: 3 }} }}
+"
+    );
+    fs::write(place.path().join("fall.yaml"), text).unwrap();
+}
+
+/// The numbers of a line of a CSV file that begins with these cells.
+fn numbers(table: &str, beginning: &str) -> Vec<f64> {
+    let line = table.lines().find(|line| line.starts_with(beginning)).unwrap_or_else(|| panic!("{beginning} in\n{table}"));
+    line.split(',').filter_map(|cell| cell.parse().ok()).collect()
+}
+
+#[test]
+fn what_holds_has_a_margin_and_reduced_outputs_their_closed_forms() {
+    let place = Place::new();
+    fall(&place, "-1.3 m");
+    let (output, errors) = place.run("run fall.yaml --junit verdicts.xml", 0);
+    assert_eq!(errors, "");
+    for text in ["stays", "holds", "deepest", "-1226", "mm"] {
+        assert!(output.contains(text), "{text} in\n{output}");
+    }
+    let table = fs::read_to_string(place.path().join("results/fall/reduced.csv")).unwrap();
+    let [nominal, lower, upper, error] = numbers(&table, "deepest,")[..] else { panic!("{table}") };
+    // The table is in SI units.
+    for (found, g) in [(nominal, 9.81), (lower, 9.81 * 1.01), (upper, 9.81 * 0.99)] {
+        assert!((found + g / 8.0).abs() <= error + 1e-12, "{found} ± {error}");
+    }
+    let [nominal, lower, upper, error] = numbers(&table, "late,")[..] else { panic!("{table}") };
+    for (found, g) in [(nominal, 9.81_f64), (lower, 9.81 * 1.01), (upper, 9.81 * 0.99)] {
+        assert!((found - (2.0 / g).sqrt()).abs() <= error + 1e-6, "{found} ± {error}");
+    }
+    assert!(error < 1e-4, "{error}");
+    let xml = fs::read_to_string(place.path().join("verdicts.xml")).unwrap();
+    assert!(xml.contains("tests=\"2\"") && !xml.contains("<failure"), "{xml}");
+}
+
+#[test]
+fn what_is_violated_ends_with_4_and_a_command_that_shows_it() {
+    let place = Place::new();
+    fall(&place, "-1.23 m");
+    let (output, _) = place.run("run fall.yaml --junit verdicts.xml", 4);
+    assert!(output.contains("violated"), "{output}");
+    let xml = fs::read_to_string(place.path().join("verdicts.xml")).unwrap();
+    assert_eq!((xml.matches("<testcase").count(), xml.matches("<failure").count()), (2, 1), "{xml}");
+    // The command's parameters fail by themselves.
+    let command = output.lines().find_map(|line| line.split_once("mbint run ")).expect("a command").1;
+    let command = command.trim().trim_end_matches('`').replace('\'', "");
+    place.run(&format!("run {command} -q -o shown"), 4);
+}
+
+#[test]
+fn a_sweep_has_a_row_for_each_value() {
+    let place = Place::new();
+    fall(&place, "-1.3 m");
+    place.run("sweep fall.yaml -o swept --set g=9..10:3", 0);
+    let table = fs::read_to_string(place.path().join("swept/sweep.csv")).unwrap();
+    assert_eq!(table.lines().count(), 4, "{table}");
+    let heading: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = heading.iter().position(|cell| cell.starts_with("deepest")).unwrap();
+    for (line, g) in table.lines().skip(1).zip([9.0, 9.5, 10.0]) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells[0].parse::<f64>().unwrap(), g);
+        assert!((cells[column].parse::<f64>().unwrap() + g / 8.0).abs() < 1e-9, "{line}");
+    }
+}
