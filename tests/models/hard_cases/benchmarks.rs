@@ -59,7 +59,8 @@ impl Benchmark {
 
     fn errors_of_tolerances(&self, tolerances: &[f64]) -> Vec<f64> {
         let error = |&tolerance: &f64| {
-            let (bounds, summary) = run_methods(&self.description.clone().tolerance(tolerance), Some(Vec::new()));
+            let (bounds, summary) =
+                run_methods(&self.description.clone().by_hht().tolerance(tolerance), Some(Vec::new()));
             let error = self.error(&bounds);
             println!("{}: tolerance {tolerance:.0e}, {} steps, error {error:.2e}", self.name, summary.methods[0].steps);
             error
