@@ -2,6 +2,7 @@
 
 mod explain;
 mod shards;
+mod shared;
 mod sweep;
 
 use std::path::PathBuf;
@@ -10,11 +11,12 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use super::{Failure, status};
+use super::status;
 use crate::model::Override;
 use crate::results::Method;
 pub(super) use explain::ExplainArgs;
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
+pub(super) use shared::{AskedArgs, SetArgs, Threads};
 pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
@@ -74,42 +76,19 @@ pub(super) struct RunArgs {
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
 
+    #[command(flatten)]
+    pub asked: AskedArgs,
+
     /// Folder for the results; with several models, a folder for each in it [default: results/<model's name>].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Methods to run: chebyshev, taylor, scan, certified [default: the model's].
-    #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
-    #[arg(value_parser = methods(), hide_possible_values = true)]
-    pub method: Vec<Method>,
-
-    /// Add certified bounds: proven for all parameter values within their tolerances, for the time steps taken.
-    #[arg(long)]
-    pub certify: bool,
-
     #[command(flatten)]
-    pub set: SetArgs,
-
-    /// Run this scene only; may be given several times [default: all scenes].
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
-    pub scene: Vec<String>,
-
-    /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
-
-    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the simulation;
-    /// the column `covered` has the share that is left.
-    #[arg(long)]
-    pub skip_infeasible: bool,
+    pub threads: Threads,
 
     /// Print nothing but errors.
     #[arg(short, long)]
     pub quiet: bool,
-
-    /// Also simulate every sample with halved steps, to estimate the time error of every bound [default: a few samples].
-    #[arg(long)]
-    pub certify_time: bool,
 
     /// Write computing times into summary.json, which then differs from run to run.
     #[arg(long)]
@@ -143,9 +122,6 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub store: Option<PathBuf>,
 }
-
-/// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
-pub(super) const MOST_THREADS: i64 = 1024;
 
 const RUN_HELP: &str = "\
 Writes bounds.csv (columns: t; NAME.nominal, NAME.chebyshev.lower, .upper, .error, … of each
@@ -186,9 +162,8 @@ pub(super) struct CostArgs {
     #[arg(long, value_name = "NAME")]
     pub scene: Option<String>,
 
-    /// Number of threads [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 
     /// Print nothing but errors.
     #[arg(short, long)]
@@ -219,9 +194,8 @@ pub(super) struct SnapshotArgs {
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub scene: Vec<String>,
 
-    /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 
     /// Print nothing but errors.
     #[arg(short, long)]
@@ -236,34 +210,6 @@ const SNAPSHOT_HELP: &str = "\
 Writes NAME.snap for each model, and NAME.SCENE.snap for each scene: the bounds of every output
 at ten times, with their errors. A bound has moved if it is further from what is recorded than
 both stated errors together, or if its error has more than doubled.";
-
-/// Parameters that the command line sets.
-#[derive(Debug, Args)]
-pub(super) struct SetArgs {
-    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
-    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
-    set: Vec<Override>,
-}
-
-impl SetArgs {
-    /// Of overrides that were read already.
-    pub fn new(set: Vec<Override>) -> Self {
-        Self { set }
-    }
-
-    /// What is set; every parameter at most once.
-    ///
-    /// # Errors
-    /// For the first that is set twice.
-    pub fn overrides(&self) -> Result<&[Override], Failure> {
-        let twice =
-            |&(i, setting): &(usize, &Override)| self.set[..i].iter().any(|earlier| earlier.name == setting.name);
-        match self.set.iter().enumerate().find(twice) {
-            Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
-            None => Ok(&self.set),
-        }
-    }
-}
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArgs {

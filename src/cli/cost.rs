@@ -26,7 +26,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
     let options = CostOptions {
         tolerance: wanted(&args, &model),
         budget: args.budget,
-        threads: args.threads.map(usize::from),
+        threads: args.threads.number(),
         progress: &|fraction| progress.set(fraction),
         interrupted: &interrupt::asked,
     };

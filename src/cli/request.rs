@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use super::Failure;
-use super::args::RunArgs;
+use super::args::{AskedArgs, RunArgs};
 use super::kept_run::KeptRun;
 use super::verdicts::Junit;
 use crate::model::{Description, Override};
@@ -71,18 +71,14 @@ pub(super) struct Job {
 
 impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
-        let overrides = args.set.overrides()?.to_vec();
-        let mut scenes = args.scene;
-        scenes.sort_unstable();
-        scenes.dedup();
-        let mut methods = args.method;
-        methods.sort_unstable();
-        methods.dedup();
+        let AskedArgs { method: methods, certify, set, scene: scenes, skip_infeasible, certify_time } =
+            args.asked.in_order();
+        let overrides = set.overrides()?.to_vec();
         Ok(Self {
             models: args.models,
             overrides,
             scenes,
-            certify: args.certify,
+            certify,
             output: args.output,
             quiet: args.quiet,
             report: !args.no_report,
@@ -92,10 +88,10 @@ impl Request {
             store: args.store.map(|folder| KeptRun::new(folder, Missing::Simulate)),
             settings: Settings {
                 methods: if methods.is_empty() { None } else { Some(methods) },
-                threads: args.threads.map(usize::from),
+                threads: args.threads.number(),
                 yes: args.yes,
-                certify_time: args.certify_time,
-                skip_infeasible: args.skip_infeasible,
+                certify_time,
+                skip_infeasible,
                 quiet: args.quiet,
             },
         })

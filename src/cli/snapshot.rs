@@ -29,8 +29,7 @@ pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Stat
         return Ok(Status::Wrong);
     };
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };
-    let settings =
-        Settings { threads: args.threads.map(usize::from), yes: args.yes, quiet: args.quiet, ..Settings::default() };
+    let settings = Settings { threads: args.threads.number(), yes: args.yes, quiet: args.quiet, ..Settings::default() };
     let jobs = jobs(loaded.models, &args)?;
     interrupt::listen();
     for job in &jobs {

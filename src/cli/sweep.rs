@@ -73,8 +73,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     if runs > MOST_RUNS {
         return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
     }
-    let settings =
-        Settings { threads: args.threads.map(usize::from), yes: args.yes, quiet: true, ..Settings::default() };
+    let settings = Settings { threads: args.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
     let mut status = Status::Done;
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();

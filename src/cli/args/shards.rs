@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{MOST_THREADS, SetArgs, methods};
-use crate::results::Method;
+use super::{AskedArgs, Threads};
 
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_HELP)]
@@ -14,41 +13,19 @@ pub(in crate::cli) struct PlanArgs {
     #[arg(required = true, value_name = "MODEL")]
     pub models: Vec<PathBuf>,
 
+    #[command(flatten)]
+    pub asked: AskedArgs,
+
     /// Folder for the study.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-
-    /// Methods to run: chebyshev, taylor, scan, certified [default: the model's].
-    #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
-    #[arg(value_parser = methods(), hide_possible_values = true)]
-    pub method: Vec<Method>,
-
-    /// Add certified bounds.
-    #[arg(long)]
-    pub certify: bool,
-
-    #[command(flatten)]
-    pub set: SetArgs,
-
-    /// Run this scene only; may be given several times [default: all scenes].
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
-    pub scene: Vec<String>,
-
-    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end.
-    #[arg(long)]
-    pub skip_infeasible: bool,
-
-    /// Also simulate every sample with halved steps.
-    #[arg(long)]
-    pub certify_time: bool,
 
     /// Leave simulations to shards that take longer than this on one core; what takes less is done by `plan` and `merge`.
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 10.0)]
     pub at_once: f64,
 
-    /// Number of threads [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 const PLAN_HELP: &str = "\
@@ -69,9 +46,8 @@ pub(in crate::cli) struct ShardArgs {
     #[arg(short, long, value_name = "K")]
     pub index: usize,
 
-    /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 }
 
 #[derive(Debug, Args)]
@@ -95,9 +71,8 @@ pub(in crate::cli) struct MergeArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 
     /// Print nothing but errors.
     #[arg(short, long)]

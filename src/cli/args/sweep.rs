@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::MOST_THREADS;
+use super::Threads;
 
 #[derive(Debug, Args)]
 #[command(after_help = SWEEP_HELP)]
@@ -26,9 +26,8 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(long, value_name = "NAME")]
     pub scene: Option<String>,
 
-    /// Number of threads; results do not depend on it [default: one per core].
-    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub threads: Threads,
 
     /// Print nothing but errors.
     #[arg(short, long)]

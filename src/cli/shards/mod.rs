@@ -5,10 +5,10 @@ mod submit;
 use std::fmt::Write;
 
 pub(super) use self::submit::submit;
-use super::args::{Format, MergeArgs, PlanArgs, RunArgs, ShardArgs, StatusArgs};
+use super::args::{AskedArgs, MergeArgs, PlanArgs, ShardArgs, StatusArgs, Threads};
 use super::console::{Console, count};
 use super::kept_run::{KeptRun, context};
-use super::request::Request;
+use super::request::{Request, Settings};
 use super::run::run_all;
 use super::{Failure, Status, load};
 use crate::methods::Method;
@@ -24,6 +24,7 @@ fn failed(error: &StoreError) -> Failure {
 pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.output);
     let mut models = Vec::new();
+    let AskedArgs { method, certify, set, scene, skip_infeasible, certify_time } = args.asked.in_order();
     for model in &args.models {
         if crate::model::is_standard_input(model) {
             return Err(Failure::Wrong("a study needs its models as files: shards read them again".to_owned()));
@@ -33,12 +34,12 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
     }
     let asked = Asked {
         models,
-        set: args.set.overrides()?.iter().map(|setting| setting.text.clone()).collect(),
-        scenes: args.scene.clone(),
-        methods: args.method.iter().map(|method| method.name().to_owned()).collect(),
-        certify: args.certify,
-        certify_time: args.certify_time,
-        skip_infeasible: args.skip_infeasible,
+        set: set.overrides()?.iter().map(|setting| setting.text.clone()).collect(),
+        scenes: scene,
+        methods: method.iter().map(|method| method.name().to_owned()).collect(),
+        certify,
+        certify_time,
+        skip_infeasible,
         at_once: args.at_once,
     };
     let kept = KeptRun::planning(args.output.clone(), Missing::Defer(asked.at_once));
@@ -104,7 +105,7 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     super::interrupt::listen();
     let options = study::Options {
         methods: methods(&asked)?,
-        threads: args.threads.map(usize::from),
+        threads: args.threads.number(),
         skip_infeasible: asked.skip_infeasible,
         store: Some(&store),
         interrupted: &super::interrupt::asked,
@@ -140,30 +141,28 @@ pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status,
 }
 
 /// What `mbint run` would be asked for.
-fn request(asked: &Asked, threads: Option<u16>, kept: KeptRun) -> Result<Request, Failure> {
-    let args = RunArgs {
+fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
+    Ok(Request {
         models: asked.models.clone(),
-        output: None,
-        method: methods(asked)?.unwrap_or_default(),
+        overrides: overrides(asked)?,
+        scenes: asked.scenes.clone(),
         certify: asked.certify,
-        set: super::args::SetArgs::new(overrides(asked)?),
-        scene: asked.scenes.clone(),
-        threads,
-        skip_infeasible: asked.skip_infeasible,
+        output: None,
         quiet: true,
-        certify_time: asked.certify_time,
-        timings: false,
-        yes: true,
-        overwrite: false,
-        store: None,
-        no_report: false,
+        report: true,
         junit: None,
-        format: Format::Text,
-        watch: false,
-    };
-    let mut request = Request::check(args)?;
-    request.store = Some(kept);
-    Ok(request)
+        timings: false,
+        overwrite: false,
+        settings: Settings {
+            methods: methods(asked)?,
+            threads: threads.number(),
+            yes: true,
+            certify_time: asked.certify_time,
+            skip_infeasible: asked.skip_infeasible,
+            quiet: true,
+        },
+        store: Some(kept),
+    })
 }
 
 fn methods(asked: &Asked) -> Result<Option<Vec<Method>>, Failure> {

@@ -1,0 +1,89 @@
+//! Arguments that several commands have.
+
+use clap::Args;
+
+use super::{methods, parse_override};
+use crate::cli::Failure;
+use crate::model::Override;
+use crate::results::Method;
+
+/// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
+const MOST_THREADS: i64 = 1024;
+
+/// How many threads compute.
+#[derive(Clone, Copy, Debug, Args)]
+pub(in crate::cli) struct Threads {
+    /// Number of threads; results do not depend on it [default: one per core].
+    #[arg(short = 'j', long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    /// `None` for one per core.
+    pub fn number(self) -> Option<usize> {
+        self.threads.map(usize::from)
+    }
+}
+
+/// What is asked of a model.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct AskedArgs {
+    /// Methods to run: chebyshev, taylor, scan, certified [default: the model's].
+    #[arg(short, long, value_name = "METHOD", value_delimiter = ',')]
+    #[arg(value_parser = methods(), hide_possible_values = true)]
+    pub method: Vec<Method>,
+
+    /// Add certified bounds: proven for all parameter values within their tolerances, for the time steps taken.
+    #[arg(long)]
+    pub certify: bool,
+
+    #[command(flatten)]
+    pub set: SetArgs,
+
+    /// Run this scene only; may be given several times [default: all scenes].
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub scene: Vec<String>,
+
+    /// Exclude parameter values with which the mechanism cannot be assembled or does not reach the end of the simulation;
+    /// the column `covered` has the share that is left.
+    #[arg(long)]
+    pub skip_infeasible: bool,
+
+    /// Also simulate every sample with halved steps, to estimate the time error of every bound [default: a few samples].
+    #[arg(long)]
+    pub certify_time: bool,
+}
+
+impl AskedArgs {
+    /// Methods and scenes in a fixed order, each once.
+    pub fn in_order(mut self) -> Self {
+        self.method.sort_unstable();
+        self.method.dedup();
+        self.scene.sort_unstable();
+        self.scene.dedup();
+        self
+    }
+}
+
+/// Parameters that the command line sets.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct SetArgs {
+    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
+    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
+    set: Vec<Override>,
+}
+
+impl SetArgs {
+    /// What is set; every parameter at most once.
+    ///
+    /// # Errors
+    /// For the first that is set twice.
+    pub fn overrides(&self) -> Result<&[Override], Failure> {
+        let twice =
+            |&(i, setting): &(usize, &Override)| self.set[..i].iter().any(|earlier| earlier.name == setting.name);
+        match self.set.iter().enumerate().find(twice) {
+            Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
+            None => Ok(&self.set),
+        }
+    }
+}
