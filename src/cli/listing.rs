@@ -96,7 +96,7 @@ fn number(value: f64) -> String {
 
 impl Row<4> for UnitDocs {
     const TITLE: &'static str = "Units";
-    const INTRODUCTION: &'static str = "Units are combined by `*`, `/` and `^`: `N*s/m`, `kg*m^2`, `1/s`. In a formula, a unit ends \
+    const INTRODUCTION: &'static str = "Units are combined by `*`, `/` and `^`: `N*s/m`, `kg*m^2`, `1/s`. In a formula, a unit ends\n\
         where a name of the model follows an operator between spaces: `250 kg/m * L`. A percentage is only a tolerance: `2%`. \
         `mbint explain --units` prints this list.";
     const HEADINGS: [(&'static str, Align); 4] =
@@ -109,8 +109,8 @@ impl Row<4> for UnitDocs {
 
 impl Row<3> for FunctionDocs {
     const TITLE: &'static str = "Functions of formulas";
-    const INTRODUCTION: &'static str = "Formulas have `+`, `-`, `*`, `/`, `^`, parentheses, numbers with units (`10 deg`), the \
-        number `pi`, comparisons (`<`, `<=`, `>`, `>=`, `==`, `!=`: 1 where they hold, else 0), `and`, `or`, `not`, and these \
+    const INTRODUCTION: &'static str = "Formulas have `+`, `-`, `*`, `/`, `^`, parentheses, numbers with units (`10 deg`), the number\n\
+        `pi`, comparisons (`<`, `<=`, `>`, `>=`, `==`, `!=`: 1 where they hold, else 0), `and`, `or`, `not`, and these\n\
         functions. Tables of the model are functions of one argument. `mbint explain --functions` prints this list.";
     const HEADINGS: [(&'static str, Align); 3] =
         [("function", Align::Left), ("domain", Align::Left), ("value", Align::Left)];
@@ -122,9 +122,9 @@ impl Row<3> for FunctionDocs {
 
 impl Row<4> for OutputDocs {
     const TITLE: &'static str = "Outputs";
-    const INTRODUCTION: &'static str = "An output is a formula of the following names and of parameters. Names in capitals \
-        are the model's own. A body has the names that its coordinates allow: `angle` in the plane, Euler parameters in \
-        space; a joint those of its coordinates; an effect those that its own page lists. `mbint explain --outputs` prints \
+    const INTRODUCTION: &'static str = "An output is a formula of the following names and of parameters. Names in capitals are\n\
+        the model's own. A body has the names that its coordinates allow: `angle` in the plane, Euler parameters in space;\n\
+        a joint those of its coordinates; an effect those that its own page lists. `mbint explain --outputs` prints \
         this list.";
     const HEADINGS: [(&'static str, Align); 4] =
         [("of", Align::Left), ("name", Align::Left), ("unit", Align::Left), ("value, sign and frame", Align::Left)];
@@ -138,8 +138,8 @@ impl Row<3> for StatusDocs {
     const TITLE: &'static str = "Exit codes";
     const INTRODUCTION: &'static str = "`mbint --help` prints the same codes. With several models or scenes the code is \
         that of the worst. A pipe that its reader closes is no error.\n\n\
-        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file \
-        show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors \
+        Messages begin with `error:` or `warning:` and say what is wrong, where, and what to do; those about a model's file\n\
+        show the line. Results go to standard output, messages and progress to standard error; with `--quiet` only errors\n\
         are printed.";
     const HEADINGS: [(&'static str, Align); 3] =
         [("code", Align::Right), ("meaning", Align::Left), ("results' folder", Align::Left)];

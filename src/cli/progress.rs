@@ -17,7 +17,7 @@ const PARTS: u64 = 10_000;
 /// Between two lines where there is no terminal.
 const BETWEEN: Duration = Duration::from_secs(10);
 
-/// Between two drawings of the bar while nothing is told, so that the time goes on.
+/// Between two drawings of the bar while nothing is reported, so that the time goes on.
 const TICK: Duration = Duration::from_millis(250);
 
 /// A bar on a terminal's standard error, gone when dropped; elsewhere a line every ten seconds.

@@ -22,7 +22,7 @@ pub(super) fn report(args: &ReportArgs, console: &mut Console) -> Result<Status,
     Ok(Status::Done)
 }
 
-/// What a report shows of a job beside its results. A motion that cannot be simulated is told on the page.
+/// What a report shows of a job beside its results. The page says so where a motion cannot be simulated.
 pub(super) fn parts(job: &Job, threads: Option<usize>) -> ReportParts {
     let options = MotionOptions { threads, size: SIZE / job.share.max(1) };
     let motion = study::caught("the report's motion", || study::motion(&job.model, options));

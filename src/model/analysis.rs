@@ -19,7 +19,7 @@ const ANALYSES: [(&str, Analysis); 4] = [
 const PLACES: [(&str, LinearisedAt); 3] =
     [("start", LinearisedAt::Start), ("equilibrium", LinearisedAt::Equilibrium), ("motion", LinearisedAt::Motion)];
 
-/// Modes that are told where the model does not say how many.
+/// Modes that are reported where the model does not say how many.
 const MODES: usize = 6;
 
 /// Frequencies of a response where the model does not say how many.

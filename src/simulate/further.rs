@@ -7,7 +7,7 @@ use crate::model::Analysis;
 /// The name of the smallest eigenvalue among the outputs.
 const STABILITY: &str = "stability";
 
-/// Adds what is told of a mechanism with so many degrees of freedom, after the model's outputs.
+/// Adds the further outputs of a mechanism with so many degrees of freedom, after the model's outputs.
 pub fn further_outputs(system: &mut System, freedom: usize) {
     match system.analysis {
         Analysis::Modes(_) => modal::further_outputs(system, freedom),

@@ -197,7 +197,7 @@ fn a_post_that_no_sample_meets_flags_what_follows() {
     assert_eq!(flagged_from(&run(&read(&throw(above, settings)))), None);
 }
 
-/// The search's simulations are told, and from when on what it found matters.
+/// The search's simulations are reported, and from when on what it found matters.
 #[test]
 fn the_summary_has_the_search_for_switches() {
     let settings = "simulation: { duration: 0.8, step: 2e-4, output_step: 0.02 }\nbounds: { chebyshev: { order: 5 } }";

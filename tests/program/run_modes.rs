@@ -131,7 +131,7 @@ bounds: { chebyshev: { order: 3 } }
     let again = watching.until("watching ");
     assert!(again.contains("no bound moved by more than the stated errors"), "{again}");
 
-    // What is wrong is told, and does not end it.
+    // An error is reported, and does not end it.
     fs::write(file("slide.yaml"), model.replace("mass: 2,", "mass: -2,")).unwrap();
     watching.until("watching ");
     fs::write(file("slide.yaml"), model).unwrap();

@@ -118,7 +118,7 @@ grammar! {
     Modes is "`modes`" {
         /// Where; by default at the `start`.
         at: Option<LinearisedAtName>,
-        /// How many modes are told, the slowest first; by default 6.
+        /// How many modes are reported, the slowest first; by default 6.
         number: Option<u32>,
         /// What harmonic loads do, by name.
         responses: Option<IndexMap<String, Response>>,

@@ -1,4 +1,4 @@
-//! What is told of a configuration's small vibrations, in the order of the outputs.
+//! Outputs of a configuration's small vibrations, in their order.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
@@ -36,10 +36,10 @@ pub struct Vibrations {
     pub nominal: OnceLock<Vec<Place>>,
 }
 
-/// A configuration's modes, those that are followed, and what is told of it.
+/// A configuration's modes, those that are followed, and the outputs.
 #[derive(Clone, Debug)]
 pub struct Place {
-    /// In the order in which they are told.
+    /// In the order of the outputs.
     pub modes: Vec<Mode>,
     /// M, by which shapes are compared.
     mass: nalgebra::DMatrix<f64>,
@@ -49,7 +49,7 @@ pub struct Place {
     phases: Vec<f64>,
 }
 
-/// Names and units of what is told of the vibrations of a mechanism with so many degrees of freedom.
+/// Names and units of the outputs of the vibrations of a mechanism with so many degrees of freedom.
 pub fn further_outputs(system: &mut System, freedom: usize) {
     let request = system.modes.clone();
     let (number, model) = (request.number.min(freedom), system.outputs.clone());
