@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::console::count;
 use crate::results::ModelFile;
-use crate::store::{Missing, PartStore, Shard, StoreError};
+use crate::store::{Asked, Missing, PartStore, Shard, StoreError};
 
 /// Where a run's simulations are kept, and what it left to shards.
 #[derive(Debug)]
@@ -14,18 +14,25 @@ pub(super) struct KeptRun {
     missing: Missing,
     /// Whether nothing is written but the plan.
     plans: bool,
+    /// How long a shard may take, s.
+    shard_seconds: f64,
     shards: RefCell<Vec<Shard>>,
 }
 
 impl KeptRun {
     /// In a folder.
     pub fn new(folder: PathBuf, missing: Missing) -> Self {
-        Self { folder, missing, plans: false, shards: RefCell::default() }
+        Self { folder, missing, plans: false, shard_seconds: f64::INFINITY, shards: RefCell::default() }
     }
 
-    /// In a folder, without results.
-    pub fn planning(folder: PathBuf, missing: Missing) -> Self {
-        Self { plans: true, ..Self::new(folder, missing) }
+    /// In the folder of a study, of which shards are left that take at most so many seconds.
+    pub fn of_study(folder: PathBuf, asked: &Asked) -> Self {
+        Self { shard_seconds: asked.shard_seconds, ..Self::new(folder, Missing::Defer(asked.at_once)) }
+    }
+
+    /// The same, without results.
+    pub fn planning(self) -> Self {
+        Self { plans: true, ..self }
     }
 
     /// The store of a job, given all that decides its results beside the tasks.
@@ -36,7 +43,7 @@ impl KeptRun {
     /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and to be written.
     pub fn close(&self, (model, scene): (usize, Option<&str>), store: &PartStore) -> bool {
         let deferred = store.deferred();
-        self.shards.borrow_mut().extend(Shard::of(model, scene, &deferred));
+        self.shards.borrow_mut().extend(Shard::of(model, scene, &deferred, self.shard_seconds));
         deferred.is_empty() && !self.plans
     }
 

@@ -8,9 +8,6 @@ use super::error::StoreError;
 use super::part::write_whole;
 use super::{Deferred, FORMAT, PARTS};
 
-/// Shards that take less than this are joined with the next, s.
-pub const SHARD_SECONDS: f64 = 60.0;
-
 /// A study's round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -45,6 +42,8 @@ pub struct Asked {
     pub skip_infeasible: bool,
     /// What takes less is simulated when planning and merging, s.
     pub at_once: f64,
+    /// Parts are joined to shards of at most this, s.
+    pub shard_seconds: f64,
 }
 
 /// What one call of `mbint shard` simulates.
@@ -65,11 +64,11 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Shards of about [`SHARD_SECONDS`] from what was deferred of a model.
-    pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred]) -> Vec<Self> {
+    /// Shards of at most so many seconds, where a part does not take longer, from what was deferred of a model.
+    pub fn of(model: usize, scene: Option<&str>, deferred: &[Deferred], seconds: f64) -> Vec<Self> {
         let mut shards: Vec<Self> = Vec::new();
         for task in deferred {
-            match shards.last_mut().filter(|shard| shard.seconds + task.seconds <= SHARD_SECONDS) {
+            match shards.last_mut().filter(|shard| shard.seconds + task.seconds <= seconds) {
                 Some(shard) => {
                     shard.parts.push(task.part.clone());
                     shard.simulations += task.simulations;

@@ -24,6 +24,10 @@ pub(in crate::cli) struct PlanArgs {
     #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 10.0)]
     pub at_once: f64,
 
+    /// Join parts to shards of at most this on one core.
+    #[arg(long, value_name = "SECONDS", value_parser = not_negative, default_value_t = 60.0)]
+    pub shard_seconds: f64,
+
     #[command(flatten)]
     pub threads: Threads,
 }

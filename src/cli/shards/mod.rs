@@ -41,8 +41,9 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
         certify_time,
         skip_infeasible,
         at_once: args.at_once,
+        shard_seconds: args.shard_seconds,
     };
-    let kept = KeptRun::planning(args.output.clone(), Missing::Defer(asked.at_once));
+    let kept = KeptRun::of_study(args.output.clone(), &asked).planning();
     let request = request(&asked, args.threads, kept)?;
     let status = run_all(&request, console, &mut |_, _, _| ())?;
     if status > Status::Deferred {
@@ -64,7 +65,7 @@ pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Fa
         let shards = ranges(&missing);
         return Err(Failure::Failed(format!("{}: shards {shards} are missing; run them first", args.study.display())));
     }
-    let kept = KeptRun::new(args.study.clone(), Missing::Defer(plan.asked.at_once));
+    let kept = KeptRun::of_study(args.study.clone(), &plan.asked);
     let mut request = request(&plan.asked, args.threads, kept)?;
     request.output = args.output;
     request.quiet = args.quiet;
