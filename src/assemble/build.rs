@@ -143,6 +143,7 @@ fn apply_effects<'g>(
 ) -> Result<(AppliedForces<'g>, Vec<EffectInfo>), BuildError> {
     let g = m.g;
     let mut applied = AppliedForces::new(g, m.bodies.len());
+    m.add_tooth_forces(&mut applied, false)?;
     let mut effects = Vec::new();
     for (index, effect) in description.effects.iter().enumerate() {
         let nodes = g.len();
@@ -204,7 +205,9 @@ impl<'g> Balance<'g> {
         }
         if !m.tree.is_absolute() {
             let inertial = recursion::inertial_forces(m, applied.field);
-            m.add_reactions_of_trees(applied.with_guarded(), &inertial, closures);
+            let mut on_bodies = applied.with_guarded();
+            m.add_tooth_forces(&mut on_bodies, true)?;
+            m.add_reactions_of_trees(on_bodies, &inertial, closures);
             add_all(&mut inertia, inertial.generalised);
             mass = mass_matrix(&inertia, &m.w);
         }

@@ -5,6 +5,7 @@ use symdiff::Scalar;
 use super::mechanism::Mechanism;
 use super::reaction::Reaction;
 use super::system::{ConstraintInfo, LeftOut, ResidualUnit};
+use super::teeth::reactions_are_asked;
 use crate::elements::joints::Row;
 use crate::grammar::JointCoordinate;
 use crate::model::Description;
@@ -43,6 +44,7 @@ impl<'g> Constraints<'g> {
                 constraints.add(ConstraintInfo { name, joint, unit: ResidualUnit::Number }, value);
             }
         }
+        let with_teeth = reactions_are_asked(description);
         for (index, joint) in m.joints.iter().enumerate() {
             let kept = if m.tree.contains(index) {
                 Vec::new()
@@ -50,7 +52,16 @@ impl<'g> Constraints<'g> {
                 constraints.closures.push(index);
                 constraints.add_rows(m, index, length, left_out)?
             };
-            m.reactions.push(Reaction::of(m.g, &*joint.kind, &kept));
+            let mut reaction = Reaction::of(m.g, &*joint.kind, &kept);
+            let tooth = match kept.as_slice() {
+                &[(_, lambda)] if with_teeth => m.tooth_force(index, lambda)?,
+                _ => None,
+            };
+            if let Some(tooth) = tooth {
+                reaction = reaction.with_teeth(&tooth);
+                m.teeth.push(tooth);
+            }
+            m.reactions.push(reaction);
             for definition in m.definitions(index)? {
                 let name = format!("{}.{}", joint.name, definition.name);
                 let unit = match definition.coordinate {

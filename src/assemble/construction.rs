@@ -39,6 +39,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             joint_coordinates: BTreeMap::new(),
             reactions: Vec::new(),
             potentials: Vec::new(),
+            teeth: Vec::new(),
             kinetic_energy_of_beams: g.number(0.0),
             sensors: BTreeMap::new(),
         };

@@ -3,7 +3,7 @@
 use symdiff::{Builder, Formula, Scalar};
 
 use super::mechanism::Mechanism;
-use crate::elements::joints::{Kinematics, Rows};
+use crate::elements::joints::{Kinematics, Rows, ToothForce};
 use crate::grammar::{JointCoordinate, OfAngle, OnJoint, PointRef, TimeOrder};
 use crate::multibody::{ANGLE, BuildError, Context, Pair, Vector};
 
@@ -11,6 +11,11 @@ impl<'g> Mechanism<'g, '_> {
     /// A joint's constraints.
     pub fn rows(&self, joint: usize) -> Rows<'g> {
         self.joints[joint].kind.rows(joint, &Position(self))
+    }
+
+    /// The force between the teeth of a joint under the multiplier λ.
+    pub fn tooth_force(&self, joint: usize, lambda: Scalar<'g>) -> Result<Option<ToothForce<'g>>, BuildError> {
+        self.joints[joint].kind.tooth_force(joint, &Position(self), lambda)
     }
 
     /// The unit vector about (along) which a joint's coordinate is counted, in the ground's axes; zero where it has none.
@@ -110,6 +115,26 @@ impl<'g> Kinematics<'g> for Position<'_, 'g, '_> {
 
     fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError> {
         self.0.axis_in_ground(on)
+    }
+
+    fn joint_name(&self, joint: usize) -> &str {
+        &self.0.joints[joint].name
+    }
+
+    fn bodies(&self, joint: usize) -> Option<[usize; 2]> {
+        self.0.joints[joint].kind.between().map(|between| between.map(|point| point.body))
+    }
+
+    fn line(&self, on: OnJoint, body: usize) -> Result<Option<[Vector<'g>; 2]>, BuildError> {
+        let kind = &self.0.joints[on.joint].kind;
+        let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(on.coordinate)) else { return Ok(None) };
+        let Some(point) = between.into_iter().find(|point| point.body == body) else { return Ok(None) };
+        let axis = self.0.unit_vector(axis, Context::Time)?;
+        Ok(Some([self.0.local(point), self.0.local_frame(point).matrix() * axis]))
+    }
+
+    fn place(&self, body: usize, local: Vector<'g>) -> Vector<'g> {
+        self.0.point_at(body, local).position
     }
 
     fn nominal(&self, vector: Vector<'g>) -> [f64; 3] {

@@ -8,6 +8,7 @@ use super::names::Names;
 use super::reaction::Reaction;
 use super::system::UncertainParameter;
 use super::tree::Tree;
+use crate::elements::joints::ToothForce;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, TimeOrder};
 use crate::model::{Joint, LineMass};
 use crate::multibody::{ANGLE, Body, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
@@ -90,6 +91,8 @@ pub struct Mechanism<'g, 'd> {
     pub joint_coordinates: BTreeMap<(usize, JointCoordinate), usize>,
     /// Of the joints built so far.
     pub reactions: Vec<Reaction<'g>>,
+    /// Forces between teeth, where a reaction depends on them.
+    pub teeth: Vec<ToothForce<'g>>,
     /// Potential energies of the effects built so far, J.
     pub potentials: Vec<Scalar<'g>>,
     /// Kinetic energy of what is no rigid body, J.

@@ -38,6 +38,7 @@ mod start;
 mod start_conditions;
 mod symbols;
 mod system;
+mod teeth;
 #[cfg(test)]
 pub(crate) mod tests;
 mod tree;

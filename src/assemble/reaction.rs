@@ -2,7 +2,7 @@
 
 use symdiff::{Builder, Scalar};
 
-use crate::elements::joints::{Joint, Row};
+use crate::elements::joints::{Joint, Row, ToothForce};
 use crate::multibody::Vector;
 
 /// A joint's reaction on its second body, in the ground's axes.
@@ -47,5 +47,10 @@ impl<'g> Reaction<'g> {
             _ => None,
         };
         Self { force, magnitude, torque, about_axis }
+    }
+
+    /// The same of a joint with teeth: its force is that on the second body at the pitch point.
+    pub fn with_teeth(self, tooth: &ToothForce<'g>) -> Self {
+        Self { force: tooth.force, magnitude: tooth.magnitude, ..self }
     }
 }

@@ -39,8 +39,8 @@ pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: 
             clip(teeth)
         );
         let help = format!(
-            "`{teeth}` transmits its torque or force alone; with the force of the teeth at its place, as effects `force`, in its \
-             stead the bearing's reaction is known"
+            "give `{teeth}` a `pressure_angle`, e.g. `20 deg`, and between joints, the bearings: then the force of the teeth acts \
+             at the pitch point"
         );
         reader.error(span, message, help);
     }

@@ -29,6 +29,14 @@ pub enum BuildError {
     /// The speed of a motor has no integral that is known. The reader of model files lets none through.
     #[error("a motor's speed cannot be integrated")]
     Speed,
+    /// Teeth cannot touch where the bearings are.
+    #[error("joint `{joint}`: {why}")]
+    Teeth {
+        /// Name of the joint that has teeth.
+        joint: String,
+        /// What is in the way.
+        why: String,
+    },
     /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
     #[error("`{name}` cannot stand in a formula of {allowed}")]
     Name {

@@ -3,12 +3,14 @@
 use std::fmt::Debug;
 
 use serde::Serialize;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
 use crate::grammar::{Element, JointCoordinate, OnJoint, PointRef};
+use crate::multibody::BuildError;
 
 use super::rows::{Kinematics, Rows};
+use super::teeth::ToothForce;
 
 /// What is the same of every joint of a kind, beside its keys.
 pub trait JointElement: Element + Joint {
@@ -66,7 +68,21 @@ pub trait Joint: Debug {
         self.mobilizer()?.axis_of(coordinate)
     }
 
-    /// What it pushes on by teeth: bearings feel more than its own torque and force.
+    /// The force that its multiplier λ stands for, where that acts between two bodies by teeth; `own` is its own index.
+    ///
+    /// # Errors
+    /// Bearings between which teeth cannot touch, and a formula with a name that cannot stand in it.
+    fn tooth_force<'g>(
+        &self,
+        own: usize,
+        k: &dyn Kinematics<'g>,
+        lambda: Scalar<'g>,
+    ) -> Result<Option<ToothForce<'g>>, BuildError> {
+        let _ = (own, k, lambda);
+        Ok(None)
+    }
+
+    /// What it pushes on by teeth of which nothing is known: bearings feel more than its own torque and force.
     fn toothed(&self) -> Toothed {
         Toothed::default()
     }

@@ -7,16 +7,17 @@
 //! φ is the angle of a body about z, or of a joint about its axis. An external pair has a negative ratio. −Φ_qᵀ λ is the
 //! torque −λ on the second and +ratio λ on the first; the difference is carried by whatever holds the axles, so this is no
 //! pair of action and reaction. A torque on a joint's angle acts on its second body, and the opposite on its first. Where
-//! teeth touch and at which angle is not told: the motion does not depend on it, but the reactions of the bearings do, and
-//! are refused where something asks for them.
+//! teeth touch does not change the motion, but the reactions of the bearings. With a `pressure_angle` they are those of the force
+//! at the pitch point (`teeth`), which is the gear's own reaction; without, they are refused where something asks for them.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{JointCoordinate, OnJoint, Rotating};
-use crate::multibody::Vector;
+use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, Rotating, SymbolTable};
+use crate::multibody::{BuildError, Vector};
 
+use super::teeth::{self, Flanks, Mesh, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
@@ -25,18 +26,54 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
     keyword = "gear",
     what = "a gear",
     equation = "φ₂ − ratio φ₁ − offset = 0",
+    equation = "with a pressure angle: F = F_t t + |F_t| tan α/cos β m − F_t tan β g at the pitch point, F_t = τ₂/r₂",
     source = "Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4",
-    example = "{ between: [pinion, wheel], ratio: -0.5 }"
+    example = "{ between: [pinion, wheel], ratio: -0.5 }",
+    checked
 )]
 pub struct Gear {
     /// Two bodies (their angles about z) or two joints.
-    pub between: [Rotating; 2],
+    between: [Rotating; 2],
     /// Angle of the second per angle of the first; negative for external gears.
     #[quantity(unit = "1", nonzero, constant)]
-    pub ratio: Formula,
+    ratio: Formula,
     /// Angle of the second where that of the first is zero.
     #[quantity(unit = "rad", default = 0, constant)]
-    pub offset: Formula,
+    offset: Formula,
+    /// How teeth touch.
+    #[group]
+    flanks: Flanks,
+    /// From the point where the axes intersect to the middle of the teeth of bevel gears.
+    #[quantity(unit = "m", positive, constant)]
+    cone_distance: Option<Formula>,
+}
+
+impl Gear {
+    /// Of which no teeth are known.
+    pub fn of(between: [Rotating; 2], ratio: f64, offset: f64) -> Self {
+        let (ratio, offset) = (Formula::number(ratio), Formula::number(offset));
+        Self { between, ratio, offset, flanks: Flanks::unknown(), cone_distance: None }
+    }
+}
+
+impl Checked for Gear {
+    fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        if fields.get("cone_distance").is_some() && fields.get("pressure_angle").is_none() {
+            let help = "e.g. `pressure_angle: 20 deg`".to_owned();
+            reader.error(fields.key_span("cone_distance"), "`cone_distance` goes with a `pressure_angle`", help);
+        }
+    }
+
+    fn constrain(schema: &mut schemars::Schema) {
+        teeth::constrain(schema);
+    }
+
+    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        if self.flanks.pressure_angle.is_some() && self.between.iter().any(|of| matches!(of, Rotating::Body(_))) {
+            let help = "name the revolute joints that hold the gears instead of the bodies".to_owned();
+            reader.error(fields.key_span("pressure_angle"), "the force of teeth acts between two bearings", help);
+        }
+    }
 }
 
 impl JointElement for Gear {
@@ -63,6 +100,9 @@ impl Joint for Gear {
 
     fn toothed(&self) -> Toothed {
         let mut toothed = Toothed::default();
+        if self.flanks.pressure_angle.is_some() {
+            return toothed;
+        }
         for angle in self.between {
             match angle {
                 Rotating::Joint(joint) => toothed.joints.push(joint),
@@ -70,6 +110,21 @@ impl Joint for Gear {
             }
         }
         toothed
+    }
+
+    fn tooth_force<'g>(
+        &self,
+        own: usize,
+        k: &dyn Kinematics<'g>,
+        lambda: Scalar<'g>,
+    ) -> Result<Option<ToothForce<'g>>, BuildError> {
+        let [Some(first), Some(second)] = self.between.map(of_joint) else { return Ok(None) };
+        if self.flanks.pressure_angle.is_none() {
+            return Ok(None);
+        }
+        let distance = self.cone_distance.as_ref().map(|distance| k.number(distance)).transpose()?;
+        let mesh = Mesh::of(k, own, [first, second])?;
+        mesh.of_gears(k.number(&self.ratio)?, distance, &self.flanks, lambda).map(Some)
     }
 
     fn glyph(&self) -> Glyph {

@@ -9,9 +9,11 @@
 mod capabilities;
 mod registry;
 mod rows;
+mod teeth;
 
 pub use capabilities::{Joint, JointElement, Mobilizer, Orientation, Placement, RowDocs, Separation, Toothed};
 pub use rows::{Kinematics, Row, Rows};
+pub use teeth::ToothForce;
 
 pub use registry::JointDocs;
 

@@ -6,15 +6,17 @@
 //!
 //! φ is the angle of the pinion's joint, s the displacement of the rack's. −Φ_qᵀ λ is the force −λ along the rack's axis on
 //! the second body of its joint and the torque +radius λ about the pinion's axis on the second body of its; the opposites
-//! act on the first bodies. The reaction is the force on the rack.
+//! act on the first bodies. The reaction is the force on the rack: with a `pressure_angle` that of the teeth at the pitch point
+//! (`teeth`), which the bearings and the guide feel.
 
 use mbint_derive::Element;
-use symdiff::Formula;
+use symdiff::{Formula, Scalar};
 
 use crate::elements::Glyph;
-use crate::grammar::{JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
-use crate::multibody::Vector;
+use crate::grammar::{Checked, JointCoordinate, OnJoint, SlidingJoint, RotatingJoint};
+use crate::multibody::{BuildError, Vector};
 
+use super::teeth::{self, Flanks, Mesh, ToothForce};
 use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
 
 /// A displacement in a fixed ratio to an angle: displacement of the rack = radius * angle of the pinion + offset.
@@ -23,8 +25,10 @@ use super::{Joint, JointElement, Kinematics, Row, RowDocs, Rows, Toothed};
     keyword = "rack",
     what = "a rack",
     equation = "s − radius φ − offset = 0",
+    equation = "with a pressure angle: F = F_t s + |F_t| tan α/cos β m − F_t tan β a at the pitch point",
     source = "Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4",
-    example = "{ pinion: axle, rack: guide, radius: 20 mm }"
+    example = "{ pinion: axle, rack: guide, radius: 20 mm }",
+    checked
 )]
 pub struct Rack {
     /// The joint about which the pinion turns.
@@ -37,6 +41,15 @@ pub struct Rack {
     /// Displacement where the angle is zero.
     #[quantity(unit = "m", default = 0, constant)]
     offset: Formula,
+    /// How teeth touch.
+    #[group]
+    flanks: Flanks,
+}
+
+impl Checked for Rack {
+    fn constrain(schema: &mut schemars::Schema) {
+        teeth::constrain(schema);
+    }
 }
 
 impl JointElement for Rack {
@@ -54,7 +67,23 @@ impl Joint for Rack {
     }
 
     fn toothed(&self) -> Toothed {
+        if self.flanks.pressure_angle.is_some() {
+            return Toothed::default();
+        }
         Toothed { joints: self.pinion_and_rack().map(|on| on.joint).to_vec(), bodies: Vec::new() }
+    }
+
+    fn tooth_force<'g>(
+        &self,
+        own: usize,
+        k: &dyn Kinematics<'g>,
+        lambda: Scalar<'g>,
+    ) -> Result<Option<ToothForce<'g>>, BuildError> {
+        if self.flanks.pressure_angle.is_none() {
+            return Ok(None);
+        }
+        let mesh = Mesh::of(k, own, self.pinion_and_rack())?;
+        mesh.of_rack(k.number(&self.radius)?, &self.flanks, lambda).map(Some)
     }
 
     fn glyph(&self) -> Glyph {

@@ -60,6 +60,15 @@ pub trait Kinematics<'g> {
     fn coordinate(&self, on: OnJoint) -> Scalar<'g>;
     /// The unit vector about or along which a joint's coordinate is counted, in the ground's axes.
     fn axis(&self, on: OnJoint) -> Result<Vector<'g>, BuildError>;
+    /// The name of a joint.
+    fn joint_name(&self, joint: usize) -> &str;
+    /// The bodies that a joint is between, by index.
+    fn bodies(&self, joint: usize) -> Option<[usize; 2]>;
+    /// The line about or along which a joint's coordinate is counted: a point of it and the unit vector along it, in the frame
+    /// of one of the joint's bodies; `None` where there is none.
+    fn line(&self, on: OnJoint, body: usize) -> Result<Option<[Vector<'g>; 2]>, BuildError>;
+    /// The position of a point of a body's frame, m.
+    fn place(&self, body: usize, local: Vector<'g>) -> Vector<'g>;
     /// A vector's components at the nominal parameters.
     fn nominal(&self, vector: Vector<'g>) -> [f64; 3];
 }

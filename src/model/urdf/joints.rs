@@ -54,11 +54,8 @@ pub fn mimic(reader: &mut Reader, source: &Source, built: &Built, index: usize) 
         return;
     };
     let kind = if joint.kind.turns() && leader.kind.turns() && mimic.multiplier != 0.0 {
-        JointKind::from(Gear {
-            between: [Rotating::Joint(other), Rotating::Joint(this)],
-            ratio: Formula::number(mimic.multiplier),
-            offset: Formula::number(mimic.offset),
-        })
+        let between = [Rotating::Joint(other), Rotating::Joint(this)];
+        JointKind::from(Gear::of(between, mimic.multiplier, mimic.offset))
     } else {
         let text = format!("({:e})*{}.{followed} + ({:e})", mimic.multiplier, leader.name, mimic.offset);
         JointKind::from(Equation {
