@@ -77,6 +77,12 @@ pub fn time_error(range: Range, direct: &[f64], halved: &[f64]) -> f64 {
     if range.lower.is_nan() { f64::NAN } else { of_end(range.lower).max(of_end(range.upper)) }
 }
 
+/// Whether each end of a band has a validation sample with halved steps near it, so that these tell its error.
+pub fn carries(range: Range, direct: &[f64]) -> bool {
+    let reach = CARRIES * range.width();
+    [range.lower, range.upper].iter().all(|end| direct.iter().any(|value| (value - end).abs() <= reach))
+}
+
 /// Error of a band's ends from the bounds with halved steps, all samples run again.
 pub fn time_error_certified(range: Range, halved: Range) -> f64 {
     largest([range.lower - halved.lower, range.upper - halved.upper].map(|change| RICHARDSON * change))

@@ -45,7 +45,7 @@ mod time_shift;
 pub use decay::truncation;
 pub use domain::{ParameterBox, Sample};
 pub use error::{
-    BandError, SAFETY_OF_SURROGATE, largest, step_error, surrogate_error, time_error, time_error_certified,
+    BandError, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extent::Extent;
 pub use extremes::{extremes, extremes_near};

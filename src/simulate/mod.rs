@@ -19,6 +19,7 @@ mod diagnostics;
 mod enclosure;
 mod ensemble;
 mod error;
+mod excitations;
 mod explicit;
 mod further;
 mod modal;

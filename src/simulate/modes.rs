@@ -1,17 +1,22 @@
-//! Fast modes that the start excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
+//! Fast modes that the start or something later excites and that the scheme damps: with steps of any size that are long for them, it damps them alike, so that
 //! halving the steps does not show what they damp.
 //!
 //! About the nominal start the equations of motion are M δẅ + C δv + K δq + Φ_qᵀ δλ = 0 with Φ_q δq = 0. A mode φ (φᵀMφ = 1, frequency ω)
 //! has the amplitude √((φᵀMw/ω²)² + (φᵀMv/ω)²): what is slow has hardly any part in φᵀMw/ω².
 
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix3, SVD, SymmetricEigen, Vector3};
 use symdiff::{Expr, Graph, math};
 
+use super::control::Schedule;
+use super::excitations::{Excitation, Watched, excitations};
 use super::simulator::Simulator;
 use crate::compile::Coefficients;
 
 /// Largest mechanism whose modes are looked at, in coordinates.
-const MOST_COORDINATES: usize = 120;
+const MOST_COORDINATES: usize = 400;
+
+/// Most modes that are followed over the whole motion: the fastest.
+const MOST_WATCHED: usize = 40;
 
 /// Modes are looked at whose frequency is above this over the step.
 const SLOWEST: f64 = 0.2;
@@ -19,7 +24,7 @@ const SLOWEST: f64 = 0.2;
 /// Eigenvalues of Φ_qᵀ Φ_q below this share of the largest belong to motions that the constraints allow.
 const ALLOWED: f64 = 1e-12;
 
-/// A mode that the start excites.
+/// A mode that the start or something later excites.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExcitedMode {
     /// ω, rad/s.
@@ -28,28 +33,42 @@ pub struct ExcitedMode {
     pub decay: f64,
     /// Its decay by the scheme with these steps and with halved ones, 1/s.
     pub by_scheme: [f64; 2],
-    /// Its amplitude in each output, in the output's unit.
-    pub amplitudes: Vec<f64>,
+    /// What excites it, and how much.
+    pub excitations: Vec<Excitation>,
+    /// What an amplitude of 1 is in each output, in the output's unit.
+    pub in_outputs: Vec<f64>,
 }
 
 impl ExcitedMode {
     /// What the steps have damped of its amplitude in an output up to a time, of what is left then, and halving them does not show
     /// (4/3 of the difference is what it shows).
     pub fn lost(&self, output: usize, time: f64) -> f64 {
-        let left = math::exp(-self.decay * time);
-        let [whole, halved] = self.by_scheme.map(|decay| 1.0 - math::exp(-decay * time));
-        self.amplitudes[output] * left * ((4.0 * halved - whole) / 3.0).max(0.0)
+        let of_one = |excitation: &Excitation| {
+            let since = time - excitation.time;
+            let left = math::exp(-self.decay * since);
+            let [whole, halved] = self.by_scheme.map(|decay| 1.0 - math::exp(-decay * since));
+            excitation.amplitude * left * ((4.0 * halved - whole) / 3.0).max(0.0)
+        };
+        let begun = self.excitations.iter().filter(|excitation| excitation.time <= time);
+        self.in_outputs[output] * begun.map(of_one).sum::<f64>()
     }
 }
 
-/// The modes of a mechanism at its nominal start that steps of length h damp, the fastest last.
-pub fn excited_modes(simulator: &Simulator, h: f64) -> Vec<ExcitedMode> {
+/// The modes of a mechanism about its nominal start that the steps of a schedule damp, the fastest last, with what excites them.
+pub fn excited_modes(simulator: &Simulator, schedule: &Schedule) -> Vec<ExcitedMode> {
     let n = simulator.system.q.len();
     if n > MOST_COORDINATES {
         return Vec::new();
     }
     let linear = Linearised::at_start(simulator);
-    linear.modes(simulator, h).unwrap_or_default()
+    let (mut modes, watched): (Vec<ExcitedMode>, Vec<Watched>) =
+        linear.modes(simulator, schedule.longest_step()).unwrap_or_default().into_iter().unzip();
+    let slower = modes.len().saturating_sub(MOST_WATCHED);
+    if !watched.is_empty() {
+        let later = excitations(simulator, schedule, &watched[slower..], SLOWEST);
+        modes[slower..].iter_mut().zip(later).for_each(|(mode, later)| mode.excitations.extend(later));
+    }
+    modes
 }
 
 /// The equations about the nominal start.
@@ -117,7 +136,7 @@ impl Linearised {
     }
 
     /// `None` where M is not positive on the motions that the constraints allow.
-    fn modes(&self, simulator: &Simulator, h: f64) -> Option<Vec<ExcitedMode>> {
+    fn modes(&self, simulator: &Simulator, h: f64) -> Option<Vec<(ExcitedMode, Watched)>> {
         let allowed = self.allowed_motions()?;
         let on_allowed = |matrix: &DMatrix<f64>| allowed.transpose() * matrix * &allowed;
         let symmetric = |matrix: DMatrix<f64>| (&matrix + matrix.transpose()) * 0.5;
@@ -127,41 +146,57 @@ impl Linearised {
         if scaled.iter().any(|value| !value.is_finite()) {
             return None;
         }
+        // No eigenvalue is larger than the largest sum of a row.
+        let largest = scaled.row_iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max);
+        if largest.sqrt() * h <= SLOWEST {
+            return Some(Vec::new());
+        }
         let eigen = SymmetricEigen::new(scaled);
         let shapes = &allowed * root.l().transpose().solve_upper_triangular(&eigen.eigenvectors)?;
+        let [.., by_lambda] = &self.outputs;
+        let reactions_matter = by_lambda.iter().any(|&value| value != 0.0);
+        let constraints =
+            (reactions_matter && self.constraint.nrows() > 0).then(|| self.constraint.transpose().svd(true, true));
         let mut modes = Vec::new();
         for (place, &square) in eigen.eigenvalues.iter().enumerate() {
             if square.sqrt() * h > SLOWEST {
                 let shape = shapes.column(place).into_owned();
-                modes.push(self.mode(&shape, square.sqrt(), h, simulator.program.coefficients));
+                let of_scheme = (h, simulator.program.coefficients);
+                modes.push(self.mode(&shape, square.sqrt(), of_scheme, constraints.as_ref()));
             }
         }
-        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        modes.sort_by(|(a, _), (b, _)| a.frequency.total_cmp(&b.frequency));
         Some(modes)
     }
 
-    fn mode(&self, shape: &DVector<f64>, omega: f64, h: f64, coefficients: Coefficients) -> ExcitedMode {
+    fn mode(
+        &self,
+        shape: &DVector<f64>,
+        omega: f64,
+        (h, coefficients): (f64, Coefficients),
+        constraints: Option<&SVD<f64, Dyn, Dyn>>,
+    ) -> (ExcitedMode, Watched) {
         let weighted = &self.mass * shape;
         let by_acceleration = weighted.dot(&self.acceleration) / (omega * omega);
         let amplitude = math::hypot(by_acceleration, weighted.dot(&self.velocity) / omega);
         // The constraints' forces hold the rest of (K − ω² M) φ.
         let rest = (&self.stiffness * shape - &weighted * (omega * omega)) * -1.0;
-        let reactions = match self.constraint.nrows() {
-            0 => DVector::zeros(0),
-            m => self.constraint.transpose().svd(true, true).solve(&rest, 1e-12).unwrap_or_else(|_| DVector::zeros(m)),
-        };
+        let m = self.constraint.nrows();
+        let reactions = constraints.and_then(|svd| svd.solve(&rest, 1e-12).ok()).unwrap_or_else(|| DVector::zeros(m));
         let [by_q, by_v, by_w, by_lambda] = &self.outputs;
         let parts = [by_q * shape, by_v * shape * omega, by_w * shape * (omega * omega), by_lambda * reactions];
         // Displacements, accelerations and reactions are in phase, velocities a quarter behind.
         let in_phase = &parts[0] - &parts[2] + &parts[3];
-        let amplitudes = in_phase.iter().zip(parts[1].iter()).map(|(a, b)| amplitude * math::hypot(*a, *b)).collect();
+        let in_outputs = in_phase.iter().zip(parts[1].iter()).map(|(a, b)| math::hypot(*a, *b)).collect();
         let decay = (0.5 * shape.dot(&(&self.damping * shape))).clamp(0.0, omega);
-        ExcitedMode {
+        let mode = ExcitedMode {
             frequency: omega,
             decay,
             by_scheme: [h, 0.5 * h].map(|h| decay_by_scheme(coefficients, h * omega) / h),
-            amplitudes,
-        }
+            excitations: vec![Excitation { time: 0.0, amplitude }],
+            in_outputs,
+        };
+        (mode, Watched { weighted: weighted.iter().copied().collect(), frequency: omega })
     }
 
     /// A basis of the motions with Φ_q δq = 0: columns.

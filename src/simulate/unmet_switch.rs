@@ -46,8 +46,15 @@ const WIDTH: usize = 32;
 /// Rows simulated at once.
 const BLOCK: usize = 64;
 
-/// The signs that a switch had since the row before: below zero, above.
-type Signs = [bool; 2];
+/// How far a switch went below and above zero since the row before.
+type Depths = [f64; 2];
+
+/// What held-out samples meet tells of what goes at most this many times as far: one that only grazes a post says little of those
+/// that hit it.
+const AS_DEEP: f64 = 2.0;
+
+/// A sign that samples have by less than this share of the other is looked for further on.
+const SHALLOW: f64 = 0.1;
 
 /// A place where a switch may have a sign that no sample's has.
 #[derive(Clone, Debug)]
@@ -55,7 +62,7 @@ struct Suspect {
     row: usize,
     switch: usize,
     side: usize,
-    /// How far beyond zero, as a share of the switch's size.
+    /// How far beyond zero.
     beyond: f64,
     xi: Vec<f64>,
 }
@@ -95,7 +102,7 @@ pub fn unmet_switch(
     let mut before: Option<Vec<f64>> = None;
     let mut work = SurrogateWork::default();
     let between = surrogate.as_ref().map(|surrogate| Between { simulator, program, domain, surrogate });
-    let Observations { signs, switched_from, mut counters } = observing.run(&points, nodes, |row, motions, met| {
+    let Observations { depths, switched_from, mut counters } = observing.run(&points, nodes, |row, motions, met| {
         let Some(between) = &between else { return };
         let of_nodes: Vec<f64> = motions.chunks_exact(points.len()).flat_map(|line| line[..nodes].to_vec()).collect();
         let coefficients = between.surrogate.coefficients(&of_nodes, &mut work);
@@ -104,24 +111,29 @@ pub fn unmet_switch(
             suspects.extend(between.suspects(row, times, [&before, &coefficients], &one_sided(program, met)));
         }
     })?;
-    let reach = ROWS.max(signs.len() / SHARE_OF_ROWS);
-    let is_met = |row: usize, switch: usize, side: usize| {
-        let rows = row.saturating_sub(reach)..(row + reach + 1).min(signs.len());
-        signs[rows].iter().any(|[_, held_out]| held_out[switch][side])
+    let reach = ROWS.max(depths.len() / SHARE_OF_ROWS);
+    let is_met = |row: usize, switch: usize, side: usize, depth: f64| {
+        let rows = row.saturating_sub(reach)..(row + reach + 1).min(depths.len());
+        depths[rows]
+            .iter()
+            .any(|[_, held_out]| held_out[switch][side] > 0.0 && AS_DEEP * held_out[switch][side] >= depth)
     };
-    let first_unmet = |of_samples: &[[Vec<Signs>; 2]]| {
-        let unmet = |row: usize, signs: &[Signs]| {
-            (0..signs.len()).any(|switch| (0..2).any(|side| signs[switch][side] && !is_met(row, switch, side)))
+    let first_unmet = |of_samples: &[[Vec<Depths>; 2]]| {
+        let unmet = |row: usize, depths: &[Depths]| {
+            let is_unmet = |switch: usize, side: usize| {
+                depths[switch][side] > 0.0 && !is_met(row, switch, side, depths[switch][side])
+            };
+            (0..depths.len()).any(|switch| (0..2).any(|side| is_unmet(switch, side)))
         };
-        of_samples.iter().take(signs.len()).enumerate().position(|(row, [of_samples, _])| unmet(row, of_samples))
+        of_samples.iter().take(depths.len()).enumerate().position(|(row, [of_samples, _])| unmet(row, of_samples))
     };
-    let by_nodes = first_unmet(&signs);
-    suspects.retain(|suspect| !is_met(suspect.row, suspect.switch, suspect.side));
+    let by_nodes = first_unmet(&depths);
+    suspects.retain(|suspect| !is_met(suspect.row, suspect.switch, suspect.side, suspect.beyond));
     let chosen = chosen(suspects, program.switches.len());
     let mut by_suspects = None;
     if !chosen.is_empty() {
         let found = observing.run(&chosen, chosen.len(), |_, _, _| ())?;
-        by_suspects = first_unmet(&found.signs);
+        by_suspects = first_unmet(&found.depths);
         counters += found.counters;
     }
     Ok(Some(SwitchSearch {
@@ -132,11 +144,12 @@ pub fn unmet_switch(
     }))
 }
 
-/// Switches whose rates are known and that had one sign only, with the other one: 0 below zero, 1 above.
-fn one_sided(program: &SwitchProgram, met: &[Signs]) -> Vec<(usize, usize)> {
-    let other = |(switch, met): (usize, &Signs)| {
-        let side = usize::from(met[0]);
-        (program.switches[switch].rate.is_some() && met[0] != met[1]).then_some((switch, side))
+/// Switches whose rates are known and that had one sign only, or the other one by little, with that other one: 0 below zero, 1 above.
+fn one_sided(program: &SwitchProgram, met: &[Depths]) -> Vec<(usize, usize)> {
+    let other = |(switch, met): (usize, &Depths)| {
+        let side = usize::from(met[0] > met[1]);
+        let is_one_sided = met[side] < SHALLOW * met[1 - side];
+        (program.switches[switch].rate.is_some() && is_one_sided).then_some((switch, side))
     };
     met.iter().enumerate().filter_map(other).collect()
 }
@@ -161,8 +174,8 @@ fn chosen(suspects: Vec<Suspect>, switches: usize) -> Vec<Vec<f64>> {
 
 /// What is seen of samples.
 struct Observations {
-    /// The signs of switches before each row, of the first samples and of the others.
-    signs: Vec<[Vec<Signs>; 2]>,
+    /// How far switches went before each row, of the first samples and of the others.
+    depths: Vec<[Vec<Depths>; 2]>,
     /// The first row before which one of them switched.
     switched_from: Option<usize>,
     counters: Counters,
@@ -179,20 +192,20 @@ struct Observing<'a> {
 }
 
 impl Observing<'_> {
-    /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and the signs that switches
-    /// had since the row before. The first `split` samples' signs are kept apart from the others'.
+    /// Simulates samples as far as all of them get; `look` is given each row, the motions (2n lines) there, and how far switches
+    /// went since the row before. The first `split` samples are kept apart from the others.
     fn run(
         &self,
         xi: &[Vec<f64>],
         split: usize,
-        mut look: impl FnMut(usize, &[f64], &[Signs]),
+        mut look: impl FnMut(usize, &[f64], &[Depths]),
     ) -> Result<Observations, SimulationError> {
         let samples = self.domain.samples(xi);
         let mut run = EnsembleRun::start(self.simulator, &samples, self.schedule.first_step())?;
         let (lines, switches) = (2 * self.simulator.program.scale.len(), self.program.switches.len());
         let stride = (lines + 2 * switches) * samples.len();
         let mut sizes = vec![0.0_f64; switches];
-        let (mut all, mut values): (Vec<[Vec<Signs>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
+        let (mut all, mut values): (Vec<[Vec<Depths>; 2]>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut switched_from = None;
         for first in (0..self.schedule.rows).step_by(BLOCK) {
             let rows = first..(first + BLOCK).min(self.schedule.rows);
@@ -213,24 +226,27 @@ impl Observing<'_> {
                     if switched_from.is_none() && low.iter().zip(high).any(has_switched) {
                         switched_from = Some(row);
                     }
-                    before.push(signs(&low[..split], &high[..split], ZERO * size));
-                    after.push(signs(&low[split..], &high[split..], ZERO * size));
+                    before.push(depths(&low[..split], &high[..split], ZERO * size));
+                    after.push(depths(&low[split..], &high[split..], ZERO * size));
                 }
-                let either = |(a, b): (&Signs, &Signs)| [a[0] || b[0], a[1] || b[1]];
-                look(row, motions, &before.iter().zip(&after).map(either).collect::<Vec<Signs>>());
+                let deeper = |(a, b): (&Depths, &Depths)| [a[0].max(b[0]), a[1].max(b[1])];
+                look(row, motions, &before.iter().zip(&after).map(deeper).collect::<Vec<Depths>>());
                 all.push([before, after]);
             }
             if reached < rows.end || (self.interrupted)() {
                 break;
             }
         }
-        Ok(Observations { signs: all, switched_from, counters: run.counters() })
+        Ok(Observations { depths: all, switched_from, counters: run.counters() })
     }
 }
 
-/// The signs of least and largest values, of which less than `zero` is none. (Nothing has been seen before the first step.)
-fn signs(low: &[f64], high: &[f64], zero: f64) -> Signs {
-    [low.iter().any(|&low| low < -zero), high.iter().any(|&high| high > zero && high.is_finite())]
+/// How far least and largest values go, of which less than `zero` is nothing. (Nothing has been seen before the first step.)
+fn depths(low: &[f64], high: &[f64], zero: f64) -> Depths {
+    let deepest = |values: &mut dyn Iterator<Item = f64>| {
+        values.filter(|value| *value > zero && value.is_finite()).fold(0.0, f64::max)
+    };
+    [deepest(&mut low.iter().map(|&low| -low)), deepest(&mut high.iter().copied())]
 }
 
 /// The values of switches between two rows, over the box.
@@ -274,8 +290,8 @@ impl Between<'_> {
         let found = extremes(&intervals, &least, |points| self.values(points, times, motions, &closer));
         let suspect = |(&(place, size), found): (&(usize, f64), &Extent)| {
             let (switch, side) = one_sided[place];
-            let beyond = if side == 0 { -found.range.lower } else { found.range.upper } / size;
-            (beyond > ZERO).then(|| Suspect { row, switch, side, beyond, xi: found.places[side][..k].to_vec() })
+            let beyond = if side == 0 { -found.range.lower } else { found.range.upper };
+            (beyond > ZERO * size).then(|| Suspect { row, switch, side, beyond, xi: found.places[side][..k].to_vec() })
         };
         near.iter().zip(&found).filter_map(suspect).collect()
     }

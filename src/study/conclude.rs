@@ -6,7 +6,7 @@ use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
-use crate::numerics::{BandError, Sample, time_error, time_error_certified};
+use crate::numerics::{BandError, Sample, carries, time_error, time_error_certified};
 use crate::results::{
     Band, Bounds, Contribution, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, OutputBounds,
     ParameterSummary, SingularSummary, Summary,
@@ -92,12 +92,20 @@ pub(super) fn bands(study: &Study, results: &Results, output: usize, rows: usize
     let band = |(place, (method, outcome)): (usize, &(Method, Outcome))| {
         let ranges = &outcome.result.bands[output][..rows];
         let halved = results.halved.get(place).map(|(_, halved)| &halved.result.bands[output]);
-        let by_halving = |row: usize| match halved {
-            Some(halved) => time_error_certified(ranges[row], halved[row]),
-            // Either is enough: what the validation samples near the ends show, and what the coordinates' errors do to the ends,
-            // which is nothing where a range is saturated. (`min` passes over NaN.)
-            None => time_error(ranges[row], &validation.direct.at(row, output), &validation.halved.at(row, output))
-                .min(outcome.result.steps[output][row]),
+        let by_halving = |row: usize| {
+            if let Some(halved) = halved {
+                return time_error_certified(ranges[row], halved[row]);
+            }
+            let (direct, halved) = (validation.direct.at(row, output), validation.halved.at(row, output));
+            let by_coordinates = outcome.result.steps[output][row];
+            let by_samples = time_error(ranges[row], &direct, &halved);
+            // Either is enough: what the validation samples near the ends show, if there are any, and what the coordinates' errors
+            // do to the ends, which is nothing where a range is saturated. (`min` passes over NaN.)
+            if by_coordinates.is_nan() || carries(ranges[row], &direct[..halved.len()]) {
+                by_samples.min(by_coordinates)
+            } else {
+                by_coordinates
+            }
         };
         // What halved steps have damped away too is added.
         let damped = |row: usize| -> f64 {

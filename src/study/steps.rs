@@ -37,7 +37,7 @@ impl Study<'_> {
         }
     }
 
-    /// Fast modes that the start excites and a schedule's steps damp. Steps that a tolerance decides follow them.
+    /// Fast modes that are excited and that a schedule's steps damp. Steps that a tolerance decides follow them.
     pub(super) fn damped_modes(&self, schedule: &Schedule) -> Vec<ExcitedMode> {
         let has_steps = !self.simulator.system.analysis.visits();
         match self.description.simulation.stepping {
@@ -47,7 +47,10 @@ impl Study<'_> {
             {
                 // The finest level has the most weight.
                 let halvings = schedule.integration.order() - 2;
-                excited_modes(&self.simulator, schedule.longest_step() / (1_u32 << halvings) as f64)
+                match halvings {
+                    0 => excited_modes(&self.simulator, schedule),
+                    _ => excited_modes(&self.simulator, &schedule.refined(1 << halvings)),
+                }
             }
             _ => Vec::new(),
         }

@@ -6,9 +6,10 @@
 //! MBINT_FALSIFY_DRAWS=5000 MBINT_FALSIFY_SEED=1 cargo test --test falsify -- --ignored --nocapture
 //! ```
 //!
-//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that number;
-//! `MBINT_FALSIFY_SECONDS=600` begins no draw after ten minutes. `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and
-//! method simple and prints them as models; `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
+//! `MBINT_FALSIFY_FAMILY=pulse` draws from families whose names begin so, `MBINT_FALSIFY_ONLY=17` the draw of that number,
+//! `MBINT_FALSIFY_FIRST=300` begins with that number; `MBINT_FALSIFY_SECONDS=600` begins no draw after ten minutes.
+//! `MBINT_FALSIFY_SHOWN=2` makes two misses of each family and method simple and prints them as models;
+//! `MBINT_FALSIFY_MISSES=FOLDER` writes them there as well.
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
@@ -151,11 +152,12 @@ fn errors_of_a_few_draws_are_honest() {
 #[test]
 #[ignore = "minutes"]
 fn errors_are_honest() {
-    let [seed, draws, only]: [Option<u64>; 3] =
-        ["MBINT_FALSIFY_SEED", "MBINT_FALSIFY_DRAWS", "MBINT_FALSIFY_ONLY"].map(asked);
-    let by_hand = [seed, draws, only].iter().any(Option::is_some) || std::env::var_os("MBINT_FALSIFY_FAMILY").is_some();
+    let [seed, draws, only, first]: [Option<u64>; 4] =
+        ["MBINT_FALSIFY_SEED", "MBINT_FALSIFY_DRAWS", "MBINT_FALSIFY_ONLY", "MBINT_FALSIFY_FIRST"].map(asked);
+    let by_hand =
+        [seed, draws, only, first].iter().any(Option::is_some) || std::env::var_os("MBINT_FALSIFY_FAMILY").is_some();
     let draws = draws.unwrap_or(known::DRAWS);
-    let numbers = only.map_or(0..draws, |only| only..only + 1);
+    let numbers = only.map_or(first.unwrap_or(0)..draws, |only| only..only + 1);
     // Simplifying takes longer than all the gate's draws.
     let shown = asked("MBINT_FALSIFY_SHOWN").unwrap_or(if only.is_some() { usize::MAX } else { 0 });
     let table = falsify(seed.unwrap_or(known::SEED), numbers, shown);

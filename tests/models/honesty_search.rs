@@ -245,6 +245,23 @@ fn kinks_are_covered() {
     }
 }
 
+/// The difference of two motions changes its sign in a corner of the box only: elsewhere its magnitude is a sum of functions of one
+/// parameter each.
+#[test]
+fn a_kink_in_a_corner_is_covered() {
+    let parts = [(0.32, 1.21, 9.0), (0.11, 2.3, 5.0)];
+    let settings = "simulation: { duration: 15, step: 5e-3, output_step: 0.25 }\nbounds: { chebyshev: { order: 7 } }\n";
+    let bounds = run(&oscillators(&parts, "{ d: \"abs(b0.x - b1.x - 0.19)\" }", 0.0, settings));
+    let counted = assert_honest(&bounds, "d", Method::Chebyshev, |t| {
+        let mirrored = [parts[0], (-parts[1].0, parts[1].1, parts[1].2)];
+        let (lower, upper) = sum(&mirrored, t);
+        let (lower, upper) = (lower - 0.19, upper - 0.19);
+        let least = if lower < 0.0 && upper > 0.0 { 0.0 } else { lower.abs().min(upper.abs()) };
+        (least, lower.abs().max(upper.abs()))
+    });
+    assert_eq!(counted, 61);
+}
+
 /// Constant and zero outputs, with and without uncertain parameters.
 #[test]
 fn what_is_constant_is_resolved() {

@@ -197,6 +197,29 @@ fn a_post_that_no_sample_meets_flags_what_follows() {
     assert_eq!(flagged_from(&run(&read(&throw(above, settings)))), None);
 }
 
+/// A throw that all validation samples pass but one, which only grazes the post: between it and the next, throws are stopped.
+#[test]
+fn a_post_that_a_sample_only_grazes_flags_what_follows() {
+    let text = "
+parameters: { v: { value: 9, unit: m/s, tolerance: 10% }, X: 10.8 m, Y: 4.753 m, R: 0.1 m, K: 9e3 N/m }
+bodies: { ball: { mass: 1 kg, coordinates: [x, y] } }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  post: { force: { on: ball, value: [\"K*max(R/sqrt((ball.x - X)^2 + (ball.y - Y)^2) - 1, 0)*(ball.x - X)\", \"K*max(R/sqrt((ball.x - X)^2 + (ball.y - Y)^2) - 1, 0)*(ball.y - Y)\"] } }
+initial: { ball.x: 0, ball.y: 0, ball.vx: 12, ball.vy: v }
+outputs: { x: ball.x }
+simulation: { duration: 1.5, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 4 } }
+";
+    let bounds = run(&read(text));
+    let band = band(output(&bounds, "x"), Method::Chebyshev);
+    // The graze is seen, and is small.
+    let error = largest(band.error.total.iter().copied());
+    assert!(error > 1e-4 && error < 0.05, "{error}");
+    let found = flagged_from(&bounds);
+    assert!(found.is_some_and(|from| (0.8..=0.95).contains(&from)), "{found:?}");
+}
+
 /// The search's simulations are reported, and from when on what it found matters.
 #[test]
 fn the_summary_has_the_search_for_switches() {

@@ -217,6 +217,56 @@ bounds: {{ chebyshev: {{ order: 6 }}, scan: {{ points: 25 }} }}
     findings.none();
 }
 
+/// The same pair, pushed from some time on, at which its fast mode begins to vibrate.
+#[test]
+fn a_mode_that_is_excited_later_counts_as_error() {
+    let text = "
+parameters: { kappa: { value: 9, unit: N/m, tolerance: 2% } }
+bodies: { one: { mass: 1, coordinates: [x] }, two: { mass: 3, coordinates: [x] } }
+effects:
+  first: { force: { on: one, value: [\"-kappa*one.x - 4e5*(one.x - two.x) + if(t > 1.7231, 2400, 0)\", 0] } }
+  second: { force: { on: two, value: [\"-3*kappa*two.x + 4e5*(one.x - two.x) - if(t > 1.7231, 2400, 0)\", 0] } }
+initial: { one.x: 0.1, two.x: 0.1, one.vx: 0, two.vx: 0 }
+outputs: { x: one.x, both: 0.25*one.x + 0.75*two.x }
+simulation: { duration: 6, step: 5e-3, output_step: 0.1 }
+bounds: { chebyshev: { order: 6 }, scan: { points: 25 } }
+";
+    let mut findings = Findings::default();
+    let (bounds, summary) = run_methods(&read(text), Some(vec![Method::Chebyshev, Method::Scan]));
+    let kappa = |xi: f64| 9.0 * (1.0 + 0.02 * xi);
+    let both = |xi: f64, t: f64| 0.1 * (kappa(xi).sqrt() * t).cos();
+    let x = |xi: f64, t: f64| {
+        let square = kappa(xi) + 4e5 * (4.0 / 3.0);
+        let stretch = 3200.0 / square * (1.0 - (square.sqrt() * (t - 1.7231).max(0.0)).cos());
+        both(xi, t) + 0.75 * stretch
+    };
+    let flagged = check(&mut findings, &bounds, "x", 10.0, x);
+    findings.check(flagged == 0.0, format_args!("x is flagged"));
+    check(&mut findings, &bounds, "both", 10.0, both);
+    let found = summary.damped_mode.expect("the mode is reported");
+    findings.check((found.frequency - 116.2).abs() < 0.5, format_args!("{found:?}"));
+    findings.none();
+}
+
+/// A narrow peak over the parameter that no sample is near: what samples say of the steps' error is none of its error.
+#[test]
+fn ends_that_no_sample_carries_have_the_error_of_the_coordinates() {
+    let text = "
+parameters: { k: { value: 50, unit: N/m, tolerance: 2% } }
+bodies: { block: { mass: 2, coordinates: [x] } }
+effects: { push: { force: { on: block, value: [\"-k*block.x\", 0] } } }
+initial: { block.x: 0.03, block.vx: 0 }
+outputs: { x: \"block.x/(1 + 1e4*(k - 50.74)^2)\" }
+simulation: { duration: 4, step: 5e-3, output_step: 0.08 }
+bounds: { chebyshev: { order: 6 } }
+";
+    let mut findings = Findings::default();
+    let (bounds, _) = run_methods(&read(text), Some(vec![Method::Chebyshev]));
+    let flagged = check(&mut findings, &bounds, "x", 10.0, |xi, t| free(xi, t) / (1.0 + 1e4 * (xi - 0.74).powi(2)));
+    findings.check(flagged == 0.0, format_args!("x is flagged"));
+    findings.none();
+}
+
 /// A heavy top about a fixed point, at steps that are long for its spin: what halving changes is zero now and then, where the error is
 /// not.
 #[test]

@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 
-use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, spread};
+use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, largest, spread};
 
 /// For so many parameters that act together ranges are found on a lattice.
 const MOST_PARAMETERS: usize = 3;
@@ -20,6 +20,9 @@ const POLYNOMIAL: [usize; MOST_PARAMETERS] = [4, 4, 2];
 const CHECKS: usize = 16;
 /// What a check may find beyond the range, as a share of it, before the search begins anew.
 const BEYOND: f64 = 1e-3;
+
+/// A sum of functions may be off by this share of its range at the range's ends.
+const SUM: f64 = 1e-8;
 
 /// The extremes of each output in the row before, where they were searched for by climbs.
 pub(super) type Previous = Vec<Option<Extremes>>;
@@ -92,7 +95,9 @@ impl RangeSearch {
                 self.together(functions, &outputs, previous)
             } else {
                 let anchored: Vec<f64> = places.iter().map(|&place| values[place][0]).collect();
-                self.apart(functions, &outputs, groups, &anchored)
+                let mut sums = self.apart(functions, &outputs, groups, &anchored);
+                self.hold_sums(functions, &outputs, &mut sums, previous);
+                sums
             };
             for (&place, mut extent) in places.iter().zip(extents) {
                 extent.gap += defects[place];
@@ -158,6 +163,27 @@ impl RangeSearch {
             }
         }
         sums
+    }
+}
+
+impl RangeSearch {
+    /// Searches anew, over all parameters together, for the ranges of outputs that are no sums at the ends of these: a kink that lies
+    /// beside all points at which sums are tried.
+    fn hold_sums(&self, functions: &Functions, outputs: &[usize], sums: &mut [Extent], previous: &mut Previous) {
+        let places: Vec<Vec<f64>> = sums.iter().flat_map(|sum| sum.places.iter().cloned()).collect();
+        let values = (functions.evaluate)(outputs, &places);
+        let is_sum = |&place: &usize| {
+            let (at_ends, range) = (&values[place * places.len() + 2 * place..][..2], sums[place].range);
+            let apart = largest([at_ends[0] - range.lower, at_ends[1] - range.upper]);
+            // Written so that NaN is no sum.
+            apart <= SUM * range.width() + functions.rounding[outputs[place]]
+        };
+        let others: Vec<usize> = (0..outputs.len()).filter(|place| !is_sum(place)).collect();
+        if !others.is_empty() {
+            let wanted: Vec<usize> = others.iter().map(|&place| outputs[place]).collect();
+            let found = self.together(functions, &wanted, previous);
+            others.into_iter().zip(found).for_each(|(place, found)| sums[place] = found);
+        }
     }
 }
 
