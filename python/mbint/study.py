@@ -104,9 +104,7 @@ class Study:
         planned = [option for option in self.options if option != "--yes"]
         invoke(["plan", str(self.model), "--output", study, "--at-once", repr(at_once), "--color", "never", *planned])
         while True:
-            plan = json.loads((Path(study) / "plan.json").read_text(encoding="utf-8"))
-            for done in [executor.submit(shard, study, index) for index in range(len(plan["shards"]))]:
-                done.result()
+            shard_all(executor, study)
             merged = invoke(["merge", study, *output], accepted=WITH_RESULTS | {ANOTHER_ROUND})
             if merged.returncode != ANOTHER_ROUND:
                 self.messages = merged.stderr.strip()
@@ -185,6 +183,17 @@ class Study:
     def plot(self, output: str | None = None, methods: list[str] | None = None) -> Figure:
         """Bounds over time; needs matplotlib."""
         return self.result.plot(output, methods)
+
+
+def shard_all(executor: Executor, study: str) -> None:
+    """Simulates all shards of a round.
+
+    Raises:
+        MbintError: one of them failed.
+    """
+    plan = json.loads((Path(study) / "plan.json").read_text(encoding="utf-8"))
+    for done in [executor.submit(shard, study, index) for index in range(len(plan["shards"]))]:
+        done.result()
 
 
 def shard(study: str, index: int) -> None:

@@ -76,3 +76,17 @@ def test_plots_have_a_panel_for_each_output() -> None:
 def test_a_summary_is_json() -> None:
     study = mbint.run(FALL)
     assert json.loads((study.folder / "summary.json").read_text())["model"] == "fall"
+
+
+def test_samples_are_those_of_free_fall() -> None:
+    samples = mbint.sample(FALL, {"g": [9.7, 10.0]})
+    assert samples["values"].dims == ("sample", "time", "output")
+    np.testing.assert_allclose(
+        samples["values"].sel(output="y"), -0.5 * np.outer([9.7, 10.0], samples.time.to_numpy() ** 2), atol=1e-12
+    )
+    assert samples.units.sel(output="speed") == "m/s"
+    with ThreadPoolExecutor(2) as pool:
+        cut = mbint.sample(FALL, design="sobol:64", executor=pool)
+    whole = mbint.sample(FALL, design="sobol:64")
+    assert cut.identical(whole)
+    assert float(whole.parameters.min()) == pytest.approx(9.81 * 0.99)

@@ -1,6 +1,7 @@
 //! The arguments of the command line.
 
 mod explain;
+mod sample;
 mod shards;
 mod shared;
 mod sweep;
@@ -15,6 +16,7 @@ use super::status;
 use crate::model::Override;
 use crate::results::Method;
 pub(super) use explain::ExplainArgs;
+pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
 pub(super) use shared::{AskedArgs, SetArgs, Threads};
 pub(super) use sweep::SweepArgs;
@@ -49,6 +51,8 @@ pub(super) enum Command {
     Snapshot(SnapshotArgs),
     /// Explain what a model is compiled to and what is left out, or list what the language offers.
     Explain(ExplainArgs),
+    /// Simulate at chosen points: outputs over time, for other programs.
+    Sample(SampleArgs),
     /// Cut what models ask for into shards, for many machines.
     Plan(PlanArgs),
     /// Simulate a shard of a plan; what is there already is skipped.

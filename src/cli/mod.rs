@@ -22,6 +22,7 @@ mod report;
 mod request;
 mod run;
 mod run_command;
+mod sample;
 mod scenes;
 mod shards;
 mod show;
@@ -33,6 +34,7 @@ mod sweep;
 mod table;
 mod tree;
 mod verdicts;
+mod version;
 mod watch;
 
 use std::ffi::OsString;
@@ -90,6 +92,10 @@ pub fn main() -> ExitCode {
     let color = color(&arguments);
     color.stream().write_global();
 
+    if version::is_asked(&arguments) {
+        let printed = Console::default().print(&version::verbose());
+        return ExitCode::from(printed.map_or_else(|failure| failure.status(), |()| Status::Done));
+    }
     let command = Cli::command().color(color.clap());
     let parsed = command.try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let cli = match parsed {
@@ -119,6 +125,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
         Command::Explain(args) => explain::explain(&args, console),
         Command::Report(args) => report::report(&args, console),
         Command::Show(args) => show::show(&args, console),
+        Command::Sample(args) => sample::sample(args, console),
         Command::Plan(args) => shards::plan(args, console),
         Command::Shard(args) => shards::shard(&args, console),
         Command::Status(args) => shards::status(&args, console),

@@ -13,6 +13,7 @@ mod along;
 mod bernstein;
 mod chebyshev;
 mod decay;
+mod design;
 mod domain;
 mod envelope;
 mod error;
@@ -43,6 +44,7 @@ mod tensor;
 mod time_shift;
 
 pub use decay::truncation;
+pub use design::{Design, MOST_AXES};
 pub use domain::{ParameterBox, Sample};
 pub use error::{
     BandError, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error, time_error_certified,

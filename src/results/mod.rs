@@ -13,6 +13,7 @@ mod peaks;
 mod provenance;
 mod reduced;
 mod requirement;
+mod samples;
 mod statistics;
 mod structure;
 mod summary;
@@ -33,6 +34,7 @@ pub use peaks::PeakSummary;
 pub use provenance::{ModelFile, Provenance, RunRequest};
 pub use reduced::{Occurrence, ReducedBand, ReducedContribution, ReducedSummary, WorstCase};
 pub use requirement::{LimitLine, NearestCase, RequirementSummary, Verdict};
+pub use samples::{SampleFormat, SampleTable};
 pub use statistics::{
     LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Uncertain, YieldSummary,
 };

@@ -18,11 +18,11 @@ use sha2::{Digest, Sha256};
 
 pub use error::StoreError;
 pub use part::{PartReader, PartWriter};
-pub use plan::{Asked, Plan, Shard, StudyFolder};
+pub use plan::{Asked, AskedPoints, Plan, Shard, StudyFolder};
 pub use task::{ScanPart, Task};
 
 /// Version of the files of parts and tasks. Files of another version are not read.
-const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 1;
 
 /// What is done where a part is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -77,11 +77,12 @@ impl PartWriter {
     }
 }
 
-/// A part that is whole.
+/// A part that is whole. Its file is open only while it is read: a study may have more parts than a process may have files.
 #[derive(Debug)]
 pub struct PartReader {
     path: PathBuf,
-    file: BufReader<File>,
+    /// Where the next value stands.
+    next: u64,
     /// What became of the samples.
     pub simulated: Simulated,
     /// The bounds, of a part of a scan.
@@ -111,8 +112,7 @@ impl PartReader {
         file.seek(SeekFrom::Start(HEADER + values)).map_err(failed)?;
         file.read_exact(&mut bytes).map_err(failed)?;
         let Ok((simulated, scan)) = postcard::from_bytes::<Outcome>(&bytes) else { return Ok(None) };
-        file.seek(SeekFrom::Start(HEADER)).map_err(failed)?;
-        Ok(Some(Self { path: path.to_owned(), file, simulated, scan, left: values / 8, bytes }))
+        Ok(Some(Self { path: path.to_owned(), next: HEADER, simulated, scan, left: values / 8, bytes: Vec::new() }))
     }
 
     /// Values that are not read yet.
@@ -127,7 +127,11 @@ impl PartReader {
     pub fn read(&mut self, into: &mut [f64]) -> Result<(), StoreError> {
         self.left = self.left.checked_sub(into.len() as u64).ok_or_else(|| StoreError::damaged(&self.path))?;
         self.bytes.resize(8 * into.len(), 0);
-        self.file.read_exact(&mut self.bytes).map_err(|error| StoreError::io(&self.path, error))?;
+        let failed = |error| StoreError::io(&self.path, error);
+        let mut file = File::open(&self.path).map_err(failed)?;
+        file.seek(SeekFrom::Start(self.next)).map_err(failed)?;
+        file.read_exact(&mut self.bytes).map_err(failed)?;
+        self.next += self.bytes.len() as u64;
         for (value, bytes) in into.iter_mut().zip(self.bytes.as_chunks::<8>().0) {
             *value = f64::from_le_bytes(*bytes);
         }

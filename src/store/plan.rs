@@ -44,6 +44,24 @@ pub struct Asked {
     pub at_once: f64,
     /// Parts are joined to shards of at most this, s.
     pub shard_seconds: f64,
+    /// Where samples are asked for in place of bounds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<AskedPoints>,
+}
+
+/// At which points samples are asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AskedPoints {
+    /// Absolute path of a table.
+    Table(PathBuf),
+    /// A design, as the command line names it.
+    Design {
+        /// `sobol:1000`.
+        design: String,
+        /// Of a Latin hypercube.
+        seed: u64,
+    },
 }
 
 /// What one call of `mbint shard` simulates.

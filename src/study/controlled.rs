@@ -56,7 +56,7 @@ impl Study<'_> {
 
     /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors that are
     /// allowed for it. How far an error made early is carried is the problem's: the first schedule shows it.
-    fn schedule_within(
+    pub(super) fn schedule_within(
         &self,
         tolerance: f64,
         samples: &[Sample],

@@ -29,6 +29,7 @@ mod motion;
 mod outcome;
 mod price;
 mod reduced;
+mod sample;
 mod shard;
 mod single;
 mod statistics;
@@ -60,8 +61,10 @@ pub use internal::{InternalError, caught, record_panics};
 pub use kept::{Evaluator, Kept};
 pub use motion::{MotionOptions, motion};
 pub use price::Price;
+pub use sample::{Chosen, Sampled, sample};
 pub use shard::simulate_parts;
 pub use structure::structure;
+pub use subsystems::uncertain;
 
 /// How to run.
 pub struct Options<'a> {

@@ -184,6 +184,24 @@ fn share_budget(prepared: &mut [Prepared]) {
     }
 }
 
+/// A model's uncertain parameters, and their box.
+pub fn uncertain(description: &Description) -> (Vec<ParameterSummary>, ParameterBox) {
+    let interval = |parameter: &crate::model::Parameter| match parameter.value {
+        ParameterValue::Interval { nominal, lower, upper } => {
+            let (name, unit) = (parameter.name.clone(), parameter.unit.clone());
+            Some(ParameterSummary { name, unit, nominal, lower, upper })
+        }
+        ParameterValue::Formula(_) => None,
+    };
+    let parameters: Vec<ParameterSummary> = description.parameters.iter().filter_map(interval).collect();
+    let domain = ParameterBox {
+        nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
+        lower: parameters.iter().map(|parameter| parameter.lower).collect(),
+        upper: parameters.iter().map(|parameter| parameter.upper).collect(),
+    };
+    (parameters, domain)
+}
+
 /// A subsystem's results.
 struct Done<'a> {
     subsystem: &'a Subsystem,
@@ -201,19 +219,7 @@ struct Whole<'a> {
 
 impl<'a> Whole<'a> {
     fn of(description: &'a Description, left_out: Vec<String>) -> Self {
-        let interval = |parameter: &crate::model::Parameter| match parameter.value {
-            ParameterValue::Interval { nominal, lower, upper } => {
-                let (name, unit) = (parameter.name.clone(), parameter.unit.clone());
-                Some(ParameterSummary { name, unit, nominal, lower, upper })
-            }
-            ParameterValue::Formula(_) => None,
-        };
-        let parameters: Vec<ParameterSummary> = description.parameters.iter().filter_map(interval).collect();
-        let domain = ParameterBox {
-            nominal: parameters.iter().map(|parameter| parameter.nominal).collect(),
-            lower: parameters.iter().map(|parameter| parameter.lower).collect(),
-            upper: parameters.iter().map(|parameter| parameter.upper).collect(),
-        };
+        let (parameters, domain) = uncertain(description);
         Self { description, parameters, domain, left_out }
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{AskedArgs, Threads};
+use super::{AskedArgs, PointArgs, Threads};
 
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_HELP)]
@@ -15,6 +15,9 @@ pub(in crate::cli) struct PlanArgs {
 
     #[command(flatten)]
     pub asked: AskedArgs,
+
+    #[command(flatten)]
+    pub points: PointArgs,
 
     /// Folder for the study.
     #[arg(short, long, value_name = "DIR")]
@@ -71,7 +74,7 @@ pub(in crate::cli) struct MergeArgs {
     #[arg(value_name = "DIR")]
     pub study: PathBuf,
 
-    /// Folder for the results, as of `mbint run` [default: results/<model's name>].
+    /// Folder for the results, as of `mbint run` [default: results/<model's name>]; of samples their file.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 

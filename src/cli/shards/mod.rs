@@ -1,5 +1,6 @@
 //! `mbint plan`, `shard`, `status` and `merge`: a study on many machines that share a folder.
 
+mod sampling;
 mod submit;
 
 use std::fmt::Write;
@@ -10,6 +11,7 @@ use super::console::{Console, count};
 use super::kept_run::{KeptRun, context};
 use super::request::{Request, Settings};
 use super::run::run_all;
+use super::sample::target;
 use super::{Failure, Status, load};
 use crate::methods::Method;
 use crate::model::Override;
@@ -23,6 +25,7 @@ fn failed(error: &StoreError) -> Failure {
 /// `mbint plan`: decides what is to be simulated, and cuts it into shards.
 pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Failure> {
     let folder = StudyFolder::new(&args.output);
+    let points = sampling::asked(&args.points)?;
     let mut models = Vec::new();
     let AskedArgs { method, certify, set, scene, skip_infeasible, certify_time } = args.asked.in_order();
     for model in &args.models {
@@ -42,14 +45,20 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
         skip_infeasible,
         at_once: args.at_once,
         shard_seconds: args.shard_seconds,
+        points,
     };
     let kept = KeptRun::of_study(args.output.clone(), &asked).planning();
-    let request = request(&asked, args.threads, kept)?;
-    let status = run_all(&request, console, &mut |_, _, _| ())?;
+    let (status, shards) = if asked.points.is_some() {
+        let status = sampling::simulate(&asked, &kept, None, (args.threads, true), console)?;
+        (status, kept.shards())
+    } else {
+        let request = request(&asked, args.threads, kept)?;
+        let status = run_all(&request, console, &mut |_, _, _| ())?;
+        (status, request.store.map(KeptRun::shards).unwrap_or_default())
+    };
     if status > Status::Deferred {
         return Ok(status);
     }
-    let shards = request.store.map(KeptRun::shards).unwrap_or_default();
     let text = overview(&shards);
     folder.write(1, asked, shards).map_err(|error| failed(&error))?;
     console.print(&format!("{text}in {}\n", args.output.display()))?;
@@ -66,12 +75,18 @@ pub(super) fn merge(args: MergeArgs, console: &mut Console) -> Result<Status, Fa
         return Err(Failure::Failed(format!("{}: shards {shards} are missing; run them first", args.study.display())));
     }
     let kept = KeptRun::of_study(args.study.clone(), &plan.asked);
-    let mut request = request(&plan.asked, args.threads, kept)?;
-    request.output = args.output;
-    request.quiet = args.quiet;
-    let status = run_all(&request, console, &mut |_, _, _| ())?;
+    let (status, shards) = if plan.asked.points.is_some() {
+        let target = target(args.output, None);
+        let status = sampling::simulate(&plan.asked, &kept, Some(target), (args.threads, args.quiet), console)?;
+        (status, kept.shards())
+    } else {
+        let mut request = request(&plan.asked, args.threads, kept)?;
+        request.output = args.output;
+        request.quiet = args.quiet;
+        let status = run_all(&request, console, &mut |_, _, _| ())?;
+        (status, request.store.map(KeptRun::shards).unwrap_or_default())
+    };
     if status == Status::Deferred {
-        let shards = request.store.map(KeptRun::shards).unwrap_or_default();
         let text = overview(&shards);
         folder.write(plan.round + 1, plan.asked, shards).map_err(|error| failed(&error))?;
         console.print(&format!("another round: {text}in {}\n", args.study.display()))?;
@@ -105,7 +120,8 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
     super::interrupt::listen();
     let options = study::Options {
-        methods: methods(&asked)?,
+        // Samples are of no method.
+        methods: if asked.points.is_some() { Some(Vec::new()) } else { methods(&asked)? },
         threads: args.threads.number(),
         skip_infeasible: asked.skip_infeasible,
         store: Some(&store),
@@ -183,7 +199,7 @@ fn overrides(asked: &Asked) -> Result<Vec<Override>, Failure> {
 /// Number of shards, what they take on one core, and their size on the disk.
 fn overview(shards: &[Shard]) -> String {
     let simulations: usize = shards.iter().map(|shard| shard.simulations).sum();
-    let seconds: f64 = shards.iter().map(|shard| shard.seconds).sum();
+    let seconds = shards.iter().fold(0.0, |sum, shard| sum + shard.seconds);
     let bytes: u64 = shards.iter().map(|shard| shard.bytes).sum();
     let mut text = format!("{}, {simulations} simulations", count(shards.len(), "shard", "shards"));
     let _ = write!(text, ", at least {seconds:.0} s on one core, {} on the disk ", indicatif::HumanBytes(bytes));

@@ -26,11 +26,16 @@ use crate::grammar::values::{Components, Number, Rotation};
 /// What the schema is called by those that refer to it.
 const SCHEMA_ID: &str = "https://raw.githubusercontent.com/mbint/mbint/main/schemas/mbint.schema.json";
 
+/// Version of the language of model files: the second number grows with every key that is added, the first one where a model of before
+/// does not mean the same any more.
+pub const SCHEMA_VERSION: &str = "1.0";
+
 /// The JSON Schema of model files, as text that ends with a newline.
 pub fn schema() -> String {
     let mut schema = schemars::schema_for!(File);
     schema.insert("$id".to_owned(), SCHEMA_ID.into());
     schema.insert("title".to_owned(), "mbint model".into());
+    schema.insert("$comment".to_owned(), format!("version {SCHEMA_VERSION}").into());
     RecursiveTransform(without_null).transform(&mut schema);
     constraints::constrain(&mut schema);
     // A schema is a tree of JSON values: writing it out cannot fail.

@@ -25,7 +25,7 @@ use crate::simulate::{
 
 use jet::SampleJet;
 pub(super) use progress::Progress;
-pub(super) use stored::{Stored, simulate_part};
+pub(super) use stored::{Stored, samples_of_part, simulate_part};
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;

@@ -29,7 +29,23 @@ fn of_store(error: StoreError) -> SimulationError {
     SimulationError::Store { message: error.to_string() }
 }
 
+/// Samples of a part with so many lines and rows.
+pub(in crate::study) fn samples_of_part(lines: usize, rows: usize) -> usize {
+    let of_sample = (8 * lines * rows).max(1);
+    (PART_BYTES / of_sample).clamp(FEWEST, MOST) / FEWEST * FEWEST
+}
+
 impl Stored<'_> {
+    /// Simulates what is missing of these parts' samples, to the end, or defers all of it.
+    pub fn prepare(
+        &self,
+        motions: &Motions,
+        parts: impl Iterator<Item = Vec<Sample>> + Clone,
+    ) -> Result<(), SimulationError> {
+        let tasks = parts.map(|samples| self.task(motions, samples, (Observed::Outputs, Until::End), None));
+        self.each_part(motions, tasks, |_, _| Ok(()))
+    }
+
     /// As [`Ensemble::simulate`], by parts of the samples.
     pub fn simulate(
         &self,
@@ -39,8 +55,7 @@ impl Stored<'_> {
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, SimulationError> {
         let lines = lines(motions, sampling.observed);
-        let of_sample = (8 * lines * motions.rows()).max(1);
-        let size = (PART_BYTES / of_sample).clamp(FEWEST, MOST) / FEWEST * FEWEST;
+        let size = samples_of_part(lines, motions.rows());
         let task = |samples: &[Sample]| self.task(motions, samples.to_vec(), (sampling.observed, sampling.until), None);
         let mut parts = Vec::new();
         self.each_part(motions, samples.chunks(size).map(task), |_, part| {

@@ -13,4 +13,4 @@ pub mod tile;
 mod vectorised;
 
 pub use ranges::Ranges;
-pub use vectorised::{Vectorise, vectorised};
+pub use vectorised::{Vectorise, instruction_set, vectorised};

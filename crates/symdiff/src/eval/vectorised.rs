@@ -15,6 +15,17 @@ pub fn vectorised<W: Vectorise>(work: W) -> W::Output {
     InstructionSet::detect().run(work)
 }
 
+/// Name of the instruction set that [`vectorised`] takes on this machine.
+pub fn instruction_set() -> &'static str {
+    match InstructionSet::detect() {
+        InstructionSet::Baseline => "of every processor of this kind",
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => "AVX2",
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => "AVX-512",
+    }
+}
+
 /// An instruction set that this machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum InstructionSet {

@@ -1,0 +1,73 @@
+//! The arguments of `mbint sample`, and of what else asks for samples.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::{SetArgs, Threads};
+
+#[derive(Debug, Args)]
+#[command(after_help = SAMPLE_HELP)]
+pub(in crate::cli) struct SampleArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    #[command(flatten)]
+    pub points: PointArgs,
+
+    /// File of the samples [default: samples.npz, or samples.csv].
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Arrays of NumPy, or a table [default: by the file's name].
+    #[arg(long, value_enum)]
+    pub format: Option<FileFormat>,
+
+    #[command(flatten)]
+    pub set: SetArgs,
+
+    /// Sample this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    #[command(flatten)]
+    pub threads: Threads,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Keep all simulations in this folder, and take from it those that are there.
+    #[arg(long, value_name = "DIR")]
+    pub store: Option<PathBuf>,
+}
+
+/// At which parameters samples are simulated.
+#[derive(Clone, Debug, Default, Args)]
+pub(in crate::cli) struct PointArgs {
+    /// Simulate at the points of this table: a column for each parameter, in SI units, under its name; parameters without a column
+    /// are nominal.
+    #[arg(long, value_name = "FILE", conflicts_with = "design")]
+    pub points: Option<PathBuf>,
+
+    /// Simulate at points spread evenly over the tolerances: `sobol:1000` or `lhs:1000` (a Latin hypercube).
+    #[arg(long, value_name = "DESIGN:COUNT")]
+    pub design: Option<String>,
+
+    /// Another number makes another Latin hypercube.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum FileFormat {
+    Npz,
+    Csv,
+}
+
+const SAMPLE_HELP: &str = "\
+Writes the outputs over time at every point: of samples.npz the arrays values (sample, time, output),
+parameters (sample, parameter), times, output_names, output_units, parameter_names, parameter_units;
+of samples.csv a row for each time of each sample. Where a sample cannot be assembled, or stops, there
+is NaN. On many machines: mbint plan MODEL --design … -o study/, mbint shard, mbint merge -o samples.npz.";

@@ -1,0 +1,48 @@
+//! Samples of a study on many machines, in place of bounds.
+
+use std::path::PathBuf;
+
+use super::overrides;
+use crate::cli::args::{PointArgs, Threads};
+use crate::cli::console::Console;
+use crate::cli::kept_run::KeptRun;
+use crate::cli::sample::{Points, Sampling};
+use crate::cli::{Failure, Status};
+use crate::results::SampleFormat;
+use crate::store::{Asked, AskedPoints};
+
+/// What a plan has to say of the points; `None` where bounds are asked for.
+pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
+    // What is wrong is told before anything is written.
+    Points::asked(args)?;
+    if let Some(path) = &args.points {
+        let absolute = std::path::absolute(path);
+        let absolute = absolute.map_err(|error| Failure::Wrong(format!("{}: {error}", path.display())))?;
+        return Ok(Some(AskedPoints::Table(absolute)));
+    }
+    Ok(args.design.clone().map(|design| AskedPoints::Design { design, seed: args.seed }))
+}
+
+/// Simulates or defers what is missing of a study's samples, and writes them where a file is given.
+pub(super) fn simulate(
+    asked: &Asked,
+    kept: &KeptRun,
+    output: Option<(PathBuf, SampleFormat)>,
+    (threads, quiet): (Threads, bool),
+    console: &mut Console,
+) -> Result<Status, Failure> {
+    let ([model], Some(points)) = (&asked.models[..], &asked.points) else {
+        return Err(Failure::Wrong("samples are of one model".to_owned()));
+    };
+    let sampling = Sampling {
+        model,
+        overrides: &overrides(asked)?,
+        scenes: &asked.scenes,
+        points: &Points::planned(points)?,
+        output: output.as_ref().map(|(path, format)| (path.as_path(), *format)),
+        threads,
+        quiet,
+        store: Some(kept),
+    };
+    sampling.run(console)
+}

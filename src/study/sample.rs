@@ -1,0 +1,278 @@
+//! Outputs over time at chosen samples, in lockstep, a chunk of samples after the other, so that memory does not grow with their number.
+
+use std::ops::Range;
+
+use super::ensemble::{Motions, Progress, Stored, samples_of_part};
+use super::single::{Study, simulation_error};
+use super::subsystems::{Prepared, choices, prepare};
+use super::{Options, RunError, reduced};
+use crate::methods::{Ensemble, Observed, Sampling, Until};
+use crate::model::{Description, Stepping};
+use crate::numerics::Sample;
+use crate::reduce::Subsystem;
+use crate::simulate::{Controller, Divided, Schedule, SimulationError};
+
+/// Samples of the uncertain parameters, in the model's order, which are made when they are needed.
+#[derive(Clone, Copy)]
+pub struct Chosen<'c> {
+    /// How many.
+    pub count: usize,
+    /// Some of them.
+    pub at: &'c (dyn Fn(Range<usize>) -> Vec<Sample> + Sync),
+}
+
+/// What became of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sampled {
+    /// Those that cannot be assembled.
+    pub closed: usize,
+    /// Those that stopped before the end.
+    pub stopped: usize,
+}
+
+/// Numbers of the columns of a subsystem's lines; `None` where a line is not shown.
+type Columns = Vec<Option<usize>>;
+
+/// A compiled model, and the samples that it is to be simulated at.
+pub struct Trajectories<'t> {
+    studies: &'t [Study<'t>],
+    subsystems: &'t [Subsystem],
+    steps: &'t [(Schedule, Option<Controller>)],
+    progress: &'t Progress<'t>,
+    chosen: Chosen<'t>,
+    /// Of each subsystem.
+    columns: Vec<Columns>,
+    /// Names and units of the outputs.
+    pub outputs: Vec<(String, String)>,
+    /// Times of the rows, s.
+    pub times: Vec<f64>,
+}
+
+/// Compiles a model, chooses its steps as a run does, and gives them to `write`, which asks for the samples by [`Trajectories::each`].
+///
+/// # Errors
+/// Where the mechanism cannot be built or stepped, and those of `write`.
+pub fn sample<T: Send, E: From<RunError> + Send>(
+    description: &Description,
+    options: &Options,
+    chosen: Chosen,
+    write: impl FnOnce(&Trajectories) -> Result<T, E> + Send,
+) -> Result<T, E> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool.map_err(RunError::from)?;
+    let model = reduced::expanded(description);
+    pool.install(|| {
+        (options.stage)("compiling");
+        let (_, prepared) = prepare(&model, choices(&model, options))?;
+        let (mut subsystems, mut simulators) = (Vec::new(), Vec::new());
+        for Prepared { subsystem, simulator } in prepared {
+            subsystems.push(subsystem);
+            simulators.push(simulator);
+        }
+        // Only the steps are those of a run.
+        let Options { threads, certify_time, skip_infeasible, costly, store, progress, stage, interrupted, .. } =
+            *options;
+        let methods = Some(Vec::new());
+        let options =
+            Options { methods, threads, certify_time, skip_infeasible, costly, store, progress, stage, interrupted };
+        let studies = subsystems.iter().zip(simulators).enumerate().map(|(number, (subsystem, simulator))| {
+            let mut study = Study::new(&subsystem.description, simulator, &options)?;
+            study.stored = options.store.map(|store| Stored { store, subsystem: number });
+            Ok(study)
+        });
+        let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;
+        let steps = studies.iter().map(Study::steps_of_samples).collect::<Result<Vec<_>, _>>();
+        let steps = steps.map_err(RunError::from)?;
+        let rows = steps.iter().map(|(schedule, _)| schedule.rows).max().unwrap_or(0);
+        let times = steps.iter().find(|(schedule, _)| schedule.rows == rows);
+        let times = times.map_or_else(Vec::new, |(schedule, _)| (0..rows).map(|row| schedule.time(row)).collect());
+        let (columns, outputs) = columns(description, &subsystems, &studies);
+        let progress = Progress::new(studies.len() * chosen.count * rows, options.progress);
+        (options.stage)("samples");
+        write(&Trajectories {
+            studies: &studies,
+            subsystems: &subsystems,
+            steps: &steps,
+            progress: &progress,
+            chosen,
+            columns,
+            outputs,
+            times,
+        })
+    })
+}
+
+/// Columns of the subsystems' lines, with names and units: the model's own outputs, then those of an analysis.
+fn columns(
+    description: &Description,
+    subsystems: &[Subsystem],
+    studies: &[Study],
+) -> (Vec<Columns>, Vec<(String, String)>) {
+    let own = description.outputs.len();
+    let mut outputs: Vec<_> =
+        description.outputs.iter().map(|output| (output.name.clone(), output.unit.clone())).collect();
+    let of_study = |(subsystem, study): (&Subsystem, &Study)| {
+        let lines = study.simulator.system.outputs.iter().enumerate();
+        let column = |(line, output): (usize, &crate::assemble::OutputInfo)| match subsystem.outputs.get(line) {
+            // What reduced outputs are of is not shown.
+            Some(&number) => (number < own).then_some(number),
+            None => {
+                outputs.push((output.name.clone(), output.unit.clone()));
+                Some(outputs.len() - 1)
+            }
+        };
+        lines.map(column).collect()
+    };
+    let columns = subsystems.iter().zip(studies).map(of_study).collect();
+    (columns, outputs)
+}
+
+impl Trajectories<'_> {
+    /// Simulates all samples. `keep` gets values (sample, row, output) of consecutive samples; NaN where a sample cannot be assembled, and
+    /// from where it stops. `None` after an interruption.
+    ///
+    /// # Errors
+    /// Where samples cannot be simulated, are deferred to shards, or of `keep`.
+    pub fn each<E: From<RunError>>(&self, mut keep: impl FnMut(&[f64]) -> Result<(), E>) -> Result<Option<Sampled>, E> {
+        let steps = self.studies.iter().zip(self.steps);
+        let motions: Vec<Motions> =
+            steps.map(|(study, (schedule, tolerance))| study.motions(schedule, *tolerance, self.progress)).collect();
+        let lines = self.columns.iter().map(Vec::len).sum();
+        let size = samples_of_part(lines, self.times.len());
+        let closed = self.closed(size);
+        self.store(&motions, size, &closed).map_err(RunError::from)?;
+        let width = self.outputs.len();
+        let mut stopped = 0;
+        let mut values = Vec::new();
+        for first in (0..self.chosen.count).step_by(size) {
+            let places = first..(first + size).min(self.chosen.count);
+            values.clear();
+            values.resize(places.len() * self.times.len() * width, f64::NAN);
+            let mut stops = vec![false; places.len()];
+            for (number, motions) in motions.iter().enumerate() {
+                self.chunk(number, motions, places.clone(), &closed, (&mut values, &mut stops))
+                    .map_err(RunError::from)?;
+            }
+            if motions.iter().any(Ensemble::is_interrupted) {
+                return Ok(None);
+            }
+            stopped += stops.into_iter().filter(|stopped| *stopped).count();
+            keep(&values)?;
+        }
+        Ok(Some(Sampled { closed: closed.into_iter().filter(|closed| *closed).count(), stopped }))
+    }
+
+    /// Whether each sample cannot be assembled.
+    fn closed(&self, size: usize) -> Vec<bool> {
+        let mut closed = Vec::with_capacity(self.chosen.count);
+        for first in (0..self.chosen.count).step_by(size) {
+            let samples = (self.chosen.at)(first..(first + size).min(self.chosen.count));
+            closed.resize(first + samples.len(), false);
+            for (study, subsystem) in self.studies.iter().zip(self.subsystems) {
+                let own: Vec<Sample> = samples.iter().map(|sample| of_subsystem(subsystem, sample)).collect();
+                for (closed, can) in closed[first..].iter_mut().zip(study.simulator.can_assemble(&own)) {
+                    *closed |= !can;
+                }
+            }
+        }
+        closed
+    }
+
+    /// Simulates what is missing of the parts, or leaves all of it to shards.
+    fn store(&self, motions: &[Motions], size: usize, closed: &[bool]) -> Result<(), SimulationError> {
+        let mut deferred = false;
+        for (number, (study, motions)) in self.studies.iter().zip(motions).enumerate() {
+            let Some(stored) = &study.stored else { continue };
+            let count = if study.domain.dimension() == 0 { size.min(self.chosen.count) } else { self.chosen.count };
+            let chunks = (0..count).step_by(size);
+            let parts = chunks.map(|first| self.own(number, first..(first + size).min(count), closed).1);
+            match stored.prepare(motions, parts.filter(|samples| !samples.is_empty())) {
+                Err(SimulationError::Deferred) => deferred = true,
+                done => done?,
+            }
+        }
+        if deferred { Err(SimulationError::Deferred) } else { Ok(()) }
+    }
+
+    /// Samples of a subsystem that can be assembled, with their places from the first; one where it depends on none.
+    fn own(&self, number: usize, places: Range<usize>, closed: &[bool]) -> (Vec<usize>, Vec<Sample>) {
+        let first = places.start;
+        let all = (self.chosen.at)(places.clone());
+        let going: Vec<usize> = places.filter(|&place| !closed[place]).map(|place| place - first).collect();
+        let subsystem = &self.subsystems[number];
+        let once = self.studies[number].domain.dimension() == 0;
+        let simulated = &going[..if once { going.len().min(1) } else { going.len() }];
+        let samples = simulated.iter().map(|&place| of_subsystem(subsystem, &all[place])).collect();
+        (going, samples)
+    }
+
+    /// Values of a subsystem's outputs at some samples, into those of all outputs.
+    fn chunk(
+        &self,
+        number: usize,
+        motions: &Motions,
+        places: Range<usize>,
+        closed: &[bool],
+        (values, stops): (&mut [f64], &mut [bool]),
+    ) -> Result<(), SimulationError> {
+        let (going, samples) = self.own(number, places, closed);
+        if samples.is_empty() {
+            return Ok(());
+        }
+        let (rows_of_sample, width, columns) = (self.times.len(), self.outputs.len(), &self.columns[number]);
+        let sampling = Sampling { observed: Observed::Outputs, until: Until::End, finish: false };
+        let simulated = motions.simulate(&samples, sampling, &mut |rows, block| {
+            let lines = rows.flat_map(|row| columns.iter().map(move |column| (row, *column)));
+            for ((row, column), of_line) in lines.zip(block.chunks_exact(samples.len())) {
+                let Some(column) = column else { continue };
+                for (place, value) in going.iter().zip(of_line.iter().cycle()) {
+                    values[(place * rows_of_sample + row) * width + column] = *value;
+                }
+            }
+        });
+        let simulated = simulated.map_err(simulation_error)?;
+        for (place, sample) in going.iter().zip((0..samples.len()).cycle()) {
+            stops[*place] |= simulated.stopped.contains(&sample);
+        }
+        Ok(())
+    }
+}
+
+/// A subsystem's parameters among those of the whole model.
+fn of_subsystem(subsystem: &Subsystem, sample: &Sample) -> Sample {
+    subsystem.parameters.iter().map(|&number| sample[number]).collect()
+}
+
+impl Study<'_> {
+    /// The steps of chosen samples: the model's, divided where they do not resolve a function of the time; with a tolerance those that a run
+    /// would try first.
+    fn steps_of_samples(&self) -> Result<(Schedule, Option<Controller>), SimulationError> {
+        let simulation = &self.description.simulation;
+        let (schedule, controller) = match simulation.stepping {
+            Stepping::Fixed(step) => {
+                let schedule = Schedule::fixed(simulation.duration, step, simulation.output_step);
+                (schedule.taken(self.integration()), None)
+            }
+            Stepping::Tolerance(tolerance) => self.steps_within(tolerance)?,
+        };
+        if self.request.tolerance.is_some() && self.domain.dimension() > 0 {
+            let progress = Progress::new(usize::MAX, self.progress);
+            let (Divided { schedule, .. }, controller, _) = self.balance(&schedule, controller, &progress)?;
+            return Ok((schedule, controller));
+        }
+        Ok((self.divided(schedule).schedule, controller))
+    }
+
+    /// Steps within a tolerance at the controlling samples, by the explicit method where that is chosen.
+    fn steps_within(&self, tolerance: f64) -> Result<(Schedule, Option<Controller>), SimulationError> {
+        let samples = self.controlling_samples();
+        if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
+            match self.explicit_within(tolerance, &samples)? {
+                Ok(schedule) => return Ok((schedule, None)),
+                Err(obstacle) => self.refused(obstacle)?,
+            }
+        }
+        let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
+        Ok((controlled.schedule, Some(controller)))
+    }
+}
