@@ -137,8 +137,7 @@ impl<'m> PivotSearch<'m> {
             return Some((row, column));
         }
         self.stages.update(graph);
-        let (row, column) =
-            self.search(active, self.widest(active)).or_else(|| self.search(active, usize::MAX))?;
+        let (row, column) = self.search(active, self.widest(active)).or_else(|| self.search(active, usize::MAX))?;
         if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
             self.second = Some((column, row));
         }
