@@ -10,7 +10,7 @@ use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{ReactionComponent, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
-use super::unit::{Unit, number_and_unit};
+use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -33,6 +33,15 @@ impl<S: SymbolTable> Reader<'_, S> {
         if is_toleranced(&scalar.text) {
             let help = "name it under `parameters`, and write its name here".to_owned();
             self.error(node.span.clone(), "only a parameter can have a tolerance", help);
+            return None;
+        }
+        if let Some(number) = per_minute(&scalar.text) {
+            let help = format!("write `{number} rpm` for revolutions, `{number} rad/min` for radians a minute");
+            self.error(
+                node.span.clone(),
+                format!("`{}` may be revolutions or radians", clip(scalar.text.trim())),
+                help,
+            );
             return None;
         }
         if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
