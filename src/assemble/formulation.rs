@@ -45,7 +45,10 @@ impl Mechanism<'_, '_> {
                     Some(body).filter(|_| !known)
                 }
                 StartValue::Orientation { body, .. } | StartValue::AngularVelocity { body, .. } => Some(body),
-                StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => None,
+                StartValue::Joint { .. }
+                | StartValue::AngularRate { .. }
+                | StartValue::RollPitchYaw { .. }
+                | StartValue::Point { .. } => None,
             };
             let body = body.filter(|body| self.tree.inboard[**body].is_some())?;
             let name = &d.bodies[*body].name;

@@ -8,9 +8,9 @@ use symdiff::Scalar;
 use super::mechanism::{Mechanism, dof};
 use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
 use crate::grammar::Symbol;
-use crate::grammar::motions::{AXES, motion_name};
+use crate::grammar::motions::{ATTITUDE, AXES, motion_name};
 use crate::model::{Coordinate, Description, StartValue, TimeOrder};
-use crate::multibody::{BuildError, Context};
+use crate::multibody::{BuildError, Context, rotation};
 
 impl<'g> Mechanism<'g, '_> {
     /// What `initial` gives that no coordinate of the equations takes.
@@ -42,6 +42,11 @@ impl<'g> Mechanism<'g, '_> {
                     let value = self.formula(value, Context::Parameters)?;
                     conditions.push(self.rate_condition(description, (*body, *axis, *in_body), value));
                 }
+                StartValue::RollPitchYaw { body, angle, value } => {
+                    let name = format!("{}.{}", description.bodies[*body].name, ATTITUDE[*angle]);
+                    let left = self.turn_left(*body, *angle, self.formula(value, Context::Parameters)?);
+                    conditions.push(self.condition(name, ResidualUnit::Angle, TimeOrder::Position, left));
+                }
                 StartValue::AngularVelocity { body, value, in_body } if self.is_child(*body) => {
                     let value = self.vector(value, Context::Parameters)?;
                     conditions.extend(
@@ -60,6 +65,13 @@ impl<'g> Mechanism<'g, '_> {
             }
         }
         Ok(conditions)
+    }
+
+    /// By how much a body's roll, pitch or yaw is above a value, between −π and π.
+    fn turn_left(&self, body: usize, angle: usize, value: Scalar<'g>) -> Scalar<'g> {
+        let (sin, cos) = rotation::directions(&self.bodies[body].orientation().matrix())[angle];
+        let (across, along) = (value.sin(), value.cos());
+        (sin * along - cos * across).atan2(cos * along + sin * across)
     }
 
     /// Whether a coordinate of a body that `initial` names is no coordinate of the equations, nor stands for one.

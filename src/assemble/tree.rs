@@ -168,7 +168,10 @@ fn named_at_start(description: &Description) -> Vec<usize> {
         StartValue::Coordinate { body, .. }
         | StartValue::Orientation { body, .. }
         | StartValue::AngularVelocity { body, .. } => Some(*body),
-        StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => None,
+        StartValue::Joint { .. }
+        | StartValue::AngularRate { .. }
+        | StartValue::RollPitchYaw { .. }
+        | StartValue::Point { .. } => None,
     };
     description.initial.iter().chain(&description.guess).filter_map(body).collect()
 }

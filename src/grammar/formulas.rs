@@ -10,7 +10,7 @@ use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
 use super::symbols::{ReactionComponent, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
-use super::unit::{Unit, number_and_unit};
+use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
@@ -33,6 +33,15 @@ impl<S: SymbolTable> Reader<'_, S> {
         if is_toleranced(&scalar.text) {
             let help = "name it under `parameters`, and write its name here".to_owned();
             self.error(node.span.clone(), "only a parameter can have a tolerance", help);
+            return None;
+        }
+        if let Some(number) = per_minute(&scalar.text) {
+            let help = format!("write `{number} rpm` for revolutions, `{number} rad/min` for radians a minute");
+            self.error(
+                node.span.clone(),
+                format!("`{}` may be revolutions or radians", clip(scalar.text.trim())),
+                help,
+            );
             return None;
         }
         if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
@@ -79,6 +88,22 @@ impl<S: SymbolTable> Reader<'_, S> {
                 None
             }
         }
+    }
+
+    /// What to do where a unit is called like something of the model.
+    fn unit_like_a_name(&self, node: &Node) -> Option<String> {
+        let text = &node.scalar()?.text;
+        let (_, unit, _) = number_and_unit(text)?;
+        let (factors, word) = unit.rsplit_once(['*', '·'])?;
+        (!names::is_reserved(word.trim()) && self.is_name(word.trim())).then(|| {
+            let start = text.len() - text.trim_start().len();
+            let before = text[start..].split_once(unit).map_or("", |(before, _)| before);
+            format!(
+                "`{}` is read as a unit here; write `{before}{factors} * {}` with spaces for the model's own",
+                word.trim(),
+                word.trim()
+            )
+        })
     }
 
     /// Whether a word is a name that formulas may use, and so no unit where both may stand.
@@ -198,7 +223,12 @@ impl<S: SymbolTable> Reader<'_, S> {
     pub fn formula(&mut self, node: &Node, context: Context, wanted: Dimension) -> Option<Formula> {
         let formula = match self.written(node)? {
             Written::Quantity { value, unit } => {
-                self.check_fits(&node.span, unit.dimension, wanted).then_some(())?;
+                if !unit.dimension.fits(wanted) {
+                    let message = format!("{} stands where {wanted} belongs", unit.dimension);
+                    let help = self.unit_like_a_name(node);
+                    self.error(node.span.clone(), message, help);
+                    return None;
+                }
                 self.suspect_quantity(unit.to_si(value), wanted);
                 Formula::number(unit.to_si(value))
             }

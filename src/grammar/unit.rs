@@ -358,5 +358,12 @@ pub fn number_and_unit(text: &str) -> Option<(f64, &str, usize)> {
     (first.is_alphabetic() || first == '°' || first == '%').then_some((number, unit, unit_start))
 }
 
+/// The number of `30/min` or `30 1/min`, which does not say of what.
+pub fn per_minute(text: &str) -> Option<&str> {
+    let before = text.trim().strip_suffix("min")?.trim_end().strip_suffix('/')?.trim_end();
+    let number = before.strip_suffix('1').map(|rest| rest.trim_end()).filter(|rest| rest.len() + 1 < before.len());
+    [number, Some(before)].into_iter().flatten().find(|number| number.parse::<f64>().is_ok())
+}
+
 #[cfg(test)]
 mod tests;

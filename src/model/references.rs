@@ -12,7 +12,8 @@ impl StartValue {
             Self::Coordinate { body, .. }
             | Self::Orientation { body, .. }
             | Self::AngularVelocity { body, .. }
-            | Self::AngularRate { body, .. } => Reference::Body(body),
+            | Self::AngularRate { body, .. }
+            | Self::RollPitchYaw { body, .. } => Reference::Body(body),
             Self::Point { place, .. } => Reference::Point(place),
             Self::Joint { joint, .. } => Reference::Joint(joint),
         }
@@ -24,6 +25,7 @@ impl StartValue {
             Self::Coordinate { value, .. }
             | Self::Joint { value, .. }
             | Self::AngularRate { value, .. }
+            | Self::RollPitchYaw { value, .. }
             | Self::Point { value, .. } => vec![value],
             Self::AngularVelocity { value, .. } => value.iter().collect(),
             Self::Orientation { rotation, .. } => rotation.formulas(),

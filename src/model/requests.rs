@@ -49,12 +49,13 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
         Symbol::Point { body, coordinate, order, .. } if velocities && body != 0 => {
             (order, motion_dimension(coordinate, order))
         }
+        Symbol::RollPitchYaw { .. } if velocities => (TimeOrder::Position, Dimension::ANGLE),
         Symbol::AngularMotion { order, .. } if velocities => (order, motion_dimension(Coordinate::Angle, order)),
         _ => {
             let message = format!("`{}` is not a coordinate of a body", clip(name));
             let help = if reader.model.space.spatial {
                 "name coordinates of bodies or joints here, such as `hinge.angle` or `slider.vx`, `body.orientation`, \
-                 `body.omega` or `body.omega_body`"
+                 `body.roll`, `body.omega` or `body.omega_body`"
             } else {
                 "name coordinates of bodies here, such as `crank.angle` or `slider.vx`"
             };
@@ -82,6 +83,7 @@ fn start_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<S
             let place = PointRef { body, point: Some(point) };
             Some(StartValue::Point { place, coordinate, order, value })
         }
+        Symbol::RollPitchYaw { body, angle } => Some(StartValue::RollPitchYaw { body, angle, value }),
         Symbol::AngularMotion { body, axis, in_body, .. } => {
             Some(StartValue::AngularRate { body, axis, in_body, value })
         }

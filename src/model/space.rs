@@ -5,6 +5,7 @@
 use super::description::Space;
 use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
+use crate::grammar::motions::ATTITUDE;
 use crate::grammar::plane::leaves_plane;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
@@ -29,8 +30,12 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves the plane", effect.key));
     let start = ["initial", "guess"].into_iter().find_map(|section| {
         let names = entries(section).iter().map(|entry| entry.key.as_str());
-        let name =
-            names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
+        let leaves = |name: &str| {
+            let (_, motion) = name.split_once('.').unwrap_or_default();
+            let first = motion.split('.').next().unwrap_or_default();
+            SPATIAL_STARTS.contains(&first) || ATTITUDE.contains(&motion)
+        };
+        let name = names.into_iter().find(|name| leaves(name))?;
         Some(format!("`{name}` in `{section}` leaves the plane"))
     });
     match bodies.or(joints).or(effects).or(start) {

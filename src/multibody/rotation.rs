@@ -172,9 +172,14 @@ pub fn matrix_about<'g>(axis: Vector<'g>, angle: Scalar<'g>) -> Matrix<'g> {
 
 /// Roll, pitch and yaw of a rotation matrix, each between −π and π, pitch at most a right angle.
 pub fn angles<'g>(r: &Matrix<'g>) -> [Scalar<'g>; 3] {
+    directions(r).map(|(sin, cos)| sin.atan2(cos))
+}
+
+/// Sine and cosine of these angles, times what they have in common.
+pub fn directions<'g>(r: &Matrix<'g>) -> [(Scalar<'g>, Scalar<'g>); 3] {
     let (square, other) = (r[2][1] * r[2][1], r[2][2] * r[2][2]);
     let (level, down) = ((square + other).sqrt(), -r[2][0]);
-    [r[2][1].atan2(r[2][2]), down.atan2(level), r[1][0].atan2(r[0][0])]
+    [(r[2][1], r[2][2]), (down, level), (r[1][0], r[0][0])]
 }
 
 #[cfg(test)]

@@ -105,7 +105,10 @@ fn named(description: &Description, values: &[StartValue]) -> Vec<bool> {
             | StartValue::Orientation { body, .. }
             | StartValue::AngularVelocity { body, .. } => named[*body] = true,
             // Conditions that hold for the pose of whatever body is followed.
-            StartValue::Joint { .. } | StartValue::AngularRate { .. } | StartValue::Point { .. } => {}
+            StartValue::Joint { .. }
+            | StartValue::AngularRate { .. }
+            | StartValue::RollPitchYaw { .. }
+            | StartValue::Point { .. } => {}
         }
     }
     named

@@ -149,6 +149,6 @@ fn is_speed(value: &StartValue) -> bool {
         | StartValue::Joint { order, value, .. } => *order != TimeOrder::Position && moves(value),
         StartValue::AngularVelocity { value, .. } => value.iter().any(moves),
         StartValue::AngularRate { value, .. } => moves(value),
-        StartValue::Orientation { .. } => false,
+        StartValue::Orientation { .. } | StartValue::RollPitchYaw { .. } => false,
     }
 }

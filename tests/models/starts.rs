@@ -121,6 +121,48 @@ fn a_start_names_rotations_in_every_formulation() {
     }
 }
 
+/// With R = Rx(a) Ry(b), roll is atan2(sin a, cos a cos b) and pitch asin(cos a sin b).
+#[test]
+fn a_start_names_one_angle_of_an_orientation() {
+    let (a, b) = (0.5_f64, 0.6_f64);
+    let roll = (a.sin()).atan2(a.cos() * b.cos());
+    let pitch = (a.cos() * b.sin()).asin();
+    for formulation in ["absolute", "joint"] {
+        for initial in [
+            format!("{{ wheel.roll: {roll}, inner.angle: {b} }}"),
+            format!("{{ outer.angle: {a}, wheel.pitch: {pitch} }}"),
+        ] {
+            let bounds = nominal(&read(&gimbal(formulation, &initial)));
+            for (name, expected) in [("outer", a), ("inner", b), ("attitude_roll", roll), ("attitude_pitch", pitch)] {
+                let found = curve(&bounds, name)[0];
+                assert!((found - expected).abs() < 1e-9, "{formulation}, {initial}: {name} is {found}, not {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_body_in_flight_starts_at_the_angles_that_are_named() {
+    for (initial, angles) in [
+        ("{ body.roll: 30 deg }", [30.0, 0.0, 0.0]),
+        ("{ body.yaw: 170 deg }", [0.0, 0.0, 170.0]),
+        ("{ body.roll: -100 deg, body.pitch: 20 deg, body.yaw: 150 deg }", [-100.0, 20.0, 150.0]),
+    ] {
+        let bounds = nominal(&read(&format!(
+            "
+bodies: {{ body: {{ mass: 1, inertia: [1, 2, 3] }} }}
+initial: {initial}
+outputs: {{ attitude: body.orientation }}
+simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01 }}
+"
+        )));
+        for (name, expected) in ["attitude_roll", "attitude_pitch", "attitude_yaw"].into_iter().zip(angles) {
+            let found = curve(&bounds, name)[0].to_degrees();
+            assert!((found - expected).abs() < 1e-7, "{initial}: {name} is {found}, not {expected}");
+        }
+    }
+}
+
 #[test]
 fn a_whole_angular_velocity_is_given_in_joint_coordinates() {
     let initial = "{ outer.angle: 0.4, inner.angle: 0, wheel.omega_body: [0.3, -0.7, 0] }";

@@ -60,6 +60,11 @@ fn integrals_of_pieces_are_their_areas() {
         ("if(t < 0.5, t^2, 1 - t)", 1.0, 1.0 / 24.0 + 0.125),
         ("if(0.5 > t, 1, 3)", 0.25, 0.25),
         ("if(t <= 0.2, 0, if(t < 0.9, 2*(t - 0.2), 1.4))", 1.0, 0.49 + 0.14),
+        ("if(t > 0.2 and t < 0.5, 3, 1)", 1.0, 0.9 + 0.7),
+        ("if(t > 0.2 and t < 0.5, 3, 1)", 0.3, 0.2 + 0.3),
+        ("if(t < 0.2 or t > 0.5, t, 2)", 1.0, 0.02 + 0.6 + 0.375),
+        ("if(not (t < 0.2 or t > 0.5) and t < 0.4, 1, 0)", 1.0, 0.2),
+        ("if(t >= 0.1 and (t < 0.3 or t > 0.6) and t < 0.7, 1, 0)", 1.0, 0.3),
         ("floor(t)", 2.5, 2.0),
         ("floor(3*t)", 1.0, 1.0),
         ("mod(t, 0.3)", 1.0, 0.14),
@@ -84,7 +89,15 @@ fn what_has_no_integral_here_is_told() {
         ["sin(t^2)", "sin(t)^2", "sin(t)*cos(2*t)", "1/t", "1/(2 + t)^2", "tanh(t)", "max(sin(t), 0)", "t*sqrt(t + 1)"]
             .into_iter()
             // Whose derivatives end like a polynomial's.
-            .chain(["t*floor(t)", "sin(2*t + floor(t))", "if(sin(t) > 0, 1, 2)", "t*max(t, 0.5)", "t*abs(t)"])
+            .chain([
+                "t*floor(t)",
+                "sin(2*t + floor(t))",
+                "if(sin(t) > 0, 1, 2)",
+                "if((t > 1) + (t > 2), 1, 2)",
+                "if(t > 1 and t^2 < 3, 1, 2)",
+                "t*max(t, 0.5)",
+                "t*abs(t)",
+            ])
     {
         assert_eq!(integral(text), None, "{text}");
     }

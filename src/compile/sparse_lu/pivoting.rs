@@ -27,6 +27,9 @@ const SEARCHED: usize = 4;
 /// Factor by which the search widens where it finds no pivot.
 const WIDER: usize = 8;
 
+/// Rows beyond which a diagonal order is not searched for in all of them.
+const MANY: usize = 500;
+
 /// Which entries may be pivots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pivoting<'m> {
@@ -134,19 +137,26 @@ impl<'m> PivotSearch<'m> {
             return Some((row, column));
         }
         self.stages.update(graph);
+        let (row, column) = self.search(active, self.widest(active)).or_else(|| self.search(active, usize::MAX))?;
+        if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
+            self.second = Some((column, row));
+        }
+        self.stop_awaiting(active, row, column);
+        Some((row, column))
+    }
+
+    /// The search that widens to no more than so many columns and rows before it lowers the threshold.
+    fn search(&self, active: &Active, widest: usize) -> Option<(usize, usize)> {
         let singular = self.pivoting.smallest();
         let mut threshold = self.pivoting.threshold();
         while threshold > singular {
             let mut searched = SEARCHED;
             loop {
-                if let Some((row, column)) = self.best_of(active, searched, threshold) {
-                    if matches!(self.pivoting, Pivoting::Symmetric { .. }) && row != column {
-                        self.second = Some((column, row));
-                    }
-                    self.stop_awaiting(active, row, column);
-                    return Some((row, column));
+                let best = self.best_of(active, searched, threshold);
+                if best.is_some() {
+                    return best;
                 }
-                if searched >= active.sparsest_columns.len() {
+                if searched >= active.sparsest_columns.len().min(widest) {
                     break;
                 }
                 searched *= WIDER;
@@ -154,6 +164,15 @@ impl<'m> PivotSearch<'m> {
             threshold *= 0.1;
         }
         None
+    }
+
+    /// Columns and rows that are searched before the threshold is lowered. A diagonal order exists for all numbers, so that in large
+    /// matrices none has to be waited for: searching all of them for each pivot would be quadratic.
+    fn widest(&self, active: &Active) -> usize {
+        match self.pivoting {
+            Pivoting::Diagonal { .. } if active.rows.len() > MANY => SEARCHED * WIDER,
+            _ => usize::MAX,
+        }
     }
 
     /// A row that has been eliminated is no candidate any more.

@@ -234,7 +234,7 @@ impl Checked for Motor {
             // The speed that a run-up ends at does not change in time.
             reader.check_names(node, speed, 0, Context::Constant);
         } else if !is_integrable(speed) {
-            let help = "polynomials, sin, cos, exp, sqrt, min, max, floor, smoothstep and `if` of straight lines, and their sums can be; or give it as `position`";
+            let help = "polynomials, sin, cos, exp, sqrt, min, max, floor, smoothstep and `if` of straight lines with `and` and `or`, and their sums can be; or give it as `position`";
             reader.error(node.span.clone(), "this speed cannot be integrated by formulas", help.to_owned());
         }
     }

@@ -34,6 +34,15 @@ pub enum StartValue {
         /// Components in the body's frame instead of the ground's.
         in_body: bool,
     },
+    /// One angle of a body's orientation.
+    RollPitchYaw {
+        /// Body index.
+        body: usize,
+        /// Which: 0 to 2 for roll, pitch, yaw.
+        angle: usize,
+        /// rad
+        value: Formula,
+    },
     /// A part of a body's angular velocity.
     AngularRate {
         /// Body index.

@@ -59,15 +59,19 @@ pub fn add_deviations(reader: &mut Reader, drafts: &mut Vec<Draft>, overrides: &
 /// Whether each parameter is uncertain, or depends on one that is.
 fn varying(drafts: &[Draft]) -> Vec<bool> {
     let mut varies: Vec<bool> = drafts.iter().map(|draft| draft.spec.is_uncertain()).collect();
-    loop {
-        let more: Vec<usize> = (0..drafts.len())
-            .filter(|&index| !varies[index] && drafts[index].uses.iter().any(|&used| varies[used]))
-            .collect();
-        if more.is_empty() {
-            return varies;
-        }
-        more.into_iter().for_each(|index| varies[index] = true);
+    let mut users = vec![Vec::new(); drafts.len()];
+    for (index, draft) in drafts.iter().enumerate() {
+        draft.uses.iter().for_each(|&used| users[used].push(index));
     }
+    let mut open: Vec<usize> = (0..drafts.len()).filter(|&index| varies[index]).collect();
+    while let Some(varying) = open.pop() {
+        for &user in &users[varying] {
+            if !std::mem::replace(&mut varies[user], true) {
+                open.push(user);
+            }
+        }
+    }
+    varies
 }
 
 /// Gives such a parameter its formula, and its deviation an interval; those that it uses have theirs.

@@ -3,7 +3,10 @@
 use rustc_hash::FxHashMap;
 
 use super::super::graph::Graph;
-use super::super::node::{Binary, Expr, Node};
+use super::super::node::{Binary, Expr, Node, Unary};
+
+/// Conditions that are joined in one.
+const MOST_CONDITIONS: usize = 8;
 
 impl Graph {
     /// ∫ `value` where `condition`, a + b t with a number b, is positive (`Select`) or is not (`SelectElse`).
@@ -12,7 +15,9 @@ impl Graph {
         if self.moving(condition, by).is_empty() {
             return Some(self.binary(function, condition, whole));
         }
-        let slope = self.steady_slope(condition, by)?;
+        let Some(slope) = self.steady_slope(condition, by) else {
+            return self.integral_under_joined(function, condition, (value, whole), by);
+        };
         let is_late = (self.as_constant(slope)? > 0.0) == (function == Binary::Select);
         let zero = self.constant(0.0);
         let at_zero = self.substitute(&[condition], &FxHashMap::from_iter([(by, zero)]))[0];
@@ -20,6 +25,86 @@ impl Graph {
         let switch = self.neg(before);
         let within = self.binary(if is_late { Binary::Max } else { Binary::Min }, by, switch);
         Some(self.substitute(&[whole], &FxHashMap::from_iter([(by, within)]))[0])
+    }
+
+    /// The same where conditions are joined: `and` is their product, `or` is a + b − a b.
+    fn integral_under_joined(
+        &mut self,
+        function: Binary,
+        condition: Expr,
+        (value, whole): (Expr, Expr),
+        by: Expr,
+    ) -> Option<Expr> {
+        if !self.is_truth(condition)? {
+            return None;
+        }
+        let under = self.where_joined(condition, value)?;
+        let under = self.integral(under, by)?;
+        Some(if function == Binary::Select { under } else { self.sub(whole, under) })
+    }
+
+    /// `value` times a sum of products of conditions.
+    fn where_joined(&mut self, condition: Expr, value: Expr) -> Option<Expr> {
+        if let Some(number) = self.as_constant(condition) {
+            return Some(self.scale(number, value));
+        }
+        match self.node(condition) {
+            Node::Unary(Unary::Neg, a) => {
+                let a = self.where_joined(a, value)?;
+                Some(self.neg(a))
+            }
+            Node::Binary(function @ (Binary::Add | Binary::Sub), a, b) => {
+                let (a, b) = (self.where_joined(a, value)?, self.where_joined(b, value)?);
+                Some(self.binary(function, a, b))
+            }
+            Node::Binary(Binary::Mul, a, b) => {
+                let inner = self.where_joined(b, value)?;
+                self.where_joined(a, inner)
+            }
+            Node::Binary(function @ (Binary::Select | Binary::SelectElse), under, one)
+                if self.as_constant(one) == Some(1.0) =>
+            {
+                Some(self.binary(function, under, value))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether an expression of conditions is 0 or 1 whichever of them hold; `None` where it is of anything else, or of many.
+    fn is_truth(&self, of: Expr) -> Option<bool> {
+        let mut conditions = Vec::new();
+        let mut pending = vec![of];
+        while let Some(expr) = pending.pop() {
+            match self.node(expr) {
+                _ if self.as_constant(expr).is_some() => {}
+                Node::Unary(Unary::Neg, a) => pending.push(a),
+                Node::Binary(Binary::Add | Binary::Sub | Binary::Mul, a, b) => pending.extend([a, b]),
+                Node::Binary(Binary::Select | Binary::SelectElse, _, one) if self.as_constant(one) == Some(1.0) => {
+                    if !conditions.contains(&expr) {
+                        conditions.push(expr);
+                    }
+                }
+                _ => return None,
+            }
+        }
+        let held =
+            (0..1usize << conditions.len().min(MOST_CONDITIONS)).map(|held| self.truth_where(of, &conditions, held));
+        (conditions.len() <= MOST_CONDITIONS).then(|| held.into_iter().all(|value| value == 0.0 || value == 1.0))
+    }
+
+    /// The value of an expression of conditions of which those hold whose bits are set.
+    fn truth_where(&self, of: Expr, conditions: &[Expr], held: usize) -> f64 {
+        let value = |expr| self.truth_where(expr, conditions, held);
+        if let Some(place) = conditions.iter().position(|&condition| condition == of) {
+            return f64::from(u8::from(held >> place & 1 == 1));
+        }
+        match self.node(of) {
+            Node::Unary(_, a) => -value(a),
+            Node::Binary(Binary::Add, a, b) => value(a) + value(b),
+            Node::Binary(Binary::Sub, a, b) => value(a) - value(b),
+            Node::Binary(_, a, b) => value(a) * value(b),
+            _ => self.as_constant(of).unwrap_or(0.0),
+        }
     }
 
     /// ∫ of a polynomial of a straight line that is kept within limits.
