@@ -30,8 +30,12 @@ const BEYOND: f64 = 1e-4;
 /// Points of the check for those of the lattice, and at least.
 const CHECKS: usize = 4;
 const LEAST_CHECKS: usize = 8;
-/// Local extremes that are refined for each end.
+/// Local extremes that are refined at once for each end.
 const CANDIDATES: usize = 6;
+/// How often more of them are, where one that is left may reach beyond the best by this share of the range's width: a range that is full of turns
+/// has many alike.
+const MORE: usize = 10;
+const LEFT: f64 = 1e-5;
 /// Most points of a lattice by the number of parameters.
 const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
@@ -58,7 +62,14 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         let search =
             |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
-        climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+        for _ in 0..MORE {
+            climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+            let mut refines = false;
+            searches.iter_mut().for_each(|search| refines |= search.refine_more(&lattice));
+            if !refines {
+                break;
+            }
+        }
         let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
         let beyond = |place: usize| {
             let range = &found[place].range;
@@ -109,7 +120,7 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
         let width = extent.range.width();
         let settled = SETTLED * width;
         let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
-        Search { ends: [0, 1].map(end).into(), omitted: [f64::NEG_INFINITY; 2] }
+        Search { ends: [0, 1].map(end).into(), settled, output, omitted: [Vec::new(), Vec::new()] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
     climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
@@ -119,8 +130,12 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
 /// What is sought of one function.
 struct Search {
     ends: Vec<End>,
-    /// How low and how high local extremes that are not refined may be; the former negative.
-    omitted: [f64; 2],
+    /// Number of the function, and what of it does not matter.
+    output: usize,
+    settled: f64,
+    /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high they may be; the
+    /// former negative.
+    omitted: [Vec<(usize, f64)>; 2],
 }
 
 /// Searches until all ends are found.
@@ -150,7 +165,7 @@ impl Search {
         let end = |place: usize, sign: f64| {
             End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, settled)
         };
-        let mut search = Self { ends: Vec::new(), omitted: [f64::NEG_INFINITY; 2] };
+        let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
             if range.lower.is_nan() {
                 search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
@@ -163,19 +178,46 @@ impl Search {
             let is_best = |place: usize| sign * values[place] == best;
             peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
             search.ends.extend(peaks.iter().take(CANDIDATES).map(|peak| end(peak.0, sign)));
-            *omitted = peaks.iter().skip(CANDIDATES).map(|peak| peak.1).fold(*omitted, f64::max);
+            omitted.extend(peaks.into_iter().skip(CANDIDATES).rev());
         }
         search
     }
 
+    /// The best value for an end, whichever sign it has there.
+    fn best(&self, sign: f64) -> f64 {
+        let ends = self.ends.iter().filter(|end| end.sign == sign);
+        ends.fold(f64::NEG_INFINITY, |best, end| best.max(sign * end.best))
+    }
+
+    /// Takes up more local extremes where one that was left may reach beyond the best by what matters. Whether it did.
+    fn refine_more(&mut self, lattice: &Lattice) -> bool {
+        let [below, above] = SIGNS.map(|sign| self.best(sign));
+        let matters = self.settled.max(LEFT * (below + above));
+        let mut more = false;
+        for (place, best) in [below, above].into_iter().enumerate() {
+            let left = &mut self.omitted[place];
+            if left.last().is_some_and(|&(_, height)| height > best + matters) {
+                let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
+                let sign = SIGNS[place];
+                let end = |(at, _): (usize, f64)| {
+                    End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, self.settled)
+                };
+                self.ends.extend(taken.into_iter().rev().map(end));
+                more = true;
+            }
+        }
+        more
+    }
+
     /// From the best of all ends.
     fn extent(&self) -> Extent {
-        let best = |(sign, omitted): (f64, f64)| {
+        let best = |(sign, omitted): (f64, &Vec<(usize, f64)>)| {
+            let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
             let ends = self.ends.iter().filter(|end| end.sign == sign);
             let best = ends.reduce(|a, b| if sign * b.best > sign * a.best { b } else { a })?;
             Some((best, best.gap.max(omitted - sign * best.best)))
         };
-        let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], self.omitted[end])))
+        let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], &self.omitted[end])))
         else {
             // There is an end of either sign.
             return Extent::unknown(0);
@@ -298,6 +340,14 @@ mod tests {
         let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
         let shifted = extremes_near(&extremes(&[4], &[0.0], slope(0.0)), slope(0.4));
         assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_range_full_of_turns_has_no_gap() {
+        // About forty local extremes of either kind, all alike.
+        let found = range(1, 24, |xi| (120.0 * xi[0] + 9.0 * xi[0] * xi[0]).sin());
+        assert!((found.range.upper - 1.0).abs() < 1e-9 && (found.range.lower + 1.0).abs() < 1e-9, "{found:?}");
+        assert!(found.gap < 1e-4, "{}", found.gap);
     }
 
     #[test]
