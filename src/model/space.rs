@@ -29,8 +29,7 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let effects = effects.map(|(effect, why)| format!("{why} of effect `{}` leaves the plane", effect.key));
     let start = ["initial", "guess"].into_iter().find_map(|section| {
         let names = entries(section).iter().map(|entry| entry.key.as_str());
-        let name =
-            names.into_iter().find(|name| SPATIAL_STARTS.iter().any(|part| name.split('.').nth(1) == Some(part)))?;
+        let name = names.into_iter().find(|name| name.split('.').skip(1).any(|part| SPATIAL_STARTS.contains(&part)))?;
         Some(format!("`{name}` in `{section}` leaves the plane"))
     });
     match bodies.or(joints).or(effects).or(start) {
