@@ -43,7 +43,7 @@ fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Co
     let is_owner =
         |owner: &str| table.body(owner).is_some() || table.joint(owner).is_some() || table.effect(owner).is_some();
     let dots = name.match_indices('.').map(|(dot, _)| dot).filter(|dot| *dot > instance.len());
-    if let Some(dot) = dots.filter(|dot| is_owner(&name[..*dot])).last() {
+    if let Some(dot) = dots.rev().find(|dot| is_owner(&name[..*dot])) {
         return unknown_member(table, name, &name[..dot], &name[dot + 1..], context);
     }
     let start = instance.len() + 1;

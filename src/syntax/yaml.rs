@@ -239,9 +239,7 @@ impl Builder<'_, '_> {
 fn name_with_index(text: &str, at: usize) -> Option<&str> {
     let start_of_line = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
     let before = &text[start_of_line..text[at..].find(' ').map_or(text.len(), |space| at + space)];
-    let open = before
-        .rfind(|c: char| c == '{')
-        .filter(|open| before[..*open].ends_with(|c: char| c.is_alphanumeric() || c == '_'))?;
+    let open = before.rfind('{').filter(|open| before[..*open].ends_with(|c: char| c.is_alphanumeric() || c == '_'))?;
     let start = before[..open].rfind([' ', '[', '{', ',', '"']).map_or(0, |space| space + 1);
     let close = open + before[open..].find('}')? + 1;
     Some(&before[start..close])

@@ -80,7 +80,7 @@ schema_only! {
     #[schemars(untagged, inline)]
     pub enum PortFile {
         Name(String),
-        Point(PointPort),
+        Point(Box<PointPort>),
     }
 
     /// One file, or several.
