@@ -149,7 +149,7 @@ fn long_sums_do_not_nest() {
 }
 
 fn value_of(text: &str, known: &[(&str, f64)]) -> f64 {
-    let builder = crate::expr::Builder::new();
+    let builder = Builder::new();
     let formula = Formula::parse(text).unwrap();
     let find = |name: &str| known.iter().find(|(known, _)| *known == name).map(|(_, value)| builder.number(*value));
     formula.build(&builder, |name| find(name).ok_or_else(|| name.to_owned())).unwrap().as_constant().unwrap()
