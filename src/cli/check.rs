@@ -9,7 +9,7 @@ use super::console::{BOLD, Console, coordinates, count, to_json};
 use super::{Failure, Status, load, structure, tree};
 use crate::model::{self, Description, Override};
 use crate::reduce::{Choices, Reduction};
-use crate::results::Structure;
+use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, RunError};
 use crate::syntax::Diagnostics;
@@ -83,6 +83,8 @@ struct Counts {
     #[serde(skip_serializing_if = "Option::is_none")]
     whole: Option<Whole>,
     uncertain_parameters: Vec<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    assemblies: Vec<AssemblySummary>,
     redundant_constraints: Vec<String>,
     singular_at_start: Vec<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -198,6 +200,7 @@ impl Counts {
             degrees_of_freedom: simulated.degrees_of_freedom,
             whole: is_less.then_some(whole),
             uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+            assemblies: study::assemblies(model),
             redundant_constraints: constraints(&mobility.redundant),
             singular_at_start: constraints(&mobility.singular_at_start),
             shared_start: shared,
@@ -258,7 +261,7 @@ impl Counts {
             count(self.constraints, "constraint", "constraints"),
             count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
-            structure::lines(&self.structure),
+            super::assemblies::lines(&self.assemblies) + &structure::lines(&self.structure),
         )
     }
 }
@@ -279,6 +282,7 @@ mod tests {
             degrees_of_freedom: 1,
             whole: None,
             uncertain_parameters: vec!["l1".into(), "tau".into()],
+            assemblies: vec![],
             redundant_constraints: vec![],
             singular_at_start: vec![],
             shared_start: vec![],

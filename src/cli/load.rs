@@ -103,7 +103,7 @@ pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
 fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
     let mut files: Vec<ModelFile> = Vec::new();
     let mut texts: Vec<(String, String)> = Vec::new();
-    for source in reading.diagnostics.sources.all().iter().filter(|source| source.name != "--set") {
+    for source in reading.diagnostics.sources.all().filter(|source| source.name != "--set") {
         let name = Path::new(&source.name).file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
         let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
         let file = ModelFile { name: name.clone(), sha256 };

@@ -1,6 +1,7 @@
 //! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit codes.
 
 mod args;
+mod assemblies;
 mod check;
 mod console;
 mod cost;

@@ -218,6 +218,7 @@ pub(super) fn overview(summary: &Summary, folder: &Path, files: &[PathBuf]) -> S
         count(summary.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
         table.render(2),
     );
+    text += &super::assemblies::lines(&summary.assemblies);
     text += &summary.integration.as_ref().map_or_else(String::new, |name| format!("  integrated by {name}\n"));
     match &summary.analysis {
         Some(found) if !found.values.is_empty() => text += &analysis(found),
@@ -278,6 +279,7 @@ mod tests {
             duration: 2.0,
             analysis: None,
             parameters: vec![],
+            assemblies: vec![],
             methods: vec![method("nominal", 1, Some(0.0042), 0), method("scan", 900, None, 12)],
             errors: vec![ErrorSummary {
                 output: "x3".into(),

@@ -98,7 +98,7 @@ fn marks(request: &Request) -> BTreeMap<PathBuf, Mark> {
     let mut marks = BTreeMap::new();
     for path in &request.models {
         let reading = model::read(path, &request.overrides);
-        let named = reading.diagnostics.sources.all().iter().map(|source| PathBuf::from(&source.name));
+        let named = reading.diagnostics.sources.all().map(|source| PathBuf::from(&source.name));
         // The texts of the command line are no files.
         let named = named.filter(|path| path.is_file()).chain([path.clone()]);
         marks.extend(named.map(|path| (path.clone(), mark_of(&path))));

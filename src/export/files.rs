@@ -167,6 +167,7 @@ mod tests {
             duration: 1.0,
             analysis: None,
             parameters: vec![],
+            assemblies: vec![],
             methods: vec![],
             errors: vec![],
             contributions: vec![],

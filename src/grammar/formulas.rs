@@ -1,6 +1,7 @@
 //! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
 
-use symdiff::formula::Vocabulary;
+use symdiff::formula::indices::Index;
+use symdiff::formula::{Names, Vocabulary};
 use symdiff::{Builder, Formula, Spline};
 
 use super::dimension::{self, Kind};
@@ -13,6 +14,7 @@ use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
@@ -44,6 +46,7 @@ impl<S: SymbolTable> Reader<'_, S> {
             );
             return None;
         }
+        let own_names = OwnNames::of(scalar, self.variable);
         if let Some((value, unit, start)) = number_and_unit(&scalar.text) {
             if unit.starts_with('%') {
                 let help = "write the number itself: 1% is 0.01".to_owned();
@@ -51,7 +54,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 return None;
             }
             // What goes on behind the unit makes a formula of it.
-            match Unit::leading(unit, |name| self.is_name(name)) {
+            match Unit::leading(unit, |name| self.is_name(name, own_names.as_ref())) {
                 Ok((found, length)) if length == unit.len() => return Some(Written::Quantity { value, unit: found }),
                 Ok(_) => {}
                 Err(error) => {
@@ -73,8 +76,10 @@ impl<S: SymbolTable> Reader<'_, S> {
             return None;
         }
         let tables: Vec<_> = self.tables.iter().map(|table| (table.name.as_str(), table.spline)).collect();
-        let unit = |value: f64, text: &str| Unit::behind(value, text, |name| self.is_name(name));
-        let parsed = Formula::parse_with(text, &Vocabulary { tables: &tables, unit: Some(&unit) });
+        let own_names = OwnNames::of(scalar, self.variable);
+        let unit = |value: f64, text: &str| Unit::behind(value, text, |name| self.is_name(name, own_names.as_ref()));
+        let names = own_names.as_ref().map(|names| names as &dyn Names);
+        let parsed = Formula::parse_with(text, &Vocabulary { tables: &tables, unit: Some(&unit), names });
         match parsed {
             Ok(formula) if formula.terms().len() > MAX_TERMS => {
                 let message = format!("the formula has more than {MAX_TERMS} operations");
@@ -90,24 +95,11 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// What to do where a unit is called like something of the model.
-    fn unit_like_a_name(&self, node: &Node) -> Option<String> {
-        let text = &node.scalar()?.text;
-        let (_, unit, _) = number_and_unit(text)?;
-        let (factors, word) = unit.rsplit_once(['*', '·'])?;
-        (!names::is_reserved(word.trim()) && self.is_name(word.trim())).then(|| {
-            let start = text.len() - text.trim_start().len();
-            let before = text[start..].split_once(unit).map_or("", |(before, _)| before);
-            format!(
-                "`{}` is read as a unit here; write `{before}{factors} * {}` with spaces for the model's own",
-                word.trim(),
-                word.trim()
-            )
-        })
-    }
-
     /// Whether a word is a name that formulas may use, and so no unit where both may stand.
-    fn is_name(&self, word: &str) -> bool {
+    pub(super) fn is_name(&self, word: &str, own: Option<&OwnNames>) -> bool {
+        if let Some(own) = own {
+            return own.index(word).is_some() || self.is_name(&own.full(word), None);
+        }
         names::is_reserved(word)
             || self.variable.is_some_and(|(own, _)| own == word)
             || self.tables.iter().any(|table| table.name == word)
@@ -128,8 +120,8 @@ impl<S: SymbolTable> Reader<'_, S> {
                 Ok(_) => {}
                 Err(error) => {
                     all_known = false;
-                    let start = offset + span.start;
-                    let part = start + error.part.start..start + error.part.end;
+                    let part = part_of_name(name, &span, error.part);
+                    let part = offset + part.start..offset + part.end;
                     let place =
                         node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
                     self.diagnostics.push(Diagnostic::error(place, error.message).help(error.help));
@@ -157,7 +149,7 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     /// What an effect measures that is not in the model; nothing where the name is of something else.
     fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
-        let (owner, member) = name.split_once('.')?;
+        let (owner, member) = name.rsplit_once('.')?;
         if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
             return None;
         }
@@ -348,6 +340,44 @@ impl<S: SymbolTable> Reader<'_, S> {
             return None;
         }
         self.evaluate(&formula, 0).filter(|value| value.is_finite())
+    }
+}
+
+/// The place of a part of a name that may be longer than it is written.
+fn part_of_name(name: &str, written: &Span, part: Span) -> Span {
+    let before = name.len().saturating_sub(written.len());
+    if part.start < before || name.len() < written.len() {
+        return written.clone();
+    }
+    written.start + part.start - before..(written.start + part.end - before).min(written.end)
+}
+
+/// The names of a scalar in a copy of a piece of the file.
+pub(super) struct OwnNames<'s> {
+    scope: &'s Scope,
+    /// A name that the formula has for itself.
+    variable: Option<&'static str>,
+}
+
+impl<'s> OwnNames<'s> {
+    pub(super) fn of(scalar: &'s Scalar, variable: Option<(&'static str, Dimension)>) -> Option<Self> {
+        let scope = scalar.scope.as_deref()?;
+        Some(Self { scope, variable: variable.map(|(name, _)| name) })
+    }
+}
+
+impl Names for OwnNames<'_> {
+    fn index(&self, name: &str) -> Option<Index> {
+        self.scope.index(name)
+    }
+
+    fn count(&self, name: &str) -> Option<i64> {
+        self.scope.count(name)
+    }
+
+    fn full(&self, name: &str) -> String {
+        let is_own = names::is_reserved(name) || self.variable == Some(name);
+        if is_own { name.to_owned() } else { self.scope.full(name) }
     }
 }
 

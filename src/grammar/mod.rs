@@ -20,6 +20,7 @@ mod suspicious;
 mod symbols;
 pub(crate) mod tolerance;
 pub(crate) mod unit;
+mod unit_names;
 pub(crate) mod unknown;
 pub(crate) mod values;
 mod vectors;

@@ -76,9 +76,49 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
         (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
             .or_else(|| angular_motion(table, owner, member, part))
             .or_else(|| reaction(table, owner, member, Some(part)))
-            .or_else(|| of_beam(table, name)),
-        _ => None,
+            .or_else(|| of_beam(table, name))
+            .or_else(|| of_instance(table, name)),
+        _ => of_instance(table, name),
     }
+}
+
+/// `front_left.upright.x`, `front_left.spring.force`, `front_left.hub.x`: of a part or a port of an instance.
+fn of_instance(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
+    table.instances().next()?;
+    if let Some(index) = table.parameter(name) {
+        return Some(Symbol::Parameter(index));
+    }
+    let (owner, member) = name.rsplit_once('.')?;
+    if let Some(port) = table.port(owner) {
+        return symbol(table, &format!("{port}.{member}"));
+    }
+    let of_owner = body_motion(table, owner, member)
+        .or_else(|| attitude(table, owner, member))
+        .or_else(|| joint_motion(table, owner, member))
+        .or_else(|| reaction(table, owner, member, None))
+        .or_else(|| measure(table, owner, member));
+    if of_owner.is_some() {
+        return of_owner;
+    }
+    let (owner, part, member) = owner.rsplit_once('.').map(|(owner, part)| (owner, part, member))?;
+    if let Some(port) = table.port(owner) {
+        return symbol(table, &format!("{port}.{part}.{member}"));
+    }
+    point_motion(table, owner, part, member)
+        .or_else(|| angular_motion(table, owner, part, member))
+        .or_else(|| reaction(table, owner, part, Some(member)))
+}
+
+/// A body, or a point of a body, by its name: `front_left.upright.hub`, or a port that is one.
+pub(super) fn place(table: &impl SymbolTable, name: &str) -> Option<PointRef> {
+    let name = table.port(name).unwrap_or(name);
+    if let Some(body) = table.body(name) {
+        return Some(PointRef { body, point: None });
+    }
+    let (body, point) = name.rsplit_once('.')?;
+    let body = table.body(body)?;
+    let point = table.points(body).position(|known| known == point)?;
+    Some(PointRef { body, point: Some(point) })
 }
 
 /// `s2.deviation`: how far a parameter is from the value that it follows.
@@ -211,14 +251,8 @@ fn torque_at(table: &impl SymbolTable, joint: &str, about: &str) -> Option<Symbo
     } else {
         (about, 2)
     };
-    let (body, point) = match place.split_once('.') {
-        None => (table.body(place)?, None),
-        Some((body, point)) => {
-            let body = table.body(body)?;
-            (body, Some(table.points(body).position(|known| known == point)?))
-        }
-    };
-    Some(Symbol::Reaction { joint, component: ReactionComponent::TorqueAt(PointRef { body, point }, axis) })
+    let place = self::place(table, place)?;
+    Some(Symbol::Reaction { joint, component: ReactionComponent::TorqueAt(place, axis) })
 }
 
 fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Symbol> {

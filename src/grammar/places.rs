@@ -1,5 +1,6 @@
 //! References to bodies, points and joints by their names.
 
+use super::names;
 use super::reader::{Fields, Reader};
 use super::symbols::{JointCoordinate, OnJoint, PointRef, Rotating, SymbolTable};
 use crate::syntax::suggest::{self, clip};
@@ -9,11 +10,16 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The body that is named.
     pub fn body_ref(&mut self, node: &Node) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a body")?;
-        let name = scalar.text.as_str();
-        if let Some(node) = self.model.body(name) {
-            return Some(node);
+        let name = &*scalar.name();
+        if let Some(body) = self.model.body(name) {
+            return Some(body);
         }
-        let (body, rest) = name.split_once('.').unwrap_or((name, ""));
+        if let Some(port) = self.model.port(name)
+            && let Some(body) = self.model.body(port)
+        {
+            return Some(body);
+        }
+        let (body, rest) = self.owner(name);
         let index = self.find_body(node, body)?;
         if !rest.is_empty() {
             let message = format!("`{}` is a point, but a body belongs here", clip(name));
@@ -26,17 +32,25 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The point that is named: `body.point`, or `body` for the origin of its frame.
     pub fn point_ref(&mut self, node: &Node) -> Option<PointRef> {
         let scalar = self.scalar(node, "`body` or `body.point`")?;
-        let text = &scalar.text;
+        let text = &*scalar.name();
         if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
             return Some(place);
         }
         if let Some(body) = self.model.body(text) {
             return Some(PointRef { body, point: None });
         }
-        let Some((name, point)) = scalar.text.split_once('.') else {
-            return Some(PointRef { body: self.find_body(node, &scalar.text)?, point: None });
-        };
+        if let Some(place) = self.model.port(text).and_then(|_| names::place(&self.model, text)) {
+            return Some(place);
+        }
+        let (name, point) = self.owner(text);
+        if self.is_instance(name) && !point.is_empty() {
+            self.unknown_port(node, name, point);
+            return None;
+        }
         let body = self.find_body(node, name)?;
+        if point.is_empty() {
+            return Some(PointRef { body, point: None });
+        }
         let points: Vec<&str> = self.model.points(body).collect();
         if let Some(found) = points.iter().position(|known| *known == point) {
             return Some(PointRef { body, point: Some(found) });
@@ -46,9 +60,28 @@ impl<S: SymbolTable> Reader<'_, S> {
         } else {
             suggest::help(point, &format!("points of `{name}`"), points)
         };
-        let place = scalar.place(&node.span, name.len() + 1..scalar.text.len());
+        let place = scalar.place_of_name(&node.span, name.len() + 1..text.len());
         self.error(place, format!("body `{name}` has no point `{}`", clip(point)), help);
         None
+    }
+
+    /// What a name is of, and the rest: of a name in an instance all but the last part, of others the first.
+    fn owner<'n>(&self, name: &'n str) -> (&'n str, &'n str) {
+        let first = name.split_once('.').unwrap_or((name, ""));
+        let in_instance = || self.model.instances().any(|known| name.starts_with(&format!("{known}.")));
+        if !first.1.is_empty() && in_instance() { name.rsplit_once('.').unwrap_or(first) } else { first }
+    }
+
+    fn is_instance(&self, name: &str) -> bool {
+        self.model.instances().any(|known| known == name)
+    }
+
+    /// Reports that an instance has no such port and no such body.
+    fn unknown_port(&mut self, node: &Node, instance: &str, name: &str) {
+        let known: Vec<String> = self.model.parts_of(instance);
+        let help = suggest::help(name, "ports and bodies of it", known.iter().map(String::as_str));
+        let message = format!("instance `{instance}` has no port or body `{}`", clip(name));
+        self.error(node.span.clone(), message, help);
     }
 
     fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
@@ -60,7 +93,8 @@ impl<S: SymbolTable> Reader<'_, S> {
             Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
             None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),
         };
-        let place = node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, 0..name.len()));
+        let place =
+            node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place_of_name(&node.span, 0..name.len()));
         self.error(place, message, help);
         None
     }
@@ -76,7 +110,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The joint that is named, with this coordinate.
     pub fn joint_ref(&mut self, node: &Node, coordinate: JointCoordinate) -> Option<usize> {
         let scalar = self.scalar(node, "the name of a joint")?;
-        let name = scalar.text.as_str();
+        let name = &*scalar.name();
         let Some(found) = self.model.joint(name) else {
             let help = suggest::help(name, "joints", self.model.joints());
             self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
@@ -98,7 +132,8 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// Whether a node names a joint and no body.
     pub fn names_joint(&self, node: &Node) -> bool {
         let Some(scalar) = node.scalar() else { return false };
-        self.model.joint(&scalar.text).is_some() && self.model.body(&scalar.text).is_none()
+        let name = &*scalar.name();
+        self.model.joint(name).is_some() && self.model.body(name).is_none()
     }
 
     /// Two different bodies.
@@ -127,7 +162,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         let coordinate = match coordinate {
             Some(coordinate) => coordinate?,
             None => {
-                let joint = node.and_then(Node::scalar).and_then(|name| self.model.joint(&name.text));
+                let joint = node.and_then(Node::scalar).and_then(|name| self.model.joint(&name.name()));
                 let has = |coordinate| joint.is_some_and(|joint| self.model.has_coordinate(joint, coordinate));
                 let slides = has(JointCoordinate::Displacement) && !has(JointCoordinate::Angle);
                 if slides { JointCoordinate::Displacement } else { JointCoordinate::Angle }

@@ -210,7 +210,10 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     /// Whether the key can be a name; says so where it cannot.
     pub fn name(&mut self, entry: &Entry, what: &str) -> bool {
-        let name = entry.key.as_str();
+        // What stands before the last dot is checked where instances are made.
+        let is_part = |known: &str| entry.key.strip_prefix(known).is_some_and(|rest| rest.starts_with('.'));
+        let of_instance = entry.key.rsplit_once('.').filter(|_| self.model.instances().any(is_part));
+        let name = of_instance.map_or(entry.key.as_str(), |(_, name)| name);
         let mut letters = name.chars();
         let well_formed = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_')
             && letters.all(|c| c.is_alphanumeric() || c == '_');

@@ -42,6 +42,11 @@ pub trait SymbolTable {
     /// What a joint that is an equation sets equal to something else.
     fn equated(&self, joint: usize) -> Option<&Formula>;
 
+    /// Names of the instances of assemblies, and of effects on many, which have dots in the names of their parts.
+    fn instances(&self) -> impl Iterator<Item = &str> + Clone;
+    /// The body or the point of a body that a port of an instance is.
+    fn port(&self, name: &str) -> Option<&str>;
+
     /// The parameter of a name.
     fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters().position(|known| known == name)
@@ -56,6 +61,9 @@ pub trait SymbolTable {
     fn joint(&self, name: &str) -> Option<usize> {
         self.joints().position(|known| known == name)
     }
+
+    /// Ports and bodies of an instance, as they are called in it.
+    fn parts_of(&self, instance: &str) -> Vec<String>;
 
     /// The name of a joint.
     fn joint_name(&self, joint: usize) -> &str {

@@ -122,7 +122,8 @@ impl Text<'_> {
 
     fn part(&self, range: Span) -> Node {
         let start = self.scalar.start.map(|start| start + range.start);
-        let scalar = Scalar { text: self.scalar.text[range.clone()].to_owned(), plain: true, start };
+        let scalar =
+            Scalar { scope: self.scalar.scope.clone(), ..Scalar::plain(&self.scalar.text[range.clone()], start) };
         Node { span: self.scalar.place(&self.node.span, range), value: Value::Scalar(scalar) }
     }
 
@@ -132,7 +133,8 @@ impl Text<'_> {
         let part = self.part(range.clone());
         match unit {
             Some(unit) if !unit.is_empty() && text.parse::<f64>().is_ok() => {
-                let scalar = Scalar { text: format!("{text} {unit}"), plain: true, start: None };
+                let scalar =
+                    Scalar { scope: self.scalar.scope.clone(), ..Scalar::plain(format!("{text} {unit}"), None) };
                 Node { value: Value::Scalar(scalar), ..part }
             }
             _ => part,
@@ -248,7 +250,7 @@ mod tests {
     }
 
     fn node(written: &str) -> Node {
-        let scalar = Scalar { text: written.to_owned(), plain: true, start: Some(0) };
+        let scalar = Scalar::plain(written, Some(0));
         Node { span: 0..written.len(), value: Value::Scalar(scalar) }
     }
 

@@ -27,9 +27,38 @@ pub fn unknown(table: &impl SymbolTable, name: &str, context: Context) -> NameEr
             return NameError { message, part: 0..name.len(), help: Some(help) };
         }
     }
+    let instance =
+        table.instances().filter(|known| name.starts_with(&format!("{known}."))).max_by_key(|known| known.len());
+    if let Some(instance) = instance {
+        return in_instance(table, name, instance, context);
+    }
     match name.split_once('.') {
         None => unknown_word(table, name, &shown, context),
         Some((owner, rest)) => unknown_member(table, name, owner, rest, context),
+    }
+}
+
+/// Why a name of an instance stands for nothing.
+fn in_instance(table: &impl SymbolTable, name: &str, instance: &str, context: Context) -> NameError {
+    let is_owner =
+        |owner: &str| table.body(owner).is_some() || table.joint(owner).is_some() || table.effect(owner).is_some();
+    let dots = name.match_indices('.').map(|(dot, _)| dot).filter(|dot| *dot > instance.len());
+    if let Some(dot) = dots.rev().find(|dot| is_owner(&name[..*dot])) {
+        return unknown_member(table, name, &name[..dot], &name[dot + 1..], context);
+    }
+    let start = instance.len() + 1;
+    let rest = &name[start..];
+    let within = |known: &str| Some(known.strip_prefix(instance)?.strip_prefix('.')?.to_owned());
+    let parameters = table.parameters().filter_map(within);
+    let known: Vec<String> = match context {
+        Context::Constant => parameters.collect(),
+        _ => parameters.chain(table.parts_of(instance)).chain(table.joints().filter_map(within)).collect(),
+    };
+    let word = rest.split('.').next().unwrap_or(rest);
+    NameError {
+        message: format!("instance `{}` has no `{}`", suggest::clip(instance), suggest::clip(word)),
+        part: start..start + word.len(),
+        help: suggest::help(word, "names in it", known.iter().map(String::as_str)),
     }
 }
 

@@ -3,6 +3,7 @@
 mod analysis;
 mod body;
 mod index;
+mod instance;
 mod reduced;
 mod robot;
 mod simulation;
@@ -21,6 +22,7 @@ use crate::methods::BoundsRequest;
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
 pub use body::{Body, FlexibleBeam, Inertia, Point};
 use index::NameIndex;
+pub use instance::{Instance, InstanceKind};
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
@@ -75,6 +77,10 @@ pub struct Description {
     pub bounds: BoundsRequest,
     /// Which statistics are asked for, and the parameters' laws.
     pub statistics: Statistics,
+    /// Instances of assemblies, and effects on many, of which the parts have dots in their names.
+    pub instances: Vec<Instance>,
+    /// Ports of instances: the body or the point that each is.
+    pub ports: BTreeMap<String, String>,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -197,6 +203,8 @@ impl Description {
             },
             bounds: BoundsRequest::default(),
             statistics: Statistics::default(),
+            instances: Vec::new(),
+            ports: BTreeMap::new(),
             places: Places::default(),
         }
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::description::{Description, Space};
 use super::file;
 use super::overrides::Override;
+use super::parts::{self, Parts, WrittenOut};
 use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
@@ -146,16 +147,29 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     let Some(root) = yaml::parse(text, &mut diagnostics) else {
         return Reading { description: None, scenes: Vec::new(), diagnostics };
     };
+    let written = parts::write_out(&mut blank(name, &mut diagnostics), &root, text, &placed);
+    let (root, parts) = match written {
+        Some(WrittenOut { root, parts }) => (root, Some(parts)),
+        None => (root, None),
+    };
+    if diagnostics.has_errors() && parts.is_some() {
+        // What is missing in the tree would be reported again and again.
+        return Reading { description: None, scenes: Vec::new(), diagnostics };
+    }
+    if let Some(parts) = &parts {
+        placed = parts.follow(placed);
+    }
+    let parts = parts.as_ref();
     let plan = Scenes::read(&mut blank(name, &mut diagnostics), &root);
     let before = diagnostics.len();
     let model = plan.model();
-    let (description, mut unused) = describe(name, &model, &placed, &mut diagnostics);
+    let (description, mut unused) = describe(name, &model, parts, &placed, &mut diagnostics);
     diagnostics.found_without(before, &model.left_out);
     let mut scenes = Vec::with_capacity(plan.count());
     for scene in 0..plan.count() {
         let before = diagnostics.len();
         let variant = plan.scene(&mut blank(name, &mut diagnostics), scene);
-        let (found, idle) = describe(name, &variant, &placed, &mut diagnostics);
+        let (found, idle) = describe(name, &variant, parts, &placed, &mut diagnostics);
         diagnostics.found_without(before, &variant.left_out);
         scenes.extend(variant.scene.map(|name| Scene { name, description: found }));
         // What one of them uses is used.
@@ -198,11 +212,13 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
 fn describe(
     name: &str,
     variant: &Variant,
+    parts: Option<&Parts>,
     overrides: &[(Override, Span)],
     diagnostics: &mut Diagnostics,
 ) -> (Description, Vec<Diagnostic>) {
     let root = &variant.root;
     let mut reader = blank(name, diagnostics);
+    reader.model.instances = parts.map_or_else(Vec::new, |parts| parts.instances.clone());
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
     title(&mut reader, &fields, variant.scene.as_deref());
@@ -235,6 +251,7 @@ fn describe(
     let parameter_entries = with_robot.as_deref().unwrap_or(parameter_entries);
 
     bodies::declare(&mut reader, body_entries);
+    parts.into_iter().for_each(|parts| parts.declare_ports(&mut reader));
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);
@@ -277,7 +294,8 @@ fn describe(
         not_empty(&mut reader, &fields, body_entries, output_entries);
     }
     reader.warn_of_lengths();
-    let unused = parameters::unused(&reader, parameter_entries);
+    let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));
+    let unused = parameters::unused(&reader, parameter_entries, is_count);
     let Reader { mut model, idle, .. } = reader;
     model.parameters.retain(|parameter| !idle.contains(&parameter.name));
     (model, unused)

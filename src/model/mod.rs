@@ -20,6 +20,7 @@ mod joints;
 mod load;
 mod overrides;
 mod parameters;
+mod parts;
 mod reduced;
 mod requests;
 mod requirements;

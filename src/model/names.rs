@@ -77,6 +77,20 @@ impl SymbolTable for Description {
         self.named_parts_of_beam(beam)
     }
 
+    fn instances(&self) -> impl Iterator<Item = &str> + Clone {
+        self.instances.iter().map(|instance| instance.name.as_str())
+    }
+
+    fn port(&self, name: &str) -> Option<&str> {
+        self.ports.get(name).map(String::as_str)
+    }
+
+    fn parts_of(&self, instance: &str) -> Vec<String> {
+        let names = self.ports.keys().map(String::as_str).chain(self.bodies());
+        let within = names.filter_map(|name| name.strip_prefix(instance)?.strip_prefix('.'));
+        within.filter(|name| !name.contains('.')).map(str::to_owned).collect()
+    }
+
     fn has_orientation(&self, body: usize) -> bool {
         self.bodies[body].has_orientation()
     }

@@ -49,7 +49,7 @@ impl Override {
             return error(0..text.len(), "the value is missing");
         }
         let start = offset + text.len() - text[equals + 1..].trim_start().len();
-        let scalar = Scalar { text: written.to_owned(), plain: true, start: Some(start) };
+        let scalar = Scalar::plain(written, Some(start));
         let value = Node { span: start..start + written.len(), value: Value::Scalar(scalar) };
         tolerance::read(&value)?;
         Ok(Self { name: name.to_owned(), text: text.to_owned(), value })

@@ -241,12 +241,12 @@ fn sort(reader: &mut Reader, order: &[usize]) {
     reader.used = order.iter().map(|&index| reader.used[index]).collect();
 }
 
-/// Warnings of parameters that nothing uses.
-pub fn unused(reader: &Reader, entries: &[Entry]) -> Vec<Diagnostic> {
+/// Warnings of parameters that nothing uses; those that say how often something is repeated are used.
+pub fn unused(reader: &Reader, entries: &[Entry], is_count: impl Fn(&str) -> bool) -> Vec<Diagnostic> {
     let used = reader.used.iter().zip(&reader.used_by_parameters).map(|(used, by_parameters)| *used || *by_parameters);
     let used: HashMap<&str, bool> =
         reader.model.parameters.iter().map(|parameter| parameter.name.as_str()).zip(used).collect();
-    let unused = |entry: &&Entry| used.get(entry.key.as_str()) == Some(&false);
+    let unused = |entry: &&Entry| used.get(entry.key.as_str()) == Some(&false) && !is_count(&entry.key);
     let warning = |entry: &Entry| {
         let message = format!("parameter `{}` is used nowhere", suggest::clip(&entry.key));
         Diagnostic::warning(entry.key_span.clone(), message)

@@ -106,7 +106,7 @@ fn start_symbol(reader: &mut Reader, entry: &Entry) -> Option<Symbol> {
 
 /// `body.orientation`, `body.omega` and `body.omega_body`; nothing where the name is another.
 fn rotation_value(reader: &mut Reader, entry: &Entry, velocities: bool) -> Option<Option<StartValue>> {
-    let (owner, part) = entry.key.split_once('.')?;
+    let (owner, part) = entry.key.rsplit_once('.')?;
     let velocity = ANGULAR_MOTIONS.iter().find(|(name, _, order)| *name == part && *order == TimeOrder::Velocity);
     if part != ORIENTATION && velocity.is_none() {
         return None;

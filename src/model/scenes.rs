@@ -3,7 +3,7 @@
 //! A scene is the model's tree with the scene's changes laid over it, read as a model of its own: what is absent was never
 //! there, and every node keeps its place in the file.
 
-mod draft;
+pub mod draft;
 
 use self::draft::Draft;
 use super::file;

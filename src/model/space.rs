@@ -31,9 +31,9 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Space {
     let start = ["initial", "guess"].into_iter().find_map(|section| {
         let names = entries(section).iter().map(|entry| entry.key.as_str());
         let leaves = |name: &str| {
-            let (_, motion) = name.split_once('.').unwrap_or_default();
-            let first = motion.split('.').next().unwrap_or_default();
-            SPATIAL_STARTS.contains(&first) || ATTITUDE.contains(&motion)
+            let parts = || name.split('.').skip(1);
+            let motion = name.rsplit('.').next().unwrap_or_default();
+            parts().any(|part| SPATIAL_STARTS.contains(&part)) || ATTITUDE.contains(&motion)
         };
         let name = names.into_iter().find(|name| leaves(name))?;
         Some(format!("`{name}` in `{section}` leaves the plane"))

@@ -40,6 +40,6 @@ pub use statistics::{
 };
 pub use structure::{KindCount, MassRange, MobilityCount, Structure};
 pub use summary::{
-    ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary, SingularSummary,
-    SubsystemSummary, Summary,
+    AssemblySummary, ContributionSummary, DampedMode, ErrorSummary, MethodSummary, ParameterSummary, PieceSummary,
+    SingularSummary, SubsystemSummary, Summary,
 };

@@ -54,6 +54,9 @@ pub struct Summary {
     pub analysis: Option<AnalysisSummary>,
     /// The uncertain parameters.
     pub parameters: Vec<ParameterSummary>,
+    /// Of each assembly that the model has instances of: which tolerances are one for all of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assemblies: Vec<AssemblySummary>,
     /// What each method took.
     pub methods: Vec<MethodSummary>,
     /// Of every band.
@@ -125,6 +128,19 @@ pub struct ParameterSummary {
     pub lower: f64,
     /// Upper end of the interval.
     pub upper: f64,
+}
+
+/// The instances of an assembly, with the uncertain parameters on which they depend.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct AssemblySummary {
+    /// Its name.
+    pub assembly: String,
+    /// Names of its instances.
+    pub instances: Vec<String>,
+    /// Uncertain parameters that each instance has for itself.
+    pub independent: Vec<String>,
+    /// Uncertain parameters that the instances have from outside: one deviation for all that depend on it.
+    pub shared: Vec<String>,
 }
 
 /// A piece of the box that is bounded: the least and largest of every parameter, and the last time that it reached, s.

@@ -217,6 +217,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
                 upper: parameter.upper,
             })
             .collect(),
+        assemblies: Vec::new(),
         methods: std::iter::once(results.nominal.summary)
             .chain(results.validation.map(|(_, summary)| summary))
             .chain(results.switches.map(|(_, summary)| summary))

@@ -9,6 +9,7 @@
 //! evaluates them after the run, as `statistics` does.
 
 mod analysis;
+mod assemblies;
 mod conclude;
 mod controlled;
 mod cost;
@@ -52,6 +53,7 @@ use crate::store::PartStore;
 
 use subsystems::Prepared;
 
+pub use assemblies::of as assemblies;
 pub use cost::{CostOptions, cost};
 pub use drawing::drawing;
 pub use effect_costs::language_costs;

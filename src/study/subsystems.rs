@@ -6,6 +6,7 @@
 
 use symdiff::Formula;
 
+use super::assemblies;
 use super::ensemble::Stored;
 use super::internal::caught;
 use super::kept::Kept;
@@ -318,6 +319,7 @@ impl<'a> Whole<'a> {
             summary.contributions = ContributionSummary::of(bounds);
         }
         summary.parameters = self.parameters;
+        summary.assemblies = assemblies::of(self.description);
         summary.not_simulated = self.left_out;
         summary.subsystems = subsystems;
         summary

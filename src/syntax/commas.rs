@@ -41,7 +41,7 @@ fn together(text: &str, first: &Node, second: &Span, diagnostics: &mut Diagnosti
     let span = first.span.start..second.end.max(first.span.end);
     let written = text.get(span.clone()).unwrap_or("").trim_end();
     let span = span.start..span.start + written.len();
-    let scalar = Scalar { text: written.to_owned(), plain: true, start: Some(span.start) };
+    let scalar = Scalar::plain(written, Some(span.start));
     let node = Node { span: span.clone(), value: Value::Scalar(scalar) };
     if !is_open(&node) {
         let help = format!("quote the formula: `\"{}\"`", clip(written));

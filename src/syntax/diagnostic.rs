@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::source::{Sources, Span};
+use super::source::{Sources, Span, Within};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
@@ -102,6 +102,9 @@ pub struct Record {
     pub column: Option<usize>,
     /// What would be right.
     pub help: Option<String>,
+    /// In which instance of an assembly, where it is of one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
 }
 
 impl Diagnostics {
@@ -112,9 +115,28 @@ impl Diagnostics {
         Self { sources, items: Vec::new() }
     }
 
-    /// Adds one.
-    pub fn push(&mut self, diagnostic: Diagnostic) {
+    /// Adds one; of a copy, with the place of the instance that it is of, and of those around it.
+    pub fn push(&mut self, mut diagnostic: Diagnostic) {
+        let mut place = diagnostic.span.clone();
+        while let Some(Within { instance, of, span }) = place.and_then(|place| self.sources.within(&place)) {
+            diagnostic.secondary.push((span.clone(), format!("in `{instance}`, an instance of `{of}`")));
+            place = Some(span.clone());
+        }
         self.items.push(diagnostic);
+    }
+
+    /// Reads a text that is added to the sources, with its places there.
+    pub(crate) fn read_more<T>(&mut self, start: usize, text: &str, read: impl FnOnce(&mut Self) -> T) -> T {
+        let mut own = Self::new("", text);
+        let result = read(&mut own);
+        let moved = |span: Span| start + span.start..start + span.end;
+        self.items.extend(own.items.into_iter().map(|found| Diagnostic {
+            // What is said of the file as a whole is said of its beginning.
+            span: Some(moved(found.span.clone().unwrap_or(0..0))),
+            secondary: found.secondary.iter().map(|(span, label)| (moved(span.clone()), label.clone())).collect(),
+            ..found
+        }));
+        result
     }
 
     /// How many there are so far.
@@ -182,6 +204,7 @@ impl Diagnostics {
             line: place.map(|place| place.line),
             column: place.map(|place| place.column),
             help: diagnostic.help.clone(),
+            instance: diagnostic.span.as_ref().and_then(|span| Some(self.sources.within(span)?.instance.clone())),
         }
     }
 }

@@ -4,6 +4,7 @@ mod commas;
 pub(crate) mod diagnostic;
 mod harmless;
 mod render;
+pub(crate) mod scope;
 pub(crate) mod source;
 pub(crate) mod suggest;
 mod tree;

@@ -4,6 +4,7 @@
 //! text it is in.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::harmless::harmless;
 
@@ -17,8 +18,6 @@ pub struct Source {
     pub name: String,
     /// The text; empty where it could not be read.
     pub text: String,
-    /// Offset of its first byte.
-    start: usize,
     /// Where its lines begin, counted from its own start.
     lines: Vec<usize>,
 }
@@ -41,10 +40,30 @@ impl Source {
     }
 }
 
+/// A text at an offset: as it was read, or once more for a copy that an instance is.
+#[derive(Clone, Debug)]
+struct Placed {
+    /// Offset of its first byte.
+    start: usize,
+    source: Arc<Source>,
+    within: Option<Within>,
+}
+
+/// The instance of which a copy of a text is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Within {
+    /// Its full name.
+    pub instance: String,
+    /// What it is an instance of.
+    pub of: String,
+    /// Where it is asked for.
+    pub span: Span,
+}
+
 /// Every text that was read.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    all: Vec<Source>,
+    all: Vec<Placed>,
 }
 
 impl Sources {
@@ -52,30 +71,53 @@ impl Sources {
     /// is not added again.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> usize {
         let (name, text) = (harmless(&name.into()).replace('\n', "\u{fffd}"), text.into());
-        if let Some(known) = self.all.iter().find(|known| known.name == name && known.text == text) {
+        let known =
+            |placed: &&Placed| placed.within.is_none() && placed.source.name == name && placed.source.text == text;
+        if let Some(known) = self.all.iter().find(known) {
             return known.start;
         }
-        // One offset lies between two texts, so that the end of one is not the start of the next.
-        let start = self.all.last().map_or(0, |last| last.start + last.text.len() + 1);
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(newline, _)| newline + 1)).collect();
-        self.all.push(Source { name, text, start, lines });
+        self.place_at_end(Arc::new(Source { name, text, lines }), None)
+    }
+
+    /// Places the text of a span once more, for a copy of it: how far the copy's spans lie behind those of the original.
+    pub fn copy(&mut self, original: &Span, within: Within) -> usize {
+        let Some(placed) = self.placed(original) else { return 0 };
+        let (first, source) = (placed.start, Arc::clone(&placed.source));
+        self.place_at_end(source, Some(within)) - first
+    }
+
+    fn place_at_end(&mut self, source: Arc<Source>, within: Option<Within>) -> usize {
+        // One offset lies between two texts, so that the end of one is not the start of the next.
+        let start = self.all.last().map_or(0, |last| last.start + last.source.text.len() + 1);
+        self.all.push(Placed { start, source, within });
         start
     }
 
     /// All texts, in the order in which they were read.
-    pub fn all(&self) -> &[Source] {
-        &self.all
+    pub fn all(&self) -> impl Iterator<Item = &Source> {
+        self.all.iter().filter(|placed| placed.within.is_none()).map(|placed| &*placed.source)
     }
 
     /// The first text: the model file.
     pub fn first(&self) -> Option<&Source> {
-        self.all.first()
+        self.all.first().map(|placed| &*placed.source)
+    }
+
+    fn placed(&self, span: &Span) -> Option<&Placed> {
+        let behind = self.all.partition_point(|placed| placed.start <= span.start);
+        self.all[..behind].last()
+    }
+
+    /// The instance in whose copy a span is.
+    pub fn within(&self, span: &Span) -> Option<&Within> {
+        self.placed(span)?.within.as_ref()
     }
 
     /// The text that a span is in, and the span within it, cut to what there is.
     pub fn locate(&self, span: &Span) -> Option<(&Source, Span)> {
-        let source = self.all.iter().rev().find(|source| source.start <= span.start)?;
-        let cut = |offset: usize| floor_char_boundary(&source.text, offset.saturating_sub(source.start));
+        let Placed { start: first, source, .. } = self.placed(span)?;
+        let cut = |offset: usize| floor_char_boundary(&source.text, offset.saturating_sub(*first));
         let start = cut(span.start);
         Some((source, start..cut(span.end).max(start)))
     }

@@ -1,5 +1,9 @@
 //! What a text of YAML is: nodes that know their places.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::scope::Scope;
 use super::source::Span;
 
 /// A node of the tree.
@@ -42,9 +46,36 @@ pub struct Scalar {
     pub plain: bool,
     /// Where the text stands word for word in the source, if it does.
     pub start: Option<usize>,
+    /// What its names stand for, where it is a copy of what the file says.
+    pub scope: Option<Arc<Scope>>,
 }
 
 impl Scalar {
+    /// A text without quotes that means what it says.
+    pub fn plain(text: impl Into<String>, start: Option<usize>) -> Self {
+        Self { text: text.into(), plain: true, start, scope: None }
+    }
+
+    /// The text as the name of something.
+    pub fn name(&self) -> Cow<'_, str> {
+        match &self.scope {
+            None => Cow::Borrowed(self.text.as_str()),
+            Some(scope) => Cow::Owned(scope.reference(&self.text)),
+        }
+    }
+
+    /// The place of a part of [`Self::name`]; of the whole node where the name is not as it is written.
+    pub fn place_of_name(&self, node: &Span, part: Span) -> Span {
+        let before = self
+            .scope
+            .as_ref()
+            .map_or(0, |scope| self.name().len().saturating_sub(self.text.len()).min(scope.prefix().len()));
+        match self.name().ends_with(&self.text) {
+            true => self.place(node, part.start.saturating_sub(before)..part.end.saturating_sub(before)),
+            false => node.clone(),
+        }
+    }
+
     /// Nothing was written, or `null`.
     pub fn is_null(&self) -> bool {
         self.plain && matches!(self.text.as_str(), "" | "~" | "null" | "Null" | "NULL")
@@ -66,6 +97,34 @@ impl Node {
             Value::Mapping(entries) => entries.iter().find(|entry| entry.key == key).map(|entry| &entry.value),
             _ => None,
         }
+    }
+
+    /// The same at a place so much further on.
+    #[must_use]
+    pub fn moved(&self, by: usize) -> Self {
+        self.copied(by, &|scalar| scalar.clone())
+    }
+
+    /// The same at a place so much further on, with its scalars made anew.
+    #[must_use]
+    pub fn copied(&self, by: usize, scalar: &impl Fn(&Scalar) -> Scalar) -> Self {
+        let moved = |span: &Span| span.start + by..span.end + by;
+        let value = match &self.value {
+            Value::Scalar(text) => {
+                let copy = scalar(text);
+                Value::Scalar(Scalar { start: text.start.map(|start| start + by), ..copy })
+            }
+            Value::Sequence(items) => Value::Sequence(items.iter().map(|item| item.copied(by, scalar)).collect()),
+            Value::Mapping(entries) => {
+                let copy = |entry: &Entry| Entry {
+                    key: entry.key.clone(),
+                    key_span: moved(&entry.key_span),
+                    value: entry.value.copied(by, scalar),
+                };
+                Value::Mapping(entries.iter().map(copy).collect())
+            }
+        };
+        Self { span: moved(&self.span), value }
     }
 
     /// The scalar, if it is one.

@@ -90,6 +90,8 @@ impl Builder<'_, '_> {
                 || self.text[at..].starts_with('\t');
         let help = if tab {
             Some("YAML is indented with spaces, not tabs".to_owned())
+        } else if let Some(name) = name_with_index(self.text, at) {
+            Some(format!("within braces and brackets, quote a name with an index: `\"{}\"`", clip(name)))
         } else {
             interval_before(self.text, at).map(|interval| format!("quote the interval: `\"{}\"`", clip(interval)))
         };
@@ -117,7 +119,7 @@ impl Builder<'_, '_> {
                     "aliases are not supported",
                     "name what is used several times as a parameter, and use its name; a product is `a * b`",
                 );
-                let scalar = Scalar { text: String::new(), plain: true, start: None };
+                let scalar = Scalar::plain(String::new(), None);
                 self.add(Node { span, value: Value::Scalar(scalar) });
             }
             Event::Scalar(text, style, ..) => {
@@ -153,6 +155,7 @@ impl Builder<'_, '_> {
             text: text.to_owned(),
             plain: matches!(style, ScalarStyle::Plain),
             start: verbatim.then_some(inner.start),
+            scope: None,
         }
     }
 
@@ -230,6 +233,16 @@ impl Builder<'_, '_> {
         }
         unique
     }
+}
+
+/// The name with an index in braces, `leg_{i}`, at which the text stops to be YAML.
+fn name_with_index(text: &str, at: usize) -> Option<&str> {
+    let start_of_line = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let before = &text[start_of_line..text[at..].find(' ').map_or(text.len(), |space| at + space)];
+    let open = before.rfind('{').filter(|open| before[..*open].ends_with(|c: char| c.is_alphanumeric() || c == '_'))?;
+    let start = before[..open].rfind([' ', '[', '{', ',', '"']).map_or(0, |space| space + 1);
+    let close = open + before[open..].find('}')? + 1;
+    Some(&before[start..close])
 }
 
 /// The interval with a unit behind it, `[0.49, 0.51] m`, at which the text stops to be YAML.
@@ -325,6 +338,17 @@ mod tests {
                 "{text}: {diagnostics}"
             );
         }
+    }
+
+    #[test]
+    fn a_name_with_an_index_is_quoted_within_braces() {
+        for text in ["a: { b_{i}: 1 }", "a: [b_{i}, c]", "c: 1\na: { d: 1, b_{i}: { e: 1 } }"] {
+            let mut diagnostics = Diagnostics::new("test", text);
+            parse(text, &mut diagnostics);
+            let help = diagnostics.iter().next().and_then(|found| found.help.clone());
+            assert!(help.is_some_and(|help| help.ends_with("`\"b_{i}\"`")), "{text}: {diagnostics}");
+        }
+        assert_eq!(errors("b_{i}: { a: 1 }"), []);
     }
 
     #[test]

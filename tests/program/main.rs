@@ -11,6 +11,7 @@ mod docs_effects;
 mod everyday;
 mod faults;
 mod old_models;
+mod parts;
 mod place;
 mod readme;
 mod report;

@@ -5,12 +5,14 @@
 use schemars::Schema;
 use serde_json::{Map, Value, json};
 
+use super::repetition;
 use crate::grammar::not_negative;
 
 /// Adds the constraints to the schema of model files.
 pub fn constrain(schema: &mut Schema) {
     if let Some(root) = schema.as_object_mut() {
         of_model(root);
+        repetition::allow(root);
     }
     let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) else { return };
     for name in ["Simulation", "SceneSimulation"] {
@@ -37,7 +39,8 @@ fn of_model(root: &mut Map<String, Value>) {
         json!({ "required": ["analysis"], "properties": { "analysis": { "enum": ["statics", "modes"] } } });
     root.insert("anyOf".to_owned(), json!([{ "required": ["simulation"] }, without_time]));
     let alone = json!({
-        "required": ["bodies", "outputs"],
+        "required": ["outputs"],
+        "anyOf": [{ "required": ["bodies"] }, { "required": ["instances"] }],
         "properties": {
             "bodies": { "type": "object", "minProperties": 1 },
             "outputs": { "type": "object", "minProperties": 1 }
@@ -134,7 +137,8 @@ fn of_body(body: &mut Value) {
     let moves_by =
         |coordinates: Value| json!({ "properties": { "coordinates": { "contains": { "enum": coordinates } } } });
     insert(body, "if", json!({ "required": ["beam"] }));
-    insert(body, "then", json!({ "maxProperties": 1 }));
+    // The other may be `repeat`.
+    insert(body, "then", json!({ "maxProperties": 2 }));
     insert(
         body,
         "else",

@@ -8,13 +8,16 @@ use schemars::transform::{RecursiveTransform, Transform};
 mod bodies;
 mod constraints;
 mod model;
+mod parts;
 mod reduced;
+mod repetition;
 mod run;
 mod statistics;
 mod values;
 
 pub use bodies::*;
 pub use model::*;
+pub use parts::*;
 pub use reduced::*;
 pub use run::*;
 pub use statistics::*;
@@ -92,6 +95,10 @@ mod tests {
         same_keys::<SceneSimulation>();
         same_keys::<Parameter>();
         same_keys::<Body>();
+        same_keys::<Assembly>();
+        same_keys::<InstanceFile>();
+        same_keys::<PointPort>();
+        same_keys::<Part>();
         same_keys::<Statistics>();
         same_keys::<CorrelationFile>();
         same_keys::<LawKinds>();

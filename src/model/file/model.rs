@@ -22,6 +22,12 @@ grammar! {
         base: Option<BaseName>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Files of assemblies, beside this one or below.
+        include: Option<IncludeFile>,
+        /// Mechanisms that the model has instances of.
+        assemblies: Option<IndexMap<String, Assembly>>,
+        /// Copies of assemblies, whose parts are called after them: `front_left.upright.x`.
+        instances: Option<IndexMap<String, InstanceFile>>,
         /// Functions given by their values: in formulas, `NAME(t)`.
         tables: Option<IndexMap<String, Table>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.

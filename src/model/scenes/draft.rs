@@ -1,11 +1,12 @@
 //! The tree of a model while scenes are laid over it.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use super::{LeftOut, unknown};
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::model::notation::{self, field};
+use crate::model::parts::patterns;
 use crate::model::urdf;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -119,7 +120,9 @@ impl Draft {
             self.robot = LeftOut { all: true, ..LeftOut::default() };
             return;
         }
-        for (name, span) in names(reader, node, "`all`, or a list of effects, joints and outputs,") {
+        for (name, span) in
+            self.all_names(names(reader, node, "`all`, or a list of effects, joints and outputs,"), false)
+        {
             let sections = self.sections_with(&name);
             let robots = self.robot.names.iter().any(|(known, _)| *known == name);
             if sections.iter().all(|section| self.out.contains(&(*section, name.clone()))) && !sections.is_empty()
@@ -140,7 +143,7 @@ impl Draft {
 
     /// `with`: puts in again what is left out.
     fn with(&mut self, reader: &mut Reader, node: &Node) {
-        for (name, span) in names(reader, node, "a list of effects, joints and outputs") {
+        for (name, span) in self.all_names(names(reader, node, "a list of effects, joints and outputs"), true) {
             let sections = self.sections_with(&name);
             let before = self.out.len() + self.robot.names.len();
             self.out.retain(|(_, known)| *known != name);
@@ -157,6 +160,28 @@ impl Draft {
                 reader.error(span, format!("`{}` is not left out", clip(&name)), help.to_owned());
             }
         }
+    }
+
+    /// The names, with those that patterns stand for, and the parts of effects on many: of them only those that are out, or in.
+    fn all_names(&self, names: Vec<(String, Span)>, out: bool) -> Vec<(String, Span)> {
+        let each = |(name, span): (String, Span)| {
+            let entries =
+                NAMED.iter().flat_map(|section| self.entries_of(section).iter().map(move |entry| (*section, entry)));
+            let is_part = |known: &str| known.strip_prefix(&name).is_some_and(|rest| rest.starts_with('.'));
+            let parts = entries.filter(|(section, entry)| match patterns::is_pattern(&name) {
+                true => patterns::matches(&name, &entry.key),
+                false => *section == "effects" && is_part(&entry.key),
+            });
+            let state = |section: &'static str, key: &str| self.out.contains(&(section, key.to_owned())) == out;
+            let found = parts.filter(|(section, entry)| state(section, &entry.key));
+            let found: BTreeSet<String> = found.map(|(_, entry)| entry.key.clone()).collect();
+            if found.is_empty() || !self.sections_with(&name).is_empty() {
+                vec![(name, span)]
+            } else {
+                found.into_iter().map(|found| (found, span.clone())).collect()
+            }
+        };
+        names.into_iter().flat_map(each).collect()
     }
 
     /// Sections that have an entry of this name; that of outputs only where no effect and no joint has it.
@@ -243,7 +268,7 @@ fn names(reader: &mut Reader, node: &Node, wanted: &str) -> Vec<(String, Span)> 
 }
 
 /// A model's parameter as a scene has it.
-fn overridden(model: &Entry, scene: &Entry) -> Entry {
+pub fn overridden(model: &Entry, scene: &Entry) -> Entry {
     let changes = match &scene.value.value {
         Value::Mapping(changes) => changes.clone(),
         _ => {

@@ -151,7 +151,7 @@ impl Declared {
                 _ => continue,
             };
             let Ok(formula) = symdiff::Formula::parse(&number.name) else { continue };
-            let text = Scalar { text: number.name.clone(), plain: true, start: None };
+            let text = Scalar::plain(number.name.clone(), None);
             let node = Node { span: number.span.clone(), value: Value::Scalar(text) };
             reader.require(&node, &formula, holds, requirement);
         }

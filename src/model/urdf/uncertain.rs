@@ -114,5 +114,5 @@ fn holds(interval: &Node, number: &Number) -> bool {
 }
 
 fn scalar(text: String, span: Span, start: Option<usize>) -> Node {
-    Node { span, value: Value::Scalar(Scalar { text, plain: true, start }) }
+    Node { span, value: Value::Scalar(Scalar::plain(text, start)) }
 }

@@ -9,19 +9,24 @@
 //! product    = signed { ("*" | "/") signed }
 //! signed     = ("+" | "-") signed | power
 //! power      = atom [ "^" signed ]               right-associative; binds tighter than a sign: -a^2 = -(a^2)
-//! atom       = number [ unit ] | name | function "(" formula { "," formula } ")" | "(" formula ")"
+//! atom       = number [ unit ] | name | function "(" formula { "," formula } ")" | "(" formula ")" | repeated
+//! repeated   = "sum" "(" index "," whole ".." whole "," formula ")"
 //! name       = letter { letter | digit | "_" } { "." name }
 //! ```
+//!
+//! In a repeated formula, and where the caller knows indices, names may have whole numbers in braces: `leg_{i - 1}.force`.
 //!
 //! `pi` is the number; every other name, `t` included, is for the caller to resolve, and so are units.
 
 mod composed;
 mod conditions;
+pub mod indices;
 mod parser;
+mod repeated;
 mod vocabulary;
 
 pub use composed::Composed;
-pub use vocabulary::{Quantity, ReadUnit, Vocabulary};
+pub use vocabulary::{Names, Quantity, ReadUnit, Vocabulary};
 
 use std::ops::Range;
 

@@ -20,7 +20,8 @@ const WORDS: [&str; 3] = ["and", "or", "not"];
 /// The first syntax error.
 pub(super) fn terms(text: &str, vocabulary: &Vocabulary) -> Result<Vec<(Term, Range<usize>)>, SyntaxError> {
     let truths = FxHashSet::default();
-    let mut parser = Parser { text, vocabulary, position: 0, depth: 0, terms: Vec::new(), truths };
+    let indices = Vec::new();
+    let mut parser = Parser { text, vocabulary, position: 0, depth: 0, terms: Vec::new(), truths, indices };
     parser.condition()?;
     parser.skip_space();
     if parser.position < text.len() {
@@ -31,12 +32,14 @@ pub(super) fn terms(text: &str, vocabulary: &Vocabulary) -> Result<Vec<(Term, Ra
 
 pub(super) struct Parser<'t> {
     pub(super) text: &'t str,
-    vocabulary: &'t Vocabulary<'t>,
+    pub(super) vocabulary: &'t Vocabulary<'t>,
     pub(super) position: usize,
     depth: usize,
     pub(super) terms: Vec<(Term, Range<usize>)>,
     /// Terms that are 1 or 0.
     pub(super) truths: FxHashSet<usize>,
+    /// Of the sums around the place, the innermost last.
+    pub(super) indices: Vec<(String, i64)>,
 }
 
 impl Parser<'_> {
@@ -45,12 +48,12 @@ impl Parser<'_> {
     }
 
     /// The next character that is not a space.
-    fn peek(&mut self) -> Option<char> {
+    pub(super) fn peek(&mut self) -> Option<char> {
         self.skip_space();
         self.text[self.position..].chars().next()
     }
 
-    fn take(&mut self, wanted: char) -> bool {
+    pub(super) fn take(&mut self, wanted: char) -> bool {
         let found = self.peek() == Some(wanted);
         if found {
             self.position += wanted.len_utf8();
@@ -67,12 +70,12 @@ impl Parser<'_> {
         self.terms[term].1.start
     }
 
-    fn binary(&mut self, function: Binary, left: usize, right: usize) -> usize {
+    pub(super) fn binary(&mut self, function: Binary, left: usize, right: usize) -> usize {
         let span = self.start_of(left)..self.position;
         self.push(Term::Binary(function, left, right), span)
     }
 
-    fn unexpected(&mut self, expected: &str) -> SyntaxError {
+    pub(super) fn unexpected(&mut self, expected: &str) -> SyntaxError {
         match self.peek() {
             Some(found) => SyntaxError {
                 message: format!("unexpected `{found}` in formula"),
@@ -172,12 +175,12 @@ impl Parser<'_> {
                 Ok(inner)
             }),
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
-            Some(c) if c.is_alphabetic() || c == '_' => self.name_or_call(),
+            Some(c) if c.is_alphabetic() || c == '_' || c == '{' && self.has_indices() => self.name_or_call(),
             _ => Err(self.unexpected("a number, a name or `(`")),
         }
     }
 
-    fn close(&mut self) -> Result<(), SyntaxError> {
+    pub(super) fn close(&mut self) -> Result<(), SyntaxError> {
         if self.take(')') { Ok(()) } else { Err(self.unexpected("`)`")) }
     }
 
@@ -230,7 +233,9 @@ impl Parser<'_> {
 
     fn name_or_call(&mut self) -> Result<usize, SyntaxError> {
         let start = self.position;
-        let rest = &self.text[start..];
+        let text = self.text;
+        let rest = &text[start..];
+        let braces = self.has_indices();
         let mut length = 0;
         loop {
             let part = &rest[length..];
@@ -239,15 +244,22 @@ impl Parser<'_> {
             // A dot belongs to the name only if a name goes on behind it.
             let mut after = rest[length..].chars();
             match (after.next(), after.next()) {
-                (Some('.'), Some(c)) if c.is_alphabetic() || c == '_' => length += 1,
+                (Some('.'), Some(c)) if c.is_alphabetic() || c == '_' || c == '{' && braces => length += 1,
+                (Some('{'), _) if braces => length += rest[length..].find('}').map_or(1, |close| close + 1),
                 _ => break,
             }
         }
         self.position = start + length;
         let name = &rest[..length];
         let span = start..self.position;
+        if name.contains('{') {
+            return self.filled(name, span);
+        }
         if self.peek() == Some('(') {
             return self.call(name, span);
+        }
+        if let Some(value) = self.index_of(name, &span)? {
+            return Ok(self.push(Term::Number(value), span));
         }
         if name == "pi" {
             return Ok(self.push(Term::Number(std::f64::consts::PI), span));
@@ -267,7 +279,7 @@ impl Parser<'_> {
                 help: Some(format!("give it its argument: `{name}(…)`")),
             });
         }
-        Ok(self.push(Term::Name(name.to_owned()), span))
+        Ok(self.name(name, span))
     }
 
     fn call(&mut self, name: &str, span: Range<usize>) -> Result<usize, SyntaxError> {
@@ -276,9 +288,16 @@ impl Parser<'_> {
             Some((_, spline)) => Some((Function::Unary(Unary::Spline(*spline, 0)), "x")),
             None => FUNCTIONS.iter().find(|known| known.name == name).map(|known| (known.function, known.arguments)),
         };
+        if name == "sum" && called.is_none() {
+            return self.repeated(span.start);
+        }
         let Some((function, wanted)) = called else {
-            let known: Vec<&str> =
-                FUNCTIONS.iter().map(|known| known.name).chain(tables.iter().map(|(known, _)| *known)).collect();
+            let known: Vec<&str> = FUNCTIONS
+                .iter()
+                .map(|known| known.name)
+                .chain(["sum"])
+                .chain(tables.iter().map(|(known, _)| *known))
+                .collect();
             return Err(SyntaxError {
                 message: format!("unknown function `{name}`"),
                 span,

@@ -147,3 +147,33 @@ fn errors_say_where() {
 fn long_sums_do_not_nest() {
     assert_eq!(value(&vec!["1"; 100_000].join("+")), 100_000.0);
 }
+
+fn value_of(text: &str, known: &[(&str, f64)]) -> f64 {
+    let builder = Builder::new();
+    let formula = Formula::parse(text).unwrap();
+    let find = |name: &str| known.iter().find(|(known, _)| *known == name).map(|(_, value)| builder.number(*value));
+    formula.build(&builder, |name| find(name).ok_or_else(|| name.to_owned())).unwrap().as_constant().unwrap()
+}
+
+#[test]
+fn sums_are_read_once_for_each_value_of_their_index() {
+    assert_eq!(value_of("sum(i, 1..4, i^2)", &[]), 30.0);
+    assert_eq!(value_of("2*sum(i, 1..2, a_{i}.x) - 1", &[("a_1.x", 3.0), ("a_2.x", 4.0)]), 13.0);
+    assert_eq!(value_of("sum(i, 0..1, sum(j, i..i + 1, 10*i + j))", &[]), 24.0);
+    assert_eq!(value_of("sum(k, -1..-1, max(k, p_{k + 2}))", &[("p_1", 5.0)]), 5.0);
+    let formula = Formula::parse("1 + sum(i, 1..2, a_{i}.x)").unwrap();
+    assert_eq!(formula.names().collect::<Vec<_>>(), [("a_1.x", 17..24), ("a_2.x", 17..24)]);
+    for (text, message, span) in [
+        ("sum(i, 3..1, i)", "there is no number from 3 to 1", 6..11),
+        ("sum(i, 1..n, i)", "`n` is not a whole number", 10..11),
+        ("sum(1..3, i)", "`sum` takes an index, its range and a formula", 4..5),
+        ("sum(i, 1..3)", "the formula ends too early", 12..12),
+        ("sum(i, 1..99999, i)", "a sum has at most 10000 terms", 6..15),
+        ("sum(i, 1..2, a_{i - 2}b{)", "this brace does not close", 23..24),
+        ("sum(i, 1..2, {i})", "`1` is no name", 13..16),
+        ("a_{i}", "unexpected `{` in formula", 2..3),
+    ] {
+        let error = Formula::parse(text).unwrap_err();
+        assert_eq!((error.message.as_str(), error.span), (message, span), "{text}");
+    }
+}

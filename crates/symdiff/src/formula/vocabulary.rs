@@ -1,6 +1,7 @@
 //! What formulas may use beside the functions of the language.
 
 use super::SyntaxError;
+use super::indices::Index;
 use crate::expr::Spline;
 
 /// Tables and units.
@@ -10,6 +11,20 @@ pub struct Vocabulary<'v> {
     pub tables: &'v [(&'v str, Spline)],
     /// Reads the unit that stands behind a number; without it, numbers have no units.
     pub unit: Option<&'v ReadUnit<'v>>,
+    /// Other meanings of names; without it, each is what it is.
+    pub names: Option<&'v dyn Names>,
+}
+
+/// What names stand for in a piece of text that is used several times.
+pub trait Names {
+    /// The value of an index: in formulas its number, in braces of names its text.
+    fn index(&self, name: &str) -> Option<Index>;
+
+    /// A whole number that braces and ranges may use, but that is a name as others are in formulas.
+    fn count(&self, name: &str) -> Option<i64>;
+
+    /// The name by which the caller knows it.
+    fn full(&self, name: &str) -> String;
 }
 
 /// From a number and the text behind it, which begins with the unit. Places of errors are in that text.

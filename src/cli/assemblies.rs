@@ -1,0 +1,49 @@
+//! Which tolerances of instances are one for all of them, for people.
+
+use super::console::count;
+use crate::results::AssemblySummary;
+
+/// A line for each assembly.
+pub(super) fn lines(assemblies: &[AssemblySummary]) -> String {
+    assemblies.iter().map(line).collect()
+}
+
+fn line(of: &AssemblySummary) -> String {
+    /// Names that are told.
+    const MOST: usize = 8;
+    let names = |names: &[String]| {
+        let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = names.len().saturating_sub(MOST);
+        if more > 0 { format!("{shown} and {more} more") } else { shown }
+    };
+    let instances = count(of.instances.len(), "instance", "instances");
+    let independent = match of.independent.as_slice() {
+        [] => "no tolerance of their own".to_owned(),
+        own => format!("{} of their own ({})", count(own.len(), "tolerance", "tolerances"), names(own)),
+    };
+    let shared = match of.shared.as_slice() {
+        [] => String::new(),
+        shared => format!(", shared {}", names(shared)),
+    };
+    format!("  {instances} of {}: {independent}{shared}\n", of.assembly)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_what_is_shared() {
+        let mut of = AssemblySummary {
+            assembly: "quarter_car".into(),
+            instances: vec!["left".into(), "right".into()],
+            independent: vec!["left.damper".into(), "right.damper".into()],
+            shared: vec!["quarter_car.speed".into()],
+        };
+        let line = "  2 instances of quarter_car: 2 tolerances of their own (left.damper, right.damper), shared quarter_car.speed\n";
+        assert_eq!(lines(std::slice::from_ref(&of)), line);
+        of.independent = (0..10).map(|k| format!("p{k}")).collect();
+        of.shared.clear();
+        assert!(lines(&[of]).ends_with("(p0, p1, p2, p3, p4, p5, p6, p7 and 2 more)\n"));
+    }
+}

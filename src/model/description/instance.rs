@@ -1,0 +1,21 @@
+//! What has parts with names of their own.
+
+/// An instance of an assembly, or an effect that acts on many.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Instance {
+    /// Its full name: `front_left`, in an assembly `car.front_left`.
+    pub name: String,
+    /// What it is.
+    pub kind: InstanceKind,
+}
+
+/// What an instance is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum InstanceKind {
+    /// Of the assembly of this name.
+    Assembly(String),
+    /// An assembly, whose parameters that all its instances share are called after it.
+    Definition,
+    /// An effect with one part for each joint or body that it acts on.
+    Effect,
+}

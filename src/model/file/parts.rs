@@ -1,0 +1,92 @@
+//! Assemblies, their instances, and repetition.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+
+use super::*;
+use crate::elements::JointKind;
+use crate::elements::effects::EffectKind;
+use crate::grammar::mapping::schema_only;
+
+grammar! {
+    /// A mechanism that a model has as often as it has instances of it. It sees its own names only.
+    Assembly is "an assembly" {
+        /// One line for people.
+        description: Option<String>,
+        /// Its parameters with the values of instances that say nothing else. Each instance has its own: what is uncertain deviates in each for itself.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+        /// Parameters that are one for all instances, as are their deviations; or `all`.
+        shared: Option<SharedFile>,
+        /// Its bodies. `ground` is where an instance is placed.
+        bodies: Option<IndexMap<String, Body>>,
+        /// What constrains its bodies.
+        joints: Option<IndexMap<String, JointKind>>,
+        /// What moves its bodies.
+        effects: Option<IndexMap<String, EffectKind>>,
+        /// Coordinates and velocities at the start.
+        initial: Option<IndexMap<String, StartFile>>,
+        /// Where assembly begins to look for coordinates.
+        guess: Option<IndexMap<String, StartFile>>,
+        /// Bodies and points by which others hold it: `hub: upright.hub`.
+        ports: Option<IndexMap<String, PortFile>>,
+        /// Instances of other assemblies within it.
+        instances: Option<IndexMap<String, InstanceFile>>,
+    }
+
+    /// A file of assemblies that models include.
+    Part is "an included file" {
+        /// One line for people.
+        description: Option<String>,
+        /// Other files, from this one's folder.
+        include: Option<IncludeFile>,
+        /// Mechanisms that models have instances of.
+        assemblies: Option<IndexMap<String, Assembly>>,
+    }
+
+    /// A copy of an assembly. Its parts are called after it: `front_left.upright`.
+    InstanceFile is "an instance" {
+        /// The assembly.
+        of: String,
+        /// Parameters that are not as the assembly says, in its units.
+        parameters: Option<IndexMap<String, ParameterFile>>,
+    }
+
+    /// A point of a body by which others hold an assembly.
+    PointPort is "a port" {
+        /// The body.
+        on: String,
+        /// In the body's frame, m; by default its origin.
+        position: Option<Components>,
+        /// Of the frame at the port against the body's; by default none.
+        rotation: Option<Rotation>,
+    }
+}
+
+schema_only! {
+    /// Names of parameters, or `all`.
+    #[schemars(untagged, inline)]
+    pub enum SharedFile {
+        All(AllName),
+        Some(Vec<String>),
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum AllName {
+        /// Every parameter.
+        All,
+    }
+
+    /// `body`, `body.point`, or a point of its own.
+    #[schemars(untagged, inline)]
+    pub enum PortFile {
+        Name(String),
+        Point(Box<PointPort>),
+    }
+
+    /// One file, or several.
+    #[schemars(untagged, inline)]
+    pub enum IncludeFile {
+        One(String),
+        Several(Vec<String>),
+    }
+}

@@ -1,0 +1,131 @@
+//! `include:`, files of assemblies within the model's folder.
+
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use super::Writer;
+use crate::model::file;
+use crate::model::text_file::{MAX_BYTES, read_text};
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::source::Span;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{self, Entry, Node, Value};
+
+/// Most files of a model.
+const MOST: usize = 1000;
+
+/// Files that are read, with what they are called from the model's folder.
+#[derive(Default)]
+struct Included {
+    /// Those that include the next.
+    open: Vec<PathBuf>,
+    /// All.
+    read: Vec<PathBuf>,
+}
+
+/// Reads the files that a model includes, and notes their assemblies.
+pub(super) fn read(writer: &mut Writer, entries: &[Entry]) {
+    let Some(entry) = entries.iter().find(|entry| entry.key == "include") else { return };
+    names(writer, &entry.value, Path::new(""), &mut Included::default());
+}
+
+/// The files of an `include`, whose names are from a folder within the model's.
+fn names(writer: &mut Writer, node: &Node, folder: &Path, included: &mut Included) {
+    let items = match &node.value {
+        Value::Sequence(items) => items.as_slice(),
+        _ => std::slice::from_ref(node),
+    };
+    for item in items {
+        let Some(scalar) = writer.reader.scalar(item, "the name of a file, or a list of them,") else { continue };
+        let (name, span) = (scalar.text.clone(), item.span.clone());
+        match within(folder, &name) {
+            Some(path) => file(writer, path, &span, included),
+            None => {
+                let message = format!("`{}` is not within the model's folder", clip(&name));
+                let help = "an included file lies beside the model or below: `parts/wishbone.yaml`".to_owned();
+                writer.reader.error(span, message, help);
+            }
+        }
+    }
+}
+
+/// The path from the model's folder, if it does not leave that.
+fn within(folder: &Path, name: &str) -> Option<PathBuf> {
+    let mut path = folder.to_path_buf();
+    for part in Path::new(name).components() {
+        match part {
+            Component::Normal(part) => path.push(part),
+            Component::CurDir => {}
+            Component::ParentDir => {
+                path.pop().then_some(())?;
+            }
+            Component::RootDir | Component::Prefix(_) => return None,
+        }
+    }
+    Some(path)
+}
+
+fn file(writer: &mut Writer, path: PathBuf, span: &Span, included: &mut Included) {
+    if let Some(first) = included.open.iter().position(|open| *open == path) {
+        let circle = included.open[first..].iter().chain([&path]).map(|path| clip(&path.display().to_string()));
+        let message = format!("files include each other in a circle: {}", circle.collect::<Vec<_>>().join(" → "));
+        writer.reader.error(span.clone(), message, None);
+        return;
+    }
+    if included.read.contains(&path) {
+        return;
+    }
+    if included.read.len() == MOST {
+        writer.reader.error(span.clone(), format!("the model includes more than {MOST} files"), None);
+        return;
+    }
+    included.read.push(path.clone());
+    let full = writer.reader.folder.join(&path);
+    let outside = || {
+        // A link may lead out of the folder.
+        let folder = writer.reader.folder.as_os_str();
+        let folder = if folder.is_empty() { Path::new(".") } else { Path::new(folder) };
+        Some(!full.canonicalize().ok()?.starts_with(folder.canonicalize().ok()?))
+    };
+    if outside() == Some(true) {
+        let message = format!("`{}` leads out of the model's folder", clip(&path.display().to_string()));
+        writer.reader.error(span.clone(), message, "an included file lies beside the model or below".to_owned());
+        return;
+    }
+    let text = match read_text(&full, MAX_BYTES) {
+        Ok(text) => text,
+        Err(error) => {
+            let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
+            writer.reader.diagnostics.push(Diagnostic::error(span.clone(), error.message).help(help));
+            return;
+        }
+    };
+    let start = writer.reader.diagnostics.sources.add(full.display().to_string(), text.clone());
+    let parsed = writer.reader.diagnostics.read_more(start, &text, |diagnostics| yaml::parse(&text, diagnostics));
+    let Some(root) = parsed.map(|root| root.moved(start)) else { return };
+    let Some(fields) = writer.reader.fields::<file::Part>(&root, root.span.start..root.span.start) else { return };
+    included.open.push(path.clone());
+    if let Some(node) = fields.get("include") {
+        names(writer, node, path.parent().unwrap_or(Path::new("")), included);
+    }
+    included.open.pop();
+    writer.define(&root);
+}
+
+impl Writer<'_, '_> {
+    /// Notes the assemblies of a file.
+    pub(super) fn define(&mut self, root: &Node) {
+        let Some(node) = root.get("assemblies") else { return };
+        for entry in self.reader.entries(node, "assemblies") {
+            if !self.reader.name(entry, "an assembly") {
+                continue;
+            }
+            match self.definitions.get(&entry.key).map(|known| known.key_span.clone()) {
+                Some(first) => self.twice(&entry.key, &entry.key_span, &first),
+                None => {
+                    self.definitions.insert(entry.key.clone(), Arc::new(entry.clone()));
+                }
+            }
+        }
+    }
+}

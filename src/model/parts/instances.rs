@@ -1,0 +1,191 @@
+//! `instances:`, copies of assemblies with names, parameters and places of their own.
+
+use std::sync::Arc;
+
+use super::Writer;
+use super::parameters::{is_shared, scope_of_shared};
+use crate::model::description::{Instance, InstanceKind};
+use crate::model::file;
+use crate::syntax::scope::Scope;
+use crate::syntax::source::{Span, Within};
+use crate::syntax::suggest::{self, clip};
+use crate::syntax::yaml::{Entry, Node, Value};
+
+/// How deep instances may stand in each other.
+const MAX_DEPTH: usize = 20;
+
+/// Sections whose entries an instance has under its own name.
+const NAMED: [&str; 5] = ["bodies", "joints", "effects", "initial", "guess"];
+
+impl Writer<'_, '_> {
+    /// Writes out the instances of the model, and what all instances of an assembly share.
+    pub(super) fn instances_of_model(&mut self, root: &Node) {
+        let mut names: Vec<String> = self.definitions.keys().cloned().collect();
+        names.sort_unstable();
+        for name in names {
+            self.share(&name);
+        }
+        let Some(node) = root.get("instances") else { return };
+        let entries = self.reader.entries(node, "instances");
+        let instances = self.repeated(entries, 0, None);
+        for instance in &instances {
+            self.instance("", instance, &mut Vec::new());
+        }
+        self.check_names(&instances);
+    }
+
+    /// The parameters that are one for all instances.
+    fn share(&mut self, name: &str) {
+        let Some(definition) = self.definitions.get(name).cloned() else { return };
+        let Some(fields) = self.reader.fields::<file::Assembly>(&definition.value, definition.key_span.clone()) else {
+            self.definitions.remove(name);
+            return;
+        };
+        let Some(shared) = fields.get("shared") else { return };
+        let entries = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters"));
+        match &shared.value {
+            Value::Sequence(items) => {
+                for item in items {
+                    let Some(scalar) = self.reader.scalar(item, "the name of a parameter") else { continue };
+                    if !entries.iter().any(|entry| entry.key == scalar.text) {
+                        let help =
+                            suggest::help(&scalar.text, "parameters of it", entries.iter().map(|e| e.key.as_str()));
+                        let message = format!("assembly `{name}` has no parameter `{}`", clip(&scalar.text));
+                        self.reader.error(item.span.clone(), message, help);
+                    }
+                }
+            }
+            _ if shared.scalar().is_some_and(|scalar| scalar.text == "all") => {}
+            _ => {
+                let message = format!("`all` or a list of parameters belongs here, but here is {}", shared.kind());
+                self.reader.error(shared.span.clone(), message, "write `[name, name]`".to_owned());
+            }
+        }
+        let scope = Arc::new(scope_of_shared(name));
+        let chosen: Vec<Entry> = entries.iter().filter(|entry| is_shared(Some(shared), &entry.key)).cloned().collect();
+        if !chosen.is_empty() {
+            self.parts.instances.push(Instance { name: name.to_owned(), kind: InstanceKind::Definition });
+        }
+        for entry in self.repeated(&chosen, 0, Some(&scope)) {
+            self.add("parameters", Entry { key: format!("{name}.{}", entry.key), ..entry });
+        }
+    }
+
+    /// Writes out an instance, whose entry is that of a copy already; `around` are the assemblies that it is in.
+    fn instance(&mut self, outer: &str, entry: &Entry, around: &mut Vec<String>) {
+        if self.is_full || !self.reader.name(entry, "an instance") {
+            return;
+        }
+        let Some(fields) = self.reader.fields::<file::InstanceFile>(&entry.value, entry.key_span.clone()) else {
+            return;
+        };
+        let Some(node) = self.reader.required(&fields, "of") else { return };
+        let Some(scalar) = self.reader.scalar(node, "the name of an assembly") else { return };
+        let of = match &scalar.scope {
+            None => scalar.text.clone(),
+            Some(scope) => {
+                let filled = symdiff::formula::indices::fill(&scalar.text, &|name| scope.whole(name));
+                filled.unwrap_or_else(|_| scalar.text.clone())
+            }
+        };
+        let Some(definition) = self.definitions.get(&of).cloned() else {
+            let mut known: Vec<&str> = self.definitions.keys().map(String::as_str).collect();
+            known.sort_unstable();
+            let help = suggest::help(&of, "assemblies", known);
+            self.reader.error(node.span.clone(), format!("unknown assembly `{}`", clip(&of)), help);
+            return;
+        };
+        if around.contains(&of) || around.len() == MAX_DEPTH {
+            let names: Vec<String> = around.iter().chain([&of]).map(|name| clip(name)).collect();
+            let message = format!("an assembly is in itself: {}", names.join(" → "));
+            self.reader.error(node.span.clone(), message, None);
+            return;
+        }
+        let name = format!("{outer}{}", entry.key);
+        let given = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters")).to_vec();
+        around.push(of.clone());
+        self.written_out(&name, &of, &definition, entry, given, around);
+        around.pop();
+    }
+
+    fn written_out(
+        &mut self,
+        name: &str,
+        of: &str,
+        definition: &Entry,
+        entry: &Entry,
+        given: Vec<Entry>,
+        around: &mut Vec<String>,
+    ) {
+        let prefix = format!("{name}.");
+        let within = Within { instance: name.to_owned(), of: of.to_owned(), span: entry.key_span.clone() };
+        let shift = self.reader.diagnostics.sources.copy(&definition.key_span, within);
+        let entries_of = |section: &str| match definition.value.get(section).map(|node| &node.value) {
+            Some(Value::Mapping(entries)) => entries.clone(),
+            _ => Vec::new(),
+        };
+        let wrong = |section: &&str| {
+            let node = definition.value.get(section);
+            node.is_some_and(|node| !matches!(node.value, Value::Mapping(_)) && !node.is_null())
+        };
+        let sections = NAMED.into_iter().chain(["parameters", "ports", "instances"]);
+        for node in sections.filter(wrong).filter_map(|section| definition.value.get(section)) {
+            self.reader.entries(node, "the parts of an assembly");
+        }
+        self.parts.instances.push(Instance { name: name.to_owned(), kind: InstanceKind::Assembly(of.to_owned()) });
+
+        let plain = Arc::new(Scope::of_instance(name, None, Arc::default()));
+        let own = self.repeated(&entries_of("parameters"), shift, Some(&plain));
+        let shared = definition.value.get("shared");
+        let parameters = self.parameters(of, &prefix, own, &given, |name| is_shared(shared, name));
+        let counts = Arc::new(self.counts_of_instance(&prefix, &parameters));
+        for parameter in parameters {
+            self.add("parameters", parameter);
+        }
+        let scope = Arc::new(Scope::of_instance(name, None, counts));
+        for section in NAMED {
+            for entry in self.repeated(&entries_of(section), shift, Some(&scope)) {
+                let key = scope.full(&entry.key);
+                self.add(section, Entry { key, ..entry });
+            }
+        }
+        for instance in self.repeated(&entries_of("instances"), shift, Some(&scope)) {
+            self.instance(&prefix, &instance, around);
+        }
+        let ports = self.repeated(&entries_of("ports"), shift, Some(&scope));
+        self.ports(&prefix, ports);
+    }
+
+    /// Reports instances that are called like something else, and names that are there twice.
+    fn check_names(&mut self, instances: &[Entry]) {
+        for instance in instances {
+            let sections = ["bodies", "joints", "effects", "parameters"];
+            let known = sections.iter().flat_map(|section| self.entries(section));
+            let other = known.into_iter().find(|entry| entry.key == instance.key).map(|entry| entry.key_span.clone());
+            let other = other.or_else(|| self.definitions.get(&instance.key).map(|entry| entry.key_span.clone()));
+            if let Some(other) = other {
+                self.twice(&instance.key, &instance.key_span, &other);
+            }
+        }
+        for section in ["parameters", "bodies", "joints", "effects", "initial", "guess"] {
+            for (key, span, first) in duplicates(self.entries(section)) {
+                self.twice(&key, &span, &first);
+            }
+        }
+    }
+}
+
+/// Names that are there again: name, place, first place.
+fn duplicates(entries: &[Entry]) -> Vec<(String, Span, Span)> {
+    let mut first = std::collections::HashMap::new();
+    let mut found = Vec::new();
+    for entry in entries {
+        match first.get(entry.key.as_str()) {
+            Some(known) => found.push((entry.key.clone(), entry.key_span.clone(), Span::clone(known))),
+            None => {
+                first.insert(entry.key.as_str(), entry.key_span.clone());
+            }
+        }
+    }
+    found
+}

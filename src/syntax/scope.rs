@@ -1,0 +1,84 @@
+//! What names stand for in a copy of a piece of a file: in an instance of an assembly, or in one of several repetitions.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use symdiff::formula::indices::{self, Index};
+
+/// The instance and the indices of a copy.
+///
+/// In an instance every name is one of the instance, but for the ground of a part that is not placed; what means something by itself
+/// (`t`, `energy`) the reader knows. A repetition outside of instances has no prefix.
+#[derive(Clone, Debug, Default)]
+pub struct Scope {
+    /// The instance's name with a dot behind it, `front_left.`; empty outside of instances.
+    prefix: String,
+    /// What `ground` is.
+    ground: Option<String>,
+    /// Of the repetitions around it, the innermost last.
+    indices: Vec<(String, Index)>,
+    /// Parameters that are whole numbers, by their full names.
+    counts: Arc<HashMap<String, i64>>,
+}
+
+/// What does not move.
+const GROUND: &str = "ground";
+
+impl Scope {
+    /// Of the model itself.
+    pub fn of_model(counts: Arc<HashMap<String, i64>>) -> Self {
+        Self { counts, ..Self::default() }
+    }
+
+    /// Of an instance by its full name.
+    pub fn of_instance(name: &str, ground: Option<String>, counts: Arc<HashMap<String, i64>>) -> Self {
+        Self { prefix: format!("{name}."), ground, indices: Vec::new(), counts }
+    }
+
+    /// The same in a repetition.
+    #[must_use]
+    pub fn with(&self, index: &str, value: Index) -> Self {
+        let mut scope = self.clone();
+        scope.indices.push((index.to_owned(), value));
+        scope
+    }
+
+    /// The instance's name with a dot behind it.
+    pub fn prefix(&self) -> &str {
+        &self.prefix
+    }
+
+    /// The value of an index.
+    pub fn index(&self, name: &str) -> Option<Index> {
+        self.indices.iter().rev().find(|(known, _)| known == name).map(|(_, value)| value.clone())
+    }
+
+    /// A parameter that is a whole number.
+    pub fn count(&self, name: &str) -> Option<i64> {
+        if self.prefix.is_empty() {
+            return self.counts.get(name).copied();
+        }
+        self.counts.get(&format!("{}{name}", self.prefix)).copied()
+    }
+
+    /// What braces and ranges may use.
+    pub fn whole(&self, name: &str) -> Option<Index> {
+        self.index(name).or_else(|| self.count(name).map(Index::Number))
+    }
+
+    /// A name of the copy as all others know it.
+    pub fn full(&self, name: &str) -> String {
+        let owner = name.split('.').next().unwrap_or(name);
+        match &self.ground {
+            Some(ground) if owner == GROUND => format!("{ground}{}", &name[GROUND.len()..]),
+            None if owner == GROUND => name.to_owned(),
+            _ => format!("{}{name}", self.prefix),
+        }
+    }
+
+    /// A name that may have braces, as all others know it; what is wrong in the braces was reported when the copy was made.
+    pub fn reference(&self, text: &str) -> String {
+        let filled = indices::fill(text, &|name| self.whole(name));
+        self.full(&filled.unwrap_or_else(|_| text.to_owned()))
+    }
+}

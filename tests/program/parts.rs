@@ -1,0 +1,305 @@
+//! Assemblies, instances and repetition: they are what is written out by hand, to the byte.
+
+use std::fs;
+use std::path::Path;
+
+use mbint::inner::model::{self, Description, Override, ParameterValue, Reading};
+use mbint::inner::results::{Bounds, Summary};
+use mbint::inner::study::{self, Options};
+
+use super::place::Place;
+
+fn read(text: &str, set: &[&str]) -> Reading {
+    let overrides: Vec<Override> = set.iter().map(|text| Override::parse(text).unwrap()).collect();
+    model::read_str("test.yaml", text, &overrides)
+}
+
+#[track_caller]
+fn good(text: &str, set: &[&str]) -> Description {
+    let reading = read(text, set);
+    reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+}
+
+fn run(description: &Description) -> (Bounds, Summary) {
+    study::run(description, Options::default()).unwrap()
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+const LINKS: &str = "
+model: links
+parameters: { N: 3, length: 0.2 m ± 1%, mass: 0.3 kg }
+bodies:
+  link_{i}: { repeat: { i: 1..N }, mass: mass, inertia: mass*length^2/12, points: { start: [-length/2, 0], end: [length/2, 0] } }
+joints:
+  pin_1: { revolute: [ground, link_1.start] }
+  pin_{i}: { repeat: { i: 2..N }, revolute: [\"link_{i-1}.end\", \"link_{i}.start\"] }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  rub: { joint_friction: { on: all revolute, viscous: 2e-3 } }
+initial:
+  link_{i}.angle: { repeat: { i: 1..N }, value: -20 deg*i }
+  link_{i}.angular_velocity: { repeat: { i: 1..N }, value: 0 }
+outputs: { x: \"link_{N}.end.x\", lost: \"sum(i, 1..N, rub.pin_{i}.torque)\", height: \"sum(i, 1..N, link_{i}.y)/N\" }
+simulation: { duration: 0.2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 5 } }
+";
+
+const WRITTEN_OUT: &str = "
+model: links
+parameters: { N: 3, length: 0.2 m ± 1%, mass: 0.3 kg }
+bodies:
+  link_1: { mass: mass, inertia: mass*length^2/12, points: { start: [-length/2, 0], end: [length/2, 0] } }
+  link_2: { mass: mass, inertia: mass*length^2/12, points: { start: [-length/2, 0], end: [length/2, 0] } }
+  link_3: { mass: mass, inertia: mass*length^2/12, points: { start: [-length/2, 0], end: [length/2, 0] } }
+joints:
+  pin_1: { revolute: [ground, link_1.start] }
+  pin_2: { revolute: [link_1.end, link_2.start] }
+  pin_3: { revolute: [link_2.end, link_3.start] }
+effects:
+  weight: { gravity: { acceleration: [0, -9.81] } }
+  rub_1: { joint_friction: { on: pin_1, viscous: 2e-3 } }
+  rub_2: { joint_friction: { on: pin_2, viscous: 2e-3 } }
+  rub_3: { joint_friction: { on: pin_3, viscous: 2e-3 } }
+initial:
+  { link_1.angle: -20 deg, link_2.angle: -20 deg*2, link_3.angle: -20 deg*3, link_1.angular_velocity: 0, link_2.angular_velocity: 0, link_3.angular_velocity: 0 }
+outputs: { x: link_3.end.x, lost: rub_1.torque + rub_2.torque + rub_3.torque, height: (link_1.y + link_2.y + link_3.y)/N }
+simulation: { duration: 0.2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 5 } }
+";
+
+#[test]
+fn what_is_repeated_gives_the_bytes_of_what_is_written_out() {
+    let place = Place::new();
+    let bounds = |text: &str| {
+        fs::write(place.path().join("links.yaml"), text).unwrap();
+        place.run("run links.yaml --no-report", 0);
+        let instructions = place.run("explain links.yaml --format json", 0).0;
+        let instructions: serde_json::Value = serde_json::from_str(&instructions).unwrap();
+        (fs::read(place.path().join("results/links/bounds.csv")).unwrap(), instructions["instructions"].clone())
+    };
+    assert_eq!(bounds(LINKS), bounds(WRITTEN_OUT));
+}
+
+#[test]
+fn the_command_line_says_how_often() {
+    let counts = |set: &[&str]| good(LINKS, set).bodies.len() - 1;
+    assert_eq!((counts(&[]), counts(&["N=7"]), counts(&["N=2"])), (3, 7, 2));
+    let bad = read(LINKS, &["N=2.5"]).diagnostics.records();
+    assert_eq!(bad[0].message, "`N` is not a whole number");
+    assert_eq!((bad[0].line, bad[0].column), (Some(5), Some(31)));
+}
+
+/// A mass on a spring and a damper, in an assembly.
+const PAIR: &str = "
+assemblies:
+  hanger:
+    shared: [gravity]
+    parameters: { mass: 2 kg ± 5%, rate: { value: 300, unit: N/m, tolerance: 3% }, gravity: 9.81 m/s^2 ± 1%, twice: 2*rate }
+    bodies: { bob: { mass: mass, coordinates: [y], points: { eye: [0, 0.1] } } }
+    effects:
+      spring: { spring_damper: { between: [ground, bob], along: y, stiffness: twice, damping: 1, force: \"mass*gravity + 0.1*spring.rate*rate/300\" } }
+    initial: { bob.y: 10 mm, bob.vy: 0 }
+    ports: { hook: bob.eye, side: { on: bob, position: [0.2, mass*0.1 m/kg] } }
+instances:
+  one: { of: hanger }
+  two: { of: hanger, parameters: { rate: 400, mass: { tolerance: 1% } } }
+  three: { of: hanger, parameters: { mass: load } }
+parameters: { load: 3 kg ± 2% }
+outputs: { y: one.bob.y, h: one.hook.y, s: two.side.y, f: three.spring.force, k: two.twice }
+simulation: { duration: 0.2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
+";
+
+/// Nominal, lower and upper value.
+fn interval(description: &Description, name: &str) -> Option<[f64; 3]> {
+    let parameter = description.parameters.iter().find(|parameter| parameter.name == name).unwrap();
+    match parameter.value {
+        ParameterValue::Interval { nominal, lower, upper } => Some([nominal, lower, upper]),
+        ParameterValue::Formula(_) => None,
+    }
+}
+
+#[test]
+fn every_instance_has_tolerances_of_its_own_but_for_those_that_are_shared() {
+    let model = good(PAIR, &[]);
+    let names: Vec<&str> = model.uncertain().map(|(_, parameter)| parameter.name.as_str()).collect();
+    let expected = ["load", "hanger.gravity", "one.mass", "one.rate", "two.mass", "two.rate", "three.rate"];
+    let mut sorted = names.clone();
+    sorted.sort_unstable();
+    let mut all = expected.to_vec();
+    all.retain(|name| *name != "two.rate");
+    all.sort_unstable();
+    // A value stands for itself: the assembly's deviation goes with the assembly's value.
+    assert_eq!(sorted, all);
+    assert_eq!(interval(&model, "two.mass").unwrap(), [2.0, 1.98, 2.02]);
+    let (_, summary) = run(&model);
+    let [of] = summary.assemblies.as_slice() else { panic!("{:?}", summary.assemblies) };
+    assert_eq!((of.assembly.as_str(), of.instances.len()), ("hanger", 3));
+    assert_eq!(of.independent, ["one.mass", "one.rate", "two.mass", "three.rate"]);
+    assert_eq!(of.shared, ["hanger.gravity", "load"]);
+}
+
+#[test]
+fn settings_name_an_instance_or_all_of_them() {
+    let rates = |set: &[&str]| {
+        let model = good(PAIR, set);
+        ["one.rate", "two.rate", "three.rate"].map(|name| interval(&model, name).map(|[nominal, ..]| nominal))
+    };
+    assert_eq!(rates(&[]), [Some(300.0), None, Some(300.0)]);
+    assert_eq!(rates(&["one.rate=310±1%"]), [Some(310.0), None, Some(300.0)]);
+    assert_eq!(rates(&["hanger.rate=310±1%"]), [Some(310.0), None, Some(310.0)]);
+    assert_eq!(interval(&good(PAIR, &["hanger.gravity=9.8±0.1"]), "hanger.gravity").unwrap()[0], 9.8);
+    assert_eq!(interval(&good(PAIR, &["one.gravity=9.7±0.1"]), "one.gravity").unwrap()[0], 9.7);
+    let wrong = read(PAIR, &["one.rat=3"]).diagnostics.records();
+    assert_eq!(wrong[0].message, "unknown parameter `one.rat`");
+    let scenes = format!("{PAIR}scenes: {{ stiff: {{ parameters: {{ one.rate: 500 ± 1%, hanger.gravity: 9.7 }} }} }}");
+    let reading = read(&scenes, &[]);
+    assert_eq!(reading.diagnostics.records(), []);
+    let scene = &reading.scenes[0].description;
+    assert_eq!(interval(scene, "one.rate").unwrap()[0], 500.0);
+    assert_eq!(interval(scene, "hanger.gravity"), None);
+}
+
+#[test]
+fn an_instance_is_what_is_written_out() {
+    let (bounds, _) = run(&good(PAIR, &[]));
+    let alone = "
+parameters: { m: 2 kg ± 5%, k: 300 N/m ± 3%, g: 9.81 m/s^2 ± 1% }
+bodies: { bob: { mass: m, coordinates: [y], points: { eye: [0, 0.1] } } }
+effects:
+  s: { spring_damper: { between: [ground, bob], along: y, stiffness: 2*k, damping: 1, force: \"m*g + 0.1*s.rate*k/300\" } }
+initial: { bob.y: 10 mm, bob.vy: 0 }
+outputs: { y: bob.y, h: bob.eye.y }
+simulation: { duration: 0.2, step: 1e-3, output_step: 0.02 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 3 } }
+";
+    let (expected, _) = run(&good(alone, &[]));
+    for (found, expected) in bounds.outputs.iter().zip(&expected.outputs) {
+        assert_eq!(found.nominal, expected.nominal);
+        for (found, expected) in found.bands.iter().zip(&expected.bands) {
+            // The parameters have another order, and so have sums over them.
+            let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let apart = apart(&found.lower, &expected.lower).max(apart(&found.upper, &expected.upper));
+            assert!(apart < 1e-14, "{:?}: {apart:e}", found.method);
+        }
+    }
+}
+
+#[test]
+fn each_of_four_quarter_cars_is_one() {
+    let four = model::load(&root().join("models/quarter_cars.yaml"), &[]).unwrap();
+    let text = fs::read_to_string(root().join("models/quarter_car.yaml")).unwrap();
+    let text = format!(
+        "{}\nbounds: {{ chebyshev: {{ order: 3 }}, scan: {{ points: 3 }} }}\n",
+        text.split("bounds:").next().unwrap()
+    );
+    let one = text
+        .replace("duration: 1.5", "duration: 1.2")
+        .replace("speed:   { value: 36, unit: km/h }", "speed:   { value: 36, unit: km/h, tolerance: 5% }");
+    let set: Vec<Override> = ["damper=1 kN*s/m±30%"].map(|set| Override::parse(set).unwrap()).into();
+    let (four, _) = run(&four);
+    for (output, set) in [("shake_front_left", &[][..]), ("shake_front_right", &set)] {
+        let (one, _) = run(&model::load_str("test", &one, set).unwrap());
+        let found = four.outputs.iter().find(|found| found.name == output).unwrap();
+        let expected = one.outputs.iter().find(|found| found.name == "shake").unwrap();
+        assert_eq!(found.nominal, expected.nominal, "{output}");
+        for (found, expected) in found.bands.iter().zip(&expected.bands) {
+            let far = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let apart = far(&found.lower, &expected.lower).max(far(&found.upper, &expected.upper));
+            // The parameters have another order, and so have sums over them.
+            assert!(apart < 1e-9, "{output}: {apart:e}");
+        }
+    }
+}
+
+#[test]
+fn an_error_names_file_instance_and_definition() {
+    let path = root().join("tests/bad_models/parts-inside.yaml");
+    let report = model::read(&path, &[]).diagnostics;
+    let records = report.records();
+    let first = records.iter().find(|record| record.message == "instance `right` has no `mas`").unwrap();
+    assert!(first.file.ends_with("parts/arm.yaml"), "{}", first.file);
+    assert_eq!((first.line, first.column, first.instance.as_deref()), (Some(5), Some(21), Some("right")));
+    let text = report.render(false);
+    assert!(text.contains("parts/arm.yaml:5:21"), "{text}");
+    assert!(text.contains("parts-inside.yaml:26:3"), "{text}");
+    assert!(text.contains("in `right`, an instance of `arm`"), "{text}");
+}
+
+#[test]
+fn assemblies_hold_assemblies() {
+    let text = "
+assemblies:
+  pair:
+    parameters: { gap: 0.3 m }
+    instances: { \"bob_{i}\": { repeat: { i: 1..2 }, of: bob, parameters: { mass: 1 kg*i + gap*1 kg/m } } }
+    joints: { rod: { distance: { between: [bob_1.hook, bob_2.hook], length: gap } } }
+    initial: { bob_1.ball.x: 0, bob_2.ball.x: gap }
+    ports: { left: bob_1.hook }
+  bob:
+    parameters: { mass: 1 kg ± 1% }
+    bodies: { ball: { mass: mass, coordinates: [x] } }
+    ports: { hook: ball }
+instances: { a: { of: pair }, b: { of: pair, parameters: { gap: 0.4 m } } }
+joints: { tie: { distance: { between: [a.left, b.bob_2.hook], length: 2 } } }
+initial: { a.left.x: 0, b.left.x: 1.6, b.left.vx: 1 }
+effects: { push: { force: { on: a.bob_1.hook, value: [1, 0] } } }
+outputs: { x: b.bob_2.ball.x, v: a.left.vx, f: a.rod.force, m: b.bob_2.mass }
+simulation: { duration: 0.1, step: 1e-3, output_step: 0.02 }
+bounds: { scan: { points: 2 } }
+";
+    let reading =
+        read(&text.replace("initial: { a.left.x: 0, b.left.x: 1.6, b.left.vx: 1 }", "initial: { a.left.vx: 0 }"), &[]);
+    let model = reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics));
+    let names: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["ground", "a.bob_1.ball", "a.bob_2.ball", "b.bob_1.ball", "b.bob_2.ball"]);
+    let mass = |name: &str| model.parameters.iter().position(|parameter| parameter.name == name);
+    assert!(mass("b.bob_2.mass").is_some());
+}
+
+#[test]
+fn scenes_leave_out_by_patterns() {
+    let text = format!(
+        "{LINKS}scenes:\n  free: {{ without: [rub.*], outputs: {{ lost: link_1.y }} }}\n  bare: {{ without: [rub], outputs: {{ lost: link_1.y }} }}\n  first: {{ extends: bare, with: [\"*.pin_1\"] }}\n"
+    );
+    let reading = read(&text, &[]);
+    assert_eq!(reading.diagnostics.records(), [], "{}", reading.diagnostics);
+    let effects = |scene: usize| reading.scenes[scene].description.effects.len();
+    assert_eq!((effects(0), effects(1), effects(2)), (1, 1, 2));
+    let wrong = read(&text.replace("rub.*", "rab.*"), &[]).diagnostics.records();
+    assert_eq!(wrong[0].message, "there is no effect, joint or output `rab.*`");
+}
+
+/// The pages' examples are files, or stand in the pages as whole models.
+#[test]
+fn what_the_pages_show_can_be_read() {
+    let page = fs::read_to_string(root().join("docs/guides/parts.md")).unwrap();
+    let blocks: Vec<&str> = page.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(blocks.len(), 2);
+    for block in blocks {
+        let reading = read(block, &[]);
+        assert!(reading.diagnostics.is_empty(), "{}", reading.diagnostics);
+        run(&reading.description.unwrap());
+    }
+    let chapter = fs::read_to_string(root().join("docs/parts.md")).unwrap();
+    let blocks: Vec<&str> = chapter.split("```yaml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let [link, chain, links] = blocks.as_slice() else { panic!("{} blocks", blocks.len()) };
+    run(&good(link, &[]));
+    let file = |name: &str| fs::read_to_string(root().join(name)).unwrap();
+    assert!(file("models/chain.yaml").ends_with(chain));
+    assert_eq!(file("docs/examples/box_of_links.yaml"), *links);
+    let (_, summary) = run(&model::load(&root().join("docs/examples/box_of_links.yaml"), &[]).unwrap());
+    assert_eq!(summary.assemblies[0].independent.len(), 3);
+    assert_eq!(summary.parameters.len(), 3);
+}
+
+/// The models of the guide are as short as it says.
+#[test]
+fn the_platform_is_short() {
+    let text = fs::read_to_string(root().join("models/stewart.yaml")).unwrap();
+    let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    assert!(lines.count() < 35);
+}
