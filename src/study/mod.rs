@@ -54,7 +54,6 @@ use crate::store::PartStore;
 
 use subsystems::Prepared;
 
-
 pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use assemblies::of as assemblies;
 pub use cost::{CostOptions, cost};
