@@ -52,7 +52,7 @@ pub fn read(reader: &mut Reader, draft: &Draft, node: &Node, nominal: f64, kind:
 /// Half the width of a grade's tolerance zone: of ISO 286, or as it is written.
 fn tolerance(reader: &mut Reader, draft: &Draft, entry: &Entry, size: f64, kind: &mut Kind) -> Option<f64> {
     let Some(grade) = entry.key.strip_prefix("IT") else {
-        let scalar = Scalar { text: entry.key.clone(), plain: true, start: None };
+        let scalar = Scalar::plain(&entry.key, None);
         let node = Node { span: entry.key_span.clone(), value: Value::Scalar(scalar) };
         let found = interval::bare_number(reader, draft, &node, kind)?;
         if found <= 0.0 {
