@@ -36,5 +36,5 @@ pub use start::{compile_nearest_start, compile_start};
 pub use start_equations::Residual;
 pub use start_program::StartProgram;
 pub use step::compile;
-pub use switches::{Switch, SwitchProgram, compile_switches};
+pub use switches::{Switch, SwitchProgram, compile_switches, has_kink};
 pub use tapes::Tapes;

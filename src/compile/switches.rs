@@ -107,6 +107,17 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>)
     (found, jumps_with)
 }
 
+/// Whether an expression has kinks or jumps: an `abs`, `sign`, `min` or `max`, a condition.
+pub fn has_kink(graph: &Graph, expr: Expr) -> bool {
+    graph.reachable(&[expr]).into_iter().any(|part| {
+        matches!(
+            graph.node(part),
+            Node::Unary(Unary::Abs | Unary::Sign, _)
+                | Node::Binary(Binary::Min | Binary::Max | Binary::Select | Binary::SelectElse, ..)
+        )
+    })
+}
+
 fn depends(graph: &Graph, expr: Expr, on: &[Expr]) -> bool {
     let symbols = graph.symbols_of(&[expr]);
     on.iter().any(|symbol| symbols.binary_search(symbol).is_ok())

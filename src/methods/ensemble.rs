@@ -163,6 +163,9 @@ pub trait Ensemble: Sync {
     /// Width below which an output's range is rounding.
     fn rounding(&self, output: usize) -> f64;
 
+    /// Whether an output's formula has kinks.
+    fn has_kink(&self, output: usize) -> bool;
+
     /// Whether what has been found so far is enough.
     fn is_interrupted(&self) -> bool;
 

@@ -7,6 +7,10 @@ use super::kept::KeptSurrogate;
 use super::validation::Validation;
 use crate::numerics::{Range, largest, surrogate_error};
 
+/// How much further a polynomial may be from a function with a kink than it is at validation samples: it is worst at the kink, and
+/// there they need not be.
+const BETWEEN_KINKS: f64 = 3.0;
+
 /// How an output's spread in one row comes about.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
@@ -111,11 +115,17 @@ impl BandBuilder {
         self.expanded[output] |= estimate.is_expanded;
     }
 
-    /// Sets ranges of polynomials, row by row, output by output.
-    pub(super) fn set_polynomials(&mut self, rows: Rows<usize>, found: &[PolynomialEstimate], validation: &Validation) {
+    /// Sets ranges of polynomials, row by row, output by output; `kinks` says which outputs have kinks between validation samples.
+    pub(super) fn set_polynomials(
+        &mut self,
+        rows: Rows<usize>,
+        found: &[PolynomialEstimate],
+        (validation, kinks): (&Validation, &[bool]),
+    ) {
         for (row, found) in rows.zip(found.chunks_exact(self.bands.len())) {
             for (output, found) in found.iter().enumerate() {
-                let error = surrogate_error(&found.at_validation, &validation.direct.at(row, output));
+                let seen = surrogate_error(&found.at_validation, &validation.direct.at(row, output));
+                let error = if kinks.get(output) == Some(&true) { BETWEEN_KINKS * seen } else { seen };
                 self.set(row, output, found.range, largest([error, found.truncation]) + found.excess);
             }
         }

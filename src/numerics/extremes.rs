@@ -30,8 +30,12 @@ const BEYOND: f64 = 1e-4;
 /// Points of the check for those of the lattice, and at least.
 const CHECKS: usize = 4;
 const LEAST_CHECKS: usize = 8;
-/// Local extremes that are refined for each end.
+/// Local extremes that are refined at once for each end.
 const CANDIDATES: usize = 6;
+/// How often more of them are, where one that is left may reach beyond the best by this share of the range's width: a range that is full of turns
+/// has many alike.
+const MORE: usize = 10;
+const LEFT: f64 = 1e-5;
 /// Most points of a lattice by the number of parameters.
 const MOST_POINTS: [usize; 3] = [4097, 16_641, 17_576];
 
@@ -58,7 +62,14 @@ pub fn extremes(intervals: &[usize], least: &[f64], evaluate: impl Fn(&[Vec<f64>
         let search =
             |(output, line): (usize, &(&[f64], &[f64]))| Search::new((output, least[output]), &lattice, line.0);
         let mut searches: Vec<Search> = lines.iter().enumerate().map(search).collect();
-        climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+        for _ in 0..MORE {
+            climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
+            let mut refines = false;
+            searches.iter_mut().for_each(|search| refines |= search.refine_more(&lattice));
+            if !refines {
+                break;
+            }
+        }
         let mut found: Vec<Extent> = searches.iter().map(Search::extent).collect();
         let beyond = |place: usize| {
             let range = &found[place].range;
@@ -109,7 +120,7 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
         let width = extent.range.width();
         let settled = SETTLED * width;
         let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
-        Search { ends: [0, 1].map(end).into(), omitted: [f64::NEG_INFINITY; 2] }
+        Search { ends: [0, 1].map(end).into(), settled, output, omitted: [Vec::new(), Vec::new()] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();
     climb(&mut searches.iter_mut().flat_map(|search| &mut search.ends).collect::<Vec<_>>(), &evaluate);
@@ -119,8 +130,12 @@ pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64
 /// What is sought of one function.
 struct Search {
     ends: Vec<End>,
-    /// How low and how high local extremes that are not refined may be; the former negative.
-    omitted: [f64; 2],
+    /// Number of the function, and what of it does not matter.
+    output: usize,
+    settled: f64,
+    /// Local extremes that are not refined, the highest last: their places on the lattice, and how low and how high they may be; the
+    /// former negative.
+    omitted: [Vec<(usize, f64)>; 2],
 }
 
 /// Searches until all ends are found.
@@ -150,7 +165,7 @@ impl Search {
         let end = |place: usize, sign: f64| {
             End::near(output, (&lattice.point(place), &lattice.spacing(place)), sign, settled)
         };
-        let mut search = Self { ends: Vec::new(), omitted: [f64::NEG_INFINITY; 2] };
+        let mut search = Self { ends: Vec::new(), output, settled, omitted: [Vec::new(), Vec::new()] };
         for (sign, omitted) in SIGNS.into_iter().zip(&mut search.omitted) {
             if range.lower.is_nan() {
                 search.ends.push(End { best: f64::NAN, found: true, ..end(0, sign) });
@@ -163,19 +178,46 @@ impl Search {
             let is_best = |place: usize| sign * values[place] == best;
             peaks.sort_by(|a, b| is_best(b.0).cmp(&is_best(a.0)).then(b.1.total_cmp(&a.1)).then(a.0.cmp(&b.0)));
             search.ends.extend(peaks.iter().take(CANDIDATES).map(|peak| end(peak.0, sign)));
-            *omitted = peaks.iter().skip(CANDIDATES).map(|peak| peak.1).fold(*omitted, f64::max);
+            omitted.extend(peaks.into_iter().skip(CANDIDATES).rev());
         }
         search
     }
 
+    /// The best value for an end, whichever sign it has there.
+    fn best(&self, sign: f64) -> f64 {
+        let ends = self.ends.iter().filter(|end| end.sign == sign);
+        ends.fold(f64::NEG_INFINITY, |best, end| best.max(sign * end.best))
+    }
+
+    /// Takes up more local extremes where one that was left may reach beyond the best by what matters. Whether it did.
+    fn refine_more(&mut self, lattice: &Lattice) -> bool {
+        let [below, above] = SIGNS.map(|sign| self.best(sign));
+        let matters = self.settled.max(LEFT * (below + above));
+        let mut more = false;
+        for (place, best) in [below, above].into_iter().enumerate() {
+            let left = &mut self.omitted[place];
+            if left.last().is_some_and(|&(_, height)| height > best + matters) {
+                let taken = left.split_off(left.len().saturating_sub(CANDIDATES));
+                let sign = SIGNS[place];
+                let end = |(at, _): (usize, f64)| {
+                    End::near(self.output, (&lattice.point(at), &lattice.spacing(at)), sign, self.settled)
+                };
+                self.ends.extend(taken.into_iter().rev().map(end));
+                more = true;
+            }
+        }
+        more
+    }
+
     /// From the best of all ends.
     fn extent(&self) -> Extent {
-        let best = |(sign, omitted): (f64, f64)| {
+        let best = |(sign, omitted): (f64, &Vec<(usize, f64)>)| {
+            let omitted = omitted.last().map_or(f64::NEG_INFINITY, |&(_, height)| height);
             let ends = self.ends.iter().filter(|end| end.sign == sign);
             let best = ends.reduce(|a, b| if sign * b.best > sign * a.best { b } else { a })?;
             Some((best, best.gap.max(omitted - sign * best.best)))
         };
-        let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], self.omitted[end])))
+        let [Some((least, below)), Some((largest, above))] = [0, 1].map(|end| best((SIGNS[end], &self.omitted[end])))
         else {
             // There is an end of either sign.
             return Extent::unknown(0);
@@ -256,117 +298,4 @@ impl End {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn range(k: usize, intervals: usize, f: impl Fn(&[f64]) -> f64) -> Extent {
-        extremes(&vec![intervals; k], &[0.0], |points| points.iter().map(|xi| f(xi)).collect()).swap_remove(0)
-    }
-
-    #[test]
-    fn a_peak_beside_an_edge_is_found() {
-        // Between the last two points of the grid.
-        let found = range(1, 8, |xi| (xi[0] - 0.93).powi(2) + 0.1 * (xi[0] - 0.93).powi(3));
-        assert!(found.range.lower.abs() < 1e-9 && found.gap < 1e-6, "{found:?}");
-        assert!((found.range.upper - (1.93_f64.powi(2) - 0.1 * 1.93_f64.powi(3))).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_ridge_is_followed_to_its_end() {
-        // Along x ≈ y the function hardly changes; its least value is where the ridge leaves the box.
-        let f = |xi: &[f64]| 100.0 * (xi[0] - xi[1] + 0.3 * xi[0] * xi[0]).powi(2) + 0.1 * xi[1] + 0.05 * xi[2];
-        let least = |y: f64| {
-            // The best x for this y, by a dense search.
-            (0..=200_000).map(|i| f(&[-1.0 + 1e-5 * f64::from(i), y, -1.0])).fold(f64::INFINITY, f64::min)
-        };
-        let found = range(3, 6, f);
-        let truth = (0..=40).map(|i| least(-1.0 + 0.01 * f64::from(i))).fold(f64::INFINITY, f64::min);
-        assert!((found.range.lower - truth).abs() < 1e-3 * found.range.width(), "{found:?}, {truth}");
-    }
-
-    #[test]
-    fn a_function_that_is_shifted_has_its_extremes_nearby() {
-        let wave = |shift: f64| {
-            move |points: &[Vec<f64>]| points.iter().map(|xi| (9.0 * xi[0] + shift).sin() + 0.1 * xi[1]).collect()
-        };
-        let known: Vec<Extent> = extremes(&[24; 2], &[0.0], wave(0.0));
-        let shifted = extremes_near(&known, wave(0.4));
-        assert!(
-            (shifted[0].range.upper - 1.1).abs() < 1e-6 && (shifted[0].range.lower + 1.1).abs() < 1e-6,
-            "{shifted:?}"
-        );
-        let slope = |shift: f64| move |points: &[Vec<f64>]| points.iter().map(|xi| xi[0] + shift).collect();
-        let shifted = extremes_near(&extremes(&[4], &[0.0], slope(0.0)), slope(0.4));
-        assert!((shifted[0].range.upper - 1.4).abs() < 1e-12 && (shifted[0].range.lower + 0.6).abs() < 1e-12);
-    }
-
-    #[test]
-    fn nothing_uncertain_and_the_unknown() {
-        assert_eq!(range(0, 8, |_| 3.0).range, Range { lower: 3.0, upper: 3.0 });
-        assert!(range(1, 8, |xi| if xi[0] == 0.0 { f64::NAN } else { 1.0 }).range.lower.is_nan());
-    }
-
-    #[test]
-    fn the_best_of_many_waves_is_found() {
-        // Two waves that beat: only one crest of thirty is the highest.
-        let f = |x: f64| (60.0 * x).sin() + (57.0 * x + 0.4).sin() + 0.05 * x;
-        let found = range(1, 16, |xi| f(xi[0]));
-        let dense = (0..=400_000).map(|i| f(-1.0 + 5e-6 * f64::from(i)));
-        let truth = dense.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)));
-        assert!((found.range.lower - truth.0).abs() < 1e-8 && (found.range.upper - truth.1).abs() < 1e-8, "{found:?}");
-        assert!(found.gap < 1e-8);
-        let found = range(2, 8, |xi| (9.0 * xi[0]).sin() * (14.0 * xi[1] + xi[0]).cos() + 0.1 * xi[0] * xi[1]);
-        let f = |x: f64, y: f64| (9.0 * x).sin() * (14.0 * y + x).cos() + 0.1 * x * y;
-        let dense = (0..=1_000_000).map(|i| f(-1.0 + 2e-3 * f64::from(i % 1001), -1.0 + 2e-3 * f64::from(i / 1001)));
-        let truth = dense.fold(f64::NEG_INFINITY, f64::max);
-        assert!(found.range.upper >= truth && found.range.upper < truth + 1e-4, "{found:?}, {truth}");
-    }
-
-    /// Of equal crests it does not matter which one is refined.
-    #[test]
-    fn every_crest_is_climbed_to_its_top() {
-        for shift in [0.0, 0.013, 0.1, 0.37, 0.71] {
-            let f =
-                |x: f64, y: f64| (9.0 * x + 0.3 * x * x + shift).sin() * (7.0 * y + 0.5 * x * y + 2.0 * shift).cos();
-            let (found, permuted) = (range(2, 16, |xi| f(xi[0], xi[1])), range(2, 16, |xi| f(xi[1], xi[0])));
-            for found in [found, permuted] {
-                assert!(
-                    (found.range.upper - 1.0).abs() < 1e-10 && (found.range.lower + 1.0).abs() < 1e-10,
-                    "{found:?}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn rounding_is_not_looked_for() {
-        let seen = std::cell::Cell::new(0);
-        // Noise of some units of rounding; beside it a function that is not known better than to a thousandth of its size.
-        let noise = |xi: f64| (1e7 * xi).sin();
-        let evaluate = |points: &[Vec<f64>]| {
-            seen.set(seen.get() + points.len());
-            let first = points.iter().map(|xi| 3.0 + 2e-15 * noise(xi[0]));
-            first.chain(points.iter().map(|xi| xi[0] + 1e-3 * noise(xi[0]))).collect()
-        };
-        let found = extremes(&[16], &[1e-13, 3e-3], evaluate);
-        assert!(seen.get() < 200, "{} points", seen.get());
-        assert!((found[1].range.upper - 1.0).abs() < 3e-3 && found[0].range.width() < 1e-14, "{found:?}");
-    }
-
-    #[test]
-    fn size_sign_and_order_do_not_matter() {
-        let f = |x: f64, y: f64| (7.0 * x + y * y).sin() + (5.0 * y - x).cos();
-        let known = range(2, 10, |xi| f(xi[0], xi[1]));
-        let moved = range(2, 10, |xi| 1e3 + 0.1 * f(xi[0], xi[1]));
-        let mirrored = range(2, 10, |xi| -1e9 * f(xi[0], xi[1]));
-        let permuted = range(2, 10, |xi| f(xi[1], xi[0]));
-        let close = |a: f64, b: f64| (a - b).abs() < 1e-9 * known.range.width();
-        assert!(close(10.0 * (moved.range.upper - 1e3), known.range.upper), "{moved:?} {known:?}");
-        assert!(
-            close(-1e-9 * mirrored.range.lower, known.range.upper) && close(permuted.range.upper, known.range.upper)
-        );
-        assert!(
-            close(-1e-9 * mirrored.range.upper, known.range.lower) && close(permuted.range.lower, known.range.lower)
-        );
-    }
-}
+mod tests;

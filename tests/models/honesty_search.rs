@@ -262,6 +262,23 @@ fn a_kink_in_a_corner_is_covered() {
     assert_eq!(counted, 61);
 }
 
+/// A magnitude that is itself the polynomial: it is furthest off at its kink, where no validation sample is.
+#[test]
+fn kinks_of_expanded_outputs_are_covered() {
+    let parts = [(0.9, 50.0, 23.0)];
+    for order in [4, 5, 6] {
+        let settings = format!(
+            "simulation: {{ duration: 1.2, step: 5e-4, output_step: 0.01 }}\nbounds: {{ chebyshev: {{ order: {order}, expand: output }} }}\n"
+        );
+        let bounds = run(&oscillators(&parts, "{ a: \"abs(b0.x)\" }", 0.0, &settings));
+        let counted = assert_honest(&bounds, "a", Method::Chebyshev, |t| {
+            let (lower, upper) = sum(&parts, t);
+            (if lower < 0.0 && upper > 0.0 { 0.0 } else { lower.abs().min(upper.abs()) }, lower.abs().max(upper.abs()))
+        });
+        assert!(counted > 15, "{counted}");
+    }
+}
+
 /// Constant and zero outputs, with and without uncertain parameters.
 #[test]
 fn what_is_constant_is_resolved() {

@@ -365,6 +365,7 @@ fn expanded(
     mut kept: Option<&mut Vec<KeptRow>>,
 ) -> Result<(BandBuilder, Simulated), EnsembleError> {
     let mut bands = BandBuilder::new(ensemble.outputs(), ensemble.rows());
+    let kinks: Vec<bool> = (0..ensemble.outputs()).map(|output| ensemble.has_kink(output)).collect();
     let sampling = Sampling { observed: Observed::Outputs, until: Until::FirstStop, finish: false };
     let simulated = ensemble.simulate(samples, sampling, &mut |rows, values| {
         let keeps = kept.is_some();
@@ -384,7 +385,7 @@ fn expanded(
                 },
             )
             .collect();
-        bands.set_polynomials(rows.clone(), &found, validation);
+        bands.set_polynomials(rows.clone(), &found, (validation, &kinks));
         if let Some(kept) = &mut kept {
             let lines: Vec<&[f64]> = found.iter().map(|found| found.coefficients.as_slice()).collect();
             let of_rows = rows.zip(lines.chunks_exact(ensemble.outputs().max(1)));

@@ -3,7 +3,7 @@
 
 use std::convert::Infallible;
 
-use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, largest, spread};
+use crate::numerics::{Extent, ExtremeSearch, Extremes, Range, Separation, extremes, extremes_near, largest, spread};
 
 /// For so many parameters that act together ranges are found on a lattice.
 const MOST_PARAMETERS: usize = 3;
@@ -15,6 +15,9 @@ const LEAST_INTERVALS: [usize; MOST_PARAMETERS] = [16, 8, 6];
 /// polynomials.
 const COMPOSED: [usize; MOST_PARAMETERS] = [2, 2, 1];
 const POLYNOMIAL: [usize; MOST_PARAMETERS] = [4, 4, 2];
+
+/// Of so many parameters that act together the result of climbs is looked at by quadratics too.
+const MOST_POLISHED: usize = 6;
 
 /// Points for each parameter at which the result of climbs is checked.
 const CHECKS: usize = 16;
@@ -130,6 +133,13 @@ impl RangeSearch {
         outputs.iter().zip(&found).for_each(|(&output, found)| previous[output] = Some(found.clone()));
         let mut extents: Vec<Extent> = found.into_iter().map(extent).collect();
         extents.iter_mut().zip(lines()).for_each(|(extent, line)| extent.include(&self.checks, line));
+        if functions.degrees.len() <= MOST_POLISHED {
+            // Climbs along a ridge end early.
+            let polished = extremes_near(&extents, evaluate);
+            for (extent, polished) in extents.iter_mut().zip(polished) {
+                extent.include(&polished.places, &[polished.range.lower, polished.range.upper]);
+            }
+        }
         extents
     }
 

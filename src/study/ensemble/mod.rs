@@ -13,6 +13,7 @@ use symdiff::taylor_model::ModelSpace;
 
 use super::effort::instructions_of_step;
 use super::reduced::{Store, steps_of};
+use crate::compile::has_kink;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
     self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
@@ -269,6 +270,11 @@ impl Ensemble for Motions<'_> {
                 Some(Dimension::ACCELERATION) => length / (duration * step),
                 _ => 0.0,
             }
+    }
+
+    fn has_kink(&self, output: usize) -> bool {
+        let system = &self.simulator.system;
+        has_kink(&system.graph, system.outputs[output].expr)
     }
 
     fn is_interrupted(&self) -> bool {

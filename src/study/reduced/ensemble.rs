@@ -132,6 +132,10 @@ impl Ensemble for ReducedEnsemble<'_> {
         0.0
     }
 
+    fn has_kink(&self, _: usize) -> bool {
+        false
+    }
+
     fn is_interrupted(&self) -> bool {
         self.motions.is_interrupted()
     }
