@@ -21,7 +21,7 @@ pub struct SparseGrid {
 }
 
 impl SparseGrid {
-    /// The middle of the box alone, to grow up to `caps[i]` along axis i. Levels above 64 are never reached.
+    /// The middle of the box alone, to grow up to `caps[i]` along axis i. Levels above 128 are never reached.
     pub fn new(caps: &[u8]) -> Self {
         let caps: Vec<u8> = caps.iter().map(|&cap| cap.min(MAX_LEVEL)).collect();
         let mut grid = Self { levels: Vec::new(), known: FxHashSet::default(), caps };

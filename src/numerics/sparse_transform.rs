@@ -17,7 +17,7 @@ use super::sparse_grid::SparseGrid;
 #[derive(Clone, Debug)]
 pub struct SparseTransform {
     basis: SparseBasis,
-    levels: Vec<Level>,
+    levels: Vec<&'static Level>,
 }
 
 /// Room for [`SparseTransform::coefficients`], kept between calls.
@@ -31,7 +31,7 @@ impl SparseTransform {
     pub fn new(grid: &SparseGrid) -> Self {
         let basis = SparseBasis::new(grid);
         let highest = basis.orders().iter().copied().max().unwrap_or(0);
-        Self { basis, levels: (1..=highest).map(Level::new).collect() }
+        Self { basis, levels: (1..=highest).map(Level::of).collect() }
     }
 
     /// What the coefficients stand before.

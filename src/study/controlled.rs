@@ -40,7 +40,7 @@ impl Study<'_> {
         (self.stage)("choosing the steps");
         let samples = self.controlling_samples();
         if self.may_be_explicit() && self.request.tolerance.is_none_or(|bounds| tolerance < bounds) {
-            match self.explicit_within(tolerance, &samples)? {
+            match self.explicit_within(tolerance, &self.explicit_samples())? {
                 Ok(schedule) => return Ok(self.conclude(self.methods(&schedule, None)?, None)),
                 Err(obstacle) => self.refused(obstacle)?,
             }

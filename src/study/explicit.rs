@@ -7,7 +7,7 @@ use super::single::{Study, validation_summary};
 use super::step_search::SHARE;
 use crate::methods::{Observed, Validation};
 use crate::model::{Description, SchemeChoice, Stepping};
-use crate::numerics::Sample;
+use crate::numerics::{Sample, spread};
 use crate::results::{Decision, MethodSummary};
 use crate::simulate::{ExplicitObstacle, Schedule, SimulationError, Simulator, explicit_schedule};
 
@@ -18,6 +18,9 @@ pub(super) const OF_STEPS: f64 = 0.01;
 const ROUNDS: usize = 6;
 const AIM: f64 = 0.1;
 const SHARPEST: f64 = 1e-4;
+
+/// Samples that decide on the steps.
+const CONTROLLING: usize = 32;
 
 /// Most steps where the method is asked for, and where it is one of several: those that the schedule has, and a few.
 const MOST_STEPS: usize = 1_000_000;
@@ -70,6 +73,16 @@ impl Study<'_> {
         }
     }
 
+    /// Samples that decide on steps all of them share: those that control other steps, and as many between them as are integrated together.
+    /// What turns at another speed is elsewhere when a step is long.
+    pub(super) fn explicit_samples(&self) -> Vec<Sample> {
+        let mut samples = self.controlling_samples();
+        let k = self.domain.dimension();
+        let between = if k == 0 { 0 } else { CONTROLLING.saturating_sub(samples.len()) };
+        samples.extend(self.domain.samples(&spread(k, between)));
+        samples
+    }
+
     /// Steps at which some samples err by no more than this in each, relative to how far the motion goes.
     pub(super) fn explicit_steps(
         &self,
@@ -91,7 +104,7 @@ impl Study<'_> {
         observed: Observed,
         progress: &Progress,
     ) -> Result<Tried, SimulationError> {
-        let samples = self.controlling_samples();
+        let samples = self.explicit_samples();
         let mut tolerance = OF_STEPS * allowed;
         for round in 0..ROUNDS {
             let begun = Instant::now();

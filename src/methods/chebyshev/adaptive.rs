@@ -16,7 +16,7 @@ use super::composition::{Composer, Row};
 use super::estimator::RangeEstimator;
 use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
-use super::sub_box::{HIGHEST, SubBox};
+use super::sub_box::{SubBox, highest};
 use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, Sampling, Simulated, Until, lines};
 use crate::methods::kept::{KeptRow, KeptSurrogate};
 use crate::methods::request::Budget;
@@ -27,7 +27,11 @@ use crate::numerics::{EMPTY, ParameterBox, Range, SAFETY_OF_SURROGATE, SparseGri
 /// Indices are added whose expected surplus is at least this share of the largest.
 const ADDED: f64 = 0.3;
 
-/// Rows in which a surrogate is checked between rounds.
+/// Nodes that are simulated together, at least, and how many of those that are there may be as many as all new ones.
+const TOGETHER: usize = 8;
+const GROWTH: usize = 8;
+
+/// Rows in which a surrogate is looked at between rounds.
 const CHECKED: usize = 48;
 
 /// What a surrogate has to meet.
@@ -68,6 +72,13 @@ enum Detail {
     Sensitivities,
 }
 
+impl Detail {
+    /// What is estimated in the end: sensitivities only where the box was not split.
+    fn of(boxes: &[SubBox]) -> Self {
+        if boxes.len() == 1 { Self::Sensitivities } else { Self::StepErrors }
+    }
+}
+
 /// The search for a surrogate within a goal.
 pub(super) struct Adaptation<'r> {
     ensemble: &'r dyn Ensemble,
@@ -77,7 +88,7 @@ pub(super) struct Adaptation<'r> {
     simulated: Simulated,
     /// Whether the budget had no room for something.
     exhausted: bool,
-    /// Surrogates are checked in every so many rows.
+    /// Surrogates are looked at in every so many rows.
     every: usize,
     search: RangeSearch,
     /// Of the whole box.
@@ -120,8 +131,14 @@ impl<'r> Adaptation<'r> {
                 boxes.iter_mut().try_for_each(|sub_box| self.check(sub_box))?;
                 continue;
             }
+            if met && boxes.iter().any(|sub_box| sub_box.estimates.is_none()) {
+                // Met as far as a glance tells.
+                let detail = Detail::of(&boxes);
+                boxes.iter_mut().try_for_each(|sub_box| self.conclude_box(sub_box, detail))?;
+                continue;
+            }
             if met || self.is_spent() || self.simulated.stop.is_some() {
-                return self.conclude(&boxes);
+                return self.conclude(boxes);
             }
             match boxes[worst].axis_to_split() {
                 Some(axis) => {
@@ -146,10 +163,10 @@ impl<'r> Adaptation<'r> {
 
     /// A sub-box of which only the middle is known.
     fn sub_box(&mut self, domain: ParameterBox, direct: Cow<'r, ValidationTable>) -> Result<SubBox<'r>, EnsembleError> {
-        let grid = SparseGrid::new(&vec![HIGHEST; domain.dimension()]);
+        let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
         let nodes = vec![self.simulate(&domain, &[grid.sample(0)])?];
         let surplus = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
-        Ok(SubBox { domain, grid, nodes, surplus, direct, error: f64::INFINITY })
+        Ok(SubBox { domain, grid, nodes, surplus, direct, error: f64::INFINITY, estimates: None })
     }
 
     /// Validation samples of a sub-box.
@@ -173,26 +190,37 @@ impl<'r> Adaptation<'r> {
         Ok((samples.len(), motions))
     }
 
-    /// A round: adds the indices with the largest expected surplus.
+    /// A round: adds the indices with the largest expected surplus, and, so that as many nodes are simulated together as go well
+    /// together, those that would come next.
     fn refine(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         let room = self.goal.budget.simulations.saturating_sub(self.goal.spent);
-        let mut added = sub_box.expected(sub_box.grid.candidates());
-        let most = added.first().map_or(0.0, |(_, expected)| *expected);
-        added.retain(|(_, expected)| *expected >= ADDED * most);
-        self.exhausted |= added.len() > room;
-        added.truncate(room);
-        if added.is_empty() {
+        let wanted = TOGETHER.max(sub_box.grid.len() / GROWTH);
+        let mut generations = sub_box.next(ADDED, wanted);
+        let mut count = 0;
+        for added in &mut generations {
+            self.exhausted |= added.len() > room - count;
+            added.truncate(room - count);
+            count += added.len();
+        }
+        if count == 0 {
             return Ok(());
         }
-        let before = Surrogate::sparse(&sub_box.grid);
-        let motions = sub_box.motions(self.lines(), 0..sub_box.rows(self.lines()));
         let first = sub_box.grid.len();
-        added.iter().for_each(|(levels, _)| sub_box.grid.add(levels));
-        let nodes: Vec<Vec<f64>> = (first..sub_box.grid.len()).map(|node| sub_box.grid.sample(node)).collect();
-        let new = self.simulate(&sub_box.domain, &nodes)?;
-        let surplus = self.errors_at(&before, &sub_box.domain, &motions, &nodes, &new.1)?;
-        sub_box.surplus.extend(added.into_iter().map(|(levels, _)| levels).zip(surplus));
-        sub_box.nodes.push(new);
+        let mut grown = sub_box.grid.clone();
+        generations.iter().flatten().for_each(|levels| grown.add(levels));
+        let nodes: Vec<Vec<f64>> = (first..grown.len()).map(|node| grown.sample(node)).collect();
+        let mut values = self.simulate(&sub_box.domain, &nodes)?.1;
+        let mut nodes = nodes.as_slice();
+        for added in generations {
+            let before = Surrogate::sparse(&sub_box.grid);
+            let (own, rest) = split_samples(&values, nodes.len(), added.len());
+            let (own_nodes, rest_nodes) = nodes.split_at(added.len());
+            let surplus = self.errors_at(&before, sub_box, own_nodes, &own)?;
+            added.iter().for_each(|levels| sub_box.grid.add(levels));
+            sub_box.nodes.push((added.len(), own));
+            sub_box.surplus.extend(added.into_iter().zip(surplus));
+            (values, nodes) = (rest, rest_nodes);
+        }
         self.check(sub_box)
     }
 
@@ -201,24 +229,25 @@ impl<'r> Adaptation<'r> {
         lines(self.ensemble, Observed::Motion)
     }
 
-    /// Largest error of a surrogate at new nodes, over the one that is allowed: that of the outputs that follow from its
+    /// Largest error of a sub-box's surrogate at new nodes, over the one that is allowed: that of the outputs that follow from its
     /// motion, against those that follow from the nodes' own.
     fn errors_at(
         &mut self,
         surrogate: &Surrogate,
-        domain: &ParameterBox,
-        motions: &[f64],
+        sub_box: &SubBox,
         nodes: &[Vec<f64>],
         own: &[f64],
     ) -> Result<Vec<f64>, EnsembleError> {
         let stride = self.lines() * surrogate.samples().len();
         let own_stride = self.lines() * nodes.len();
-        let rows = self.goal.rows.min(motions.len() / stride).min(own.len() / own_stride);
-        let times: Vec<f64> = (0..rows).map(|row| self.ensemble.time(row)).collect();
+        let reached = self.goal.rows.min(sub_box.rows(self.lines())).min(own.len() / own_stride.max(1));
+        let rows = self.looked_at(reached);
+        let motions = sub_box.motions(self.lines(), rows.iter().copied());
+        let times: Vec<f64> = rows.iter().map(|&row| self.ensemble.time(row)).collect();
         let allowed = &self.goal.allowed;
-        let look = |row: usize, composed: &Row, _: &mut Previous| {
-            let (expected, found) =
-                (composed.evaluate_motion(nodes, &own[row * own_stride..]), composed.evaluate(nodes));
+        let look = |place: usize, composed: &Row, _: &mut Previous| {
+            let own = &own[rows[place] * own_stride..];
+            let (expected, found) = (composed.evaluate_motion(nodes, own), composed.evaluate(nodes));
             let mut errors = vec![0.0_f64; nodes.len()];
             for (line, &allowed) in allowed.iter().enumerate() {
                 for (node, error) in errors.iter_mut().enumerate() {
@@ -228,22 +257,61 @@ impl<'r> Adaptation<'r> {
             }
             errors
         };
-        let by_row = self.composer.rows(surrogate, domain, &times, (motions, stride), look)?;
+        let by_row = self.composer.rows(surrogate, &sub_box.domain, &times, (&motions, stride), look)?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
-    /// Estimates a sub-box's error in some rows.
+    /// The rows that are looked at of so many, the last ones first.
+    fn looked_at(&self, rows: usize) -> Vec<usize> {
+        (0..rows).rev().step_by(self.every).collect()
+    }
+
+    /// Estimates a sub-box's error. A glance at some rows tells where it may be too large; those are looked at closely, the worst first,
+    /// until one of them is.
     fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
-        let rows: Vec<usize> = (0..self.goal.rows.min(sub_box.rows(self.lines()))).rev().step_by(self.every).collect();
-        let found = self.estimates(sub_box, &rows, Detail::Errors)?;
-        let allowed = self.goal.allowed.iter().cycle();
-        let share = |(found, allowed): (&Estimate, &f64)| SAFETY_OF_SURROGATE * found.error / allowed;
-        sub_box.error = largest(found.iter().zip(allowed).map(share));
+        sub_box.estimates = None;
+        let rows = self.looked_at(self.goal.rows.min(sub_box.rows(self.lines())));
+        let glance = self.glance(sub_box, &rows)?;
+        let mut suspects: Vec<usize> = (0..rows.len()).filter(|&place| is_missed(glance[place])).collect();
+        suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
+        sub_box.error = glance.iter().filter(|error| **error <= 1.0).fold(0.0, |most, error| error.max(most));
+        for place in suspects {
+            let found = self.estimates(sub_box, &rows[place..=place], Detail::Errors)?.0;
+            sub_box.error = largest([sub_box.error, self.worst(&found)]);
+            if is_missed(sub_box.error) {
+                break;
+            }
+        }
         Ok(())
     }
 
-    /// Estimates over a sub-box in some rows, by row and output.
-    fn estimates(&mut self, sub_box: &SubBox, rows: &[usize], detail: Detail) -> Result<Vec<Estimate>, EnsembleError> {
+    /// Largest error of some rows' estimates over the one that is allowed, with its safety.
+    fn worst(&self, found: &[Estimate]) -> f64 {
+        let allowed = self.goal.allowed.iter().cycle();
+        largest(found.iter().zip(allowed).map(|(found, allowed)| SAFETY_OF_SURROGATE * found.error / allowed))
+    }
+
+    /// For each of some rows the largest error at the samples with the least and the largest values, over the one that is allowed.
+    fn glance(&mut self, sub_box: &SubBox, rows: &[usize]) -> Result<Vec<f64>, EnsembleError> {
+        let surrogate = Surrogate::sparse(&sub_box.grid);
+        let motions = sub_box.motions(self.lines(), rows.iter().copied());
+        let stride = self.lines() * surrogate.samples().len();
+        let times: Vec<f64> = rows.iter().map(|&row| self.ensemble.time(row)).collect();
+        let (points, allowed) = (&self.validation.points, &self.goal.allowed);
+        let look = |place: usize, row: &Row, _: &mut Previous| {
+            let errors = row.errors_at_samples((points, &sub_box.direct), rows[place]);
+            largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
+        };
+        self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)
+    }
+
+    /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
+    fn estimates(
+        &mut self,
+        sub_box: &SubBox,
+        rows: &[usize],
+        detail: Detail,
+    ) -> Result<(Vec<Estimate>, Vec<KeptRow>), EnsembleError> {
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let motions = sub_box.motions(self.lines(), rows.iter().copied());
         let stride = self.lines() * surrogate.samples().len();
@@ -263,14 +331,23 @@ impl<'r> Adaptation<'r> {
         };
         let found = self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
-        if let (true, Some(all)) = (keeps, &mut self.kept) {
-            all.add(&sub_box.domain, surrogate.basis(), kept.into_iter().flatten().collect());
+        Ok((found.concat(), kept.into_iter().flatten().collect()))
+    }
+
+    /// Estimates over a sub-box in all rows, where they are not known.
+    fn conclude_box(&mut self, sub_box: &mut SubBox, detail: Detail) -> Result<(), EnsembleError> {
+        if sub_box.estimates.is_none() {
+            let rows: Vec<usize> = (0..sub_box.rows(self.lines())).collect();
+            let found = self.estimates(sub_box, &rows, detail)?;
+            let goal = self.goal.rows.min(rows.len()) * self.goal.allowed.len();
+            sub_box.error = self.worst(&found.0[..goal]);
+            sub_box.estimates = Some(found);
         }
-        Ok(found.concat())
+        Ok(())
     }
 
     /// Ranges over all sub-boxes together, with their errors.
-    fn conclude(mut self, boxes: &[SubBox]) -> Result<Adapted, EnsembleError> {
+    fn conclude(mut self, mut boxes: Vec<SubBox>) -> Result<Adapted, EnsembleError> {
         let nothing = Estimate {
             range: EMPTY,
             error: 0.0,
@@ -281,12 +358,15 @@ impl<'r> Adaptation<'r> {
         };
         let mut found = vec![nothing.clone(); self.ensemble.rows() * self.ensemble.outputs()];
         let mut order = vec![0; self.ensemble.domain().dimension()];
-        let detail = if boxes.len() == 1 { Detail::Sensitivities } else { Detail::StepErrors };
-        for sub_box in boxes {
+        let detail = Detail::of(&boxes);
+        for sub_box in &mut boxes {
             let indices = (0..sub_box.grid.len()).flat_map(|index| sub_box.grid.levels(index).iter().enumerate());
             indices.for_each(|(axis, &degree)| order[axis] = order[axis].max(degree.into()));
-            let rows: Vec<usize> = (0..sub_box.rows(self.lines())).collect();
-            let known = self.estimates(sub_box, &rows, detail)?;
+            self.conclude_box(sub_box, detail)?;
+            let Some((known, kept)) = sub_box.estimates.take() else { continue };
+            if let Some(all) = &mut self.kept {
+                all.add(&sub_box.domain, Surrogate::sparse(&sub_box.grid).basis(), kept);
+            }
             let unknown = Estimate { range: Range::UNKNOWN, error: f64::NAN, step_error: f64::NAN, ..nothing.clone() };
             for (all, own) in found.iter_mut().zip(known.into_iter().chain(std::iter::repeat(unknown))) {
                 let range = all.range;
@@ -299,4 +379,16 @@ impl<'r> Adaptation<'r> {
         let (simulations, boxes) = (self.goal.spent, boxes.len());
         Ok(Adapted { found, simulations, boxes, order, simulated: self.simulated, kept: self.kept })
     }
+}
+
+/// Whether an error is more than the one that is allowed, which is 1; NaN is.
+fn is_missed(error: f64) -> bool {
+    error > 1.0 || error.is_nan()
+}
+
+/// Values of the first `count` of some samples, line by line, and those of the others.
+fn split_samples(values: &[f64], samples: usize, count: usize) -> (Vec<f64>, Vec<f64>) {
+    let lines = || values.chunks_exact(samples.max(1));
+    let first = lines().flat_map(|line| &line[..count]).copied().collect();
+    (first, lines().flat_map(|line| &line[count..]).copied().collect())
 }

@@ -3,15 +3,34 @@
 use std::borrow::Cow;
 
 use rustc_hash::FxHashMap;
+use symdiff::math;
 
+use crate::methods::kept::KeptRow;
+use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
 use crate::numerics::{ParameterBox, SparseGrid};
 
-/// Highest degree in a parameter, of 17 nodes; then the box is split.
-pub(super) const HIGHEST: u8 = 16;
+/// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
+const HIGHEST: [u8; 3] = [128, 48, 24];
+const HIGHEST_OF_MANY: u8 = 16;
+
+/// Degree from which on surpluses tell how high a degree would have to be, and over how many degrees they are compared.
+const TELLING: u8 = 16;
+const COMPARED: u8 = 8;
 
 /// A box is split where the expected surplus of a higher degree than is allowed is so many times the largest allowed one.
 const SPLIT: f64 = 4.0;
+
+/// What a surplus may be of the error that is allowed: it is met with its safety.
+const MET: f64 = 0.5;
+
+/// Highest degree in a parameter for k of them; then a box is split.
+pub(super) fn highest(k: usize) -> u8 {
+    k.checked_sub(1).and_then(|place| HIGHEST.get(place)).copied().unwrap_or(HIGHEST_OF_MANY)
+}
+
+/// A surplus for each index.
+pub(super) type Surpluses = FxHashMap<Vec<u8>, f64>;
 
 /// A box with its surrogate.
 pub(super) struct SubBox<'r> {
@@ -20,11 +39,13 @@ pub(super) struct SubBox<'r> {
     /// Motions and outputs at the grid's nodes: so many of them, then row by row, line by line, node by node.
     pub nodes: Vec<(usize, Vec<f64>)>,
     /// Hierarchical surplus of each index of the grid: the error of the surrogate before the index was added.
-    pub surplus: FxHashMap<Vec<u8>, f64>,
+    pub surplus: Surpluses,
     /// Values of the validation samples.
     pub direct: Cow<'r, ValidationTable>,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
+    /// Estimates of all rows, by row and output, and what is kept of them, once nothing is to be added.
+    pub estimates: Option<(Vec<Estimate>, Vec<KeptRow>)>,
 }
 
 impl SubBox<'_> {
@@ -44,53 +65,98 @@ impl SubBox<'_> {
         motions
     }
 
-    /// Indices with their expected surpluses, the largest first.
-    pub fn expected(&self, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
-        let expect = |levels: Vec<u8>| {
-            let expected = self.extrapolated(&levels);
-            (levels, expected)
-        };
-        let mut expected: Vec<(Vec<u8>, f64)> = indices.into_iter().map(expect).collect();
-        // Of equals, the first in the alphabet.
-        expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-        expected
-    }
-
-    /// The expected surplus of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ, where from
-    /// ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ.
-    fn extrapolated(&self, levels: &[u8]) -> f64 {
-        let k = levels.len();
-        let weight = |axis: usize| {
-            let mut first = vec![0; k];
-            first[axis] = 1;
-            self.surplus.get(&first).copied()
-        };
-        let total: f64 = (0..k).filter_map(weight).sum();
-        let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();
-        let from = |axis: usize| {
-            let mut before = levels.to_vec();
-            before[axis] -= 1;
-            let share = weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
-            self.surplus.get(&before).map(|surplus| surplus * share * degree / f64::from(levels[axis]))
-        };
-        (0..k).filter(|&axis| levels[axis] > 0).filter_map(from).fold(f64::INFINITY, f64::min)
+    /// Indices to be added next, generation by generation, at least `wanted` as far as there are any: of each generation those whose
+    /// expected surplus is at least a share of the largest. Surpluses of an earlier generation are believed to be the expected ones.
+    pub fn next(&self, share: f64, wanted: usize) -> Vec<Vec<Vec<u8>>> {
+        let (mut grid, mut surplus) = (self.grid.clone(), self.surplus.clone());
+        let mut generations: Vec<Vec<Vec<u8>>> = Vec::new();
+        let mut count = 0;
+        while count < wanted {
+            let mut added = expected(&surplus, grid.candidates());
+            let most = added.first().map_or(0.0, |(_, expected)| *expected);
+            added.retain(|(_, expected)| *expected >= share * most);
+            if added.is_empty() {
+                break;
+            }
+            if !generations.is_empty() {
+                added.truncate(wanted - count);
+            }
+            count += added.len();
+            added.iter().for_each(|(levels, _)| grid.add(levels));
+            generations.push(added.iter().map(|(levels, _)| levels.clone()).collect());
+            surplus.extend(added);
+        }
+        generations
     }
 
     /// The axis along which the box is to be split: where its degree is as high as is allowed, and a higher one has a much
-    /// larger expected surplus than whatever else can be added.
+    /// larger expected surplus than whatever else can be added; or where surpluses fall so slowly that it will be.
     pub fn axis_to_split(&self) -> Option<usize> {
+        let highest = highest(self.grid.dimension());
         let beyond = |levels: &Vec<u8>| {
-            let axis = levels.iter().position(|&level| level == HIGHEST)?;
+            let axis = levels.iter().position(|&level| level == highest)?;
             let mut higher = levels.clone();
             higher[axis] += 1;
-            Some((axis, self.extrapolated(&higher)))
+            Some((axis, extrapolated(&self.surplus, &higher)))
         };
         let most = self.surplus.keys().filter_map(beyond).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
         let candidates = self.grid.candidates();
-        let allowed = candidates.iter().map(|levels| self.extrapolated(levels)).fold(0.0, f64::max);
+        let allowed = candidates.iter().map(|levels| extrapolated(&self.surplus, levels)).fold(0.0, f64::max);
         match most {
             Some((axis, beyond)) if candidates.is_empty() || beyond > SPLIT * allowed => Some(axis),
-            _ => None,
+            _ => (0..self.grid.dimension()).find(|&axis| self.falls_slowly(axis, highest)),
         }
     }
+
+    /// Whether surpluses along an axis fall so slowly that the highest degree will not do. One parameter's are not asked: a degree costs
+    /// but a node.
+    fn falls_slowly(&self, axis: usize, highest: u8) -> bool {
+        let k = self.grid.dimension();
+        let at = |degree: u8| {
+            let mut levels = vec![0; k];
+            levels[axis] = degree;
+            self.surplus.get(&levels).copied()
+        };
+        let reached = (0..=highest).take_while(|&degree| at(degree).is_some()).last().unwrap_or(0);
+        if k < 2 || reached < TELLING {
+            return false;
+        }
+        // Odd or even degrees may be missing.
+        let pair = |degree: u8| at(degree).unwrap_or(0.0).max(at(degree - 1).unwrap_or(0.0));
+        let (now, before) = (pair(reached), pair(reached - COMPARED));
+        let missing = f64::from(COMPARED) * math::ln(now / MET) / math::ln(before / now);
+        now > MET && (now >= before || f64::from(reached) + missing > f64::from(highest))
+    }
+}
+
+/// Indices with their expected surpluses, the largest first.
+fn expected(surplus: &Surpluses, indices: Vec<Vec<u8>>) -> Vec<(Vec<u8>, f64)> {
+    let expect = |levels: Vec<u8>| {
+        let expected = extrapolated(surplus, &levels);
+        (levels, expected)
+    };
+    let mut expected: Vec<(Vec<u8>, f64)> = indices.into_iter().map(expect).collect();
+    // Of equals, the first in the alphabet.
+    expected.sort_by(|a, b| b.1.total_cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    expected
+}
+
+/// The expected surplus of an index: the least that follows from the indices before it, as for a power of Σ aᵢ ξᵢ, where from
+/// ξ^(l − eᵢ) to ξ^l the multinomial coefficient times the weights changes by aᵢ |l|/lᵢ.
+fn extrapolated(surplus: &Surpluses, levels: &[u8]) -> f64 {
+    let k = levels.len();
+    let weight = |axis: usize| {
+        let mut first = vec![0; k];
+        first[axis] = 1;
+        surplus.get(&first).copied()
+    };
+    let total: f64 = (0..k).filter_map(weight).sum();
+    let degree: f64 = levels.iter().map(|&level| f64::from(level)).sum();
+    let from = |axis: usize| {
+        let mut before = levels.to_vec();
+        before[axis] -= 1;
+        let share = weight(axis).map_or(1.0, |weight| if total > 0.0 { weight / total } else { 1.0 });
+        surplus.get(&before).map(|surplus| surplus * share * degree / f64::from(levels[axis]))
+    };
+    (0..k).filter(|&axis| levels[axis] > 0).filter_map(from).fold(f64::INFINITY, f64::min)
 }

@@ -15,6 +15,33 @@ const MOST_MOVED: usize = 4;
 const FAR: f64 = 0.1;
 
 impl Row<'_> {
+    /// Errors of the outputs at a glance: how far the coordinates' errors move them where the samples have their least and largest values.
+    /// Near an extreme that is an upper bound of what moves the extreme itself.
+    pub fn errors_at_samples(&self, (points, direct): (&[Vec<f64>], &ValidationTable), row: usize) -> Vec<f64> {
+        let outputs = self.ensemble.outputs();
+        if row >= direct.rows() {
+            return vec![f64::NAN; outputs];
+        }
+        let errors = self.coordinate_errors(points, direct.motion(row));
+        let extents: Vec<Extent> = (0..outputs).map(|output| self.extent_of_samples(output)).collect();
+        let moves: Vec<Moves> = errors
+            .iter()
+            .filter(|error| self.closure.needs_velocities() || error.0 < self.extent.len() / 2)
+            .flat_map(|&(line, error)| [error, -error].map(|by| Moves { by: vec![(line, by)], ..Moves::default() }))
+            .collect();
+        let moved = self.moved_at_extremes(&extents, &moves);
+        let compared = self.compared();
+        let nodes: Vec<Vec<f64>> = compared.iter().map(|&sample| self.surrogate.samples()[sample].clone()).collect();
+        let values = self.evaluate(&nodes);
+        let error = |output: usize| {
+            if self.disagrees(output, &compared, &values[output * nodes.len()..][..nodes.len()]) {
+                return surrogate_error(&self.own_polynomials(&[output], points), &direct.at(row, output));
+            }
+            moved.chunks_exact(2).map(|ways| largest(ways.iter().map(|moved| moved[output]))).sum()
+        };
+        (0..outputs).map(error).collect()
+    }
+
     /// Errors of the outputs' ranges: what the search may have missed, how far the coordinates' errors move the ends, and how
     /// far the validation samples at `points`, whose values in row `row` are in `direct`, lie outside.
     pub fn errors(
