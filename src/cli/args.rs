@@ -1,5 +1,6 @@
 //! The arguments of the command line.
 
+mod allocate;
 mod explain;
 mod sample;
 mod shards;
@@ -15,6 +16,7 @@ use clap_complete::Shell;
 use super::status;
 use crate::model::Override;
 use crate::results::Method;
+pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
@@ -39,6 +41,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Bound reduced outputs for values of one or two parameters.
     Sweep(SweepArgs),
+    /// Find the loosest, or cheapest, tolerances that meet all requirements.
+    Allocate(AllocateArgs),
     /// Check models: errors with their places, coordinates, constraints, degrees of freedom.
     Check(CheckArgs),
     /// Make report.html again from a folder of results.

@@ -109,7 +109,7 @@ struct Whole {
 pub(super) fn check(args: &CheckArgs, console: &mut Console) -> Result<Status, Failure> {
     load::input_once(&args.models)?;
     let overrides = args.set.overrides()?;
-    let check = |path: &PathBuf| match study::caught("check", || check_one(path, overrides)) {
+    let check = |path: &PathBuf| match study::caught("check", || check_one(path, &overrides)) {
         Ok(checked) => checked,
         Err(error) => Checked { error: Some(error.to_string()), is_internal: true, ..Checked::nothing(path) },
     };

@@ -1,5 +1,6 @@
 //! The command line: `args` reads the arguments, and one file a command checks and executes them. `status` has the exit codes.
 
+mod allocate;
 mod args;
 mod assemblies;
 mod check;
@@ -120,6 +121,7 @@ fn execute(command: Command, console: &mut Console) -> Result<Status, Failure> {
     match command {
         Command::Run(args) => run_command::run(args, console),
         Command::Sweep(args) => sweep::sweep(args, console),
+        Command::Allocate(args) => allocate::allocate(args, console),
         Command::Check(args) => check::check(&args, console),
         Command::Snapshot(args) => snapshot::snapshot(args, console),
         Command::Cost(args) => cost::cost(args, console),

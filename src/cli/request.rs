@@ -73,7 +73,7 @@ impl Request {
     pub fn check(args: RunArgs) -> Result<Self, Failure> {
         let AskedArgs { method: methods, certify, set, scene: scenes, skip_infeasible, certify_time } =
             args.asked.in_order();
-        let overrides = set.overrides()?.to_vec();
+        let overrides = set.overrides()?;
         Ok(Self {
             models: args.models,
             overrides,

@@ -45,25 +45,41 @@ pub(super) fn statistics(summary: &Summary) -> String {
         laws(found),
         table.render(2),
         found.samples,
-        yields(found)
+        yields(found.requirements.iter().chain(&found.together))
     )
 }
 
 /// How many fulfil each requirement.
-fn yields(found: &StatisticsSummary) -> String {
+pub(super) fn yields<'y>(found: impl IntoIterator<Item = &'y crate::results::YieldSummary>) -> String {
     let line = |of: &crate::results::YieldSummary| {
         let [least, most] = of.ppm_interval;
-        let cp = of.cp.map_or_else(String::new, |cp| format!("Cp {cp:.2}, "));
+        let cp = of.cp.map_or_else(String::new, |cp| format!("; Cp {cp:.2}"));
+        let cpk =
+            of.cpk.map_or_else(String::new, |cpk| format!("{} Cpk {cpk:.2}", if cp.is_empty() { ";" } else { "," }));
+        let time = of.time.map_or_else(String::new, |time| format!(" at t = {time:.4} s"));
+        let rare = if of.about_failures { ", by importance sampling" } else { "" };
         format!(
-            "  statistically, {} is fulfilled by {:.4} %: {:.0} ppm fail (95 %: {least:.0} to {most:.0}); {cp}Cpk {:.2} at t = {:.4} s\n",
+            "  statistically, {} {} fulfilled by {} %: {} ppm fail (95 %: {} to {}{rare}){cp}{cpk}{time}\n",
             of.requirement,
-            100.0 * of.share,
-            of.ppm,
-            of.cpk,
-            of.time
+            if of.requirement.contains(' ') { "are" } else { "is" },
+            percent(of.share),
+            parts(of.ppm),
+            parts(least),
+            parts(most),
         )
     };
-    found.requirements.iter().map(line).collect()
+    found.into_iter().map(line).collect()
+}
+
+/// As many digits as a high yield needs.
+fn percent(share: f64) -> String {
+    let digits = if share > 0.9999 && share < 1.0 { 8 } else { 4 };
+    format!("{:.digits$}", 100.0 * share)
+}
+
+/// Parts per million: whole ones, fractions of few.
+fn parts(ppm: f64) -> String {
+    if ppm >= 100.0 || ppm == 0.0 { format!("{ppm:.0}") } else { format!("{ppm:.2e}") }
 }
 
 fn ends(lower: f64, upper: f64) -> String {

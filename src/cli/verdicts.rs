@@ -137,7 +137,7 @@ fn reduced(all: &[ReducedSummary]) -> String {
     table.render(2)
 }
 
-fn requirements(all: &[RequirementSummary]) -> String {
+pub(super) fn requirements(all: &[RequirementSummary]) -> String {
     let mut table = Table::new([
         ("requirement", Align::Left),
         ("", Align::Left),

@@ -1,8 +1,11 @@
-//! `statics.csv`, `modes.csv`, `response.csv`: a line for each output of one configuration, or for each frequency.
+//! `statics.csv`, `modes.csv`, `response.csv`: a line for each output of one configuration, or for each frequency; and plots of responses.
 
 use csv::WriterBuilder;
 
-use crate::results::{OutputBounds, ResponsePoint};
+use super::figure::Caption;
+use super::sweep::{Swept, SweptBounds, sweep_svg};
+use crate::numerics::BandError;
+use crate::results::{Band, OutputBounds, ResponsePoint};
 
 /// What every line begins or ends with.
 const BOUNDS: [&str; 4] = ["method", "lower", "upper", "error"];
@@ -39,6 +42,76 @@ pub fn response_csv(times: &[f64], points: &[ResponsePoint]) -> Result<Vec<u8>, 
         }
     }
     writer.into_inner().map_err(|e| e.into_error().into())
+}
+
+/// Amplitude and phase of every response over the frequency, with bounds: the name of each, `drive` and `drive.phase`, and its document.
+///
+/// # Errors
+/// Only if memory cannot be written to.
+pub fn response_svgs(
+    caption: Caption,
+    times: &[f64],
+    points: &[ResponsePoint],
+) -> Result<Vec<(String, String)>, serde_json::Error> {
+    let mut names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
+    names.dedup();
+    let mut plots = Vec::with_capacity(2 * names.len());
+    for name in names {
+        let own: Vec<&ResponsePoint> = points.iter().filter(|point| point.name == name).collect();
+        let frequencies: Vec<f64> = own.iter().map(|point| point.frequency).collect();
+        for (suffix, of) in [("", amplitude as fn(&ResponsePoint) -> &OutputBounds), (".phase", phase)] {
+            let outputs: Vec<OutputBounds> =
+                (0..times.len()).map(|row| over_frequencies(format!("{name}{suffix}"), &own, of, row)).collect();
+            let labels: Vec<String> = times
+                .iter()
+                .map(|time| if times.len() > 1 { format!("t = {time} s") } else { String::new() })
+                .collect();
+            let rows: Vec<SweptBounds> = labels
+                .iter()
+                .zip(&outputs)
+                .map(|(label, output)| SweptBounds { label, values: &frequencies, output })
+                .collect();
+            let swept = Swept { name: "frequency", unit: "Hz", si: 1.0 };
+            plots.push((format!("{name}{suffix}"), sweep_svg(caption, swept, &rows, &[])?));
+        }
+    }
+    Ok(plots)
+}
+
+fn amplitude(point: &ResponsePoint) -> &OutputBounds {
+    &point.amplitude
+}
+
+fn phase(point: &ResponsePoint) -> &OutputBounds {
+    &point.phase
+}
+
+/// A quantity of a response at one time, over the frequencies.
+fn over_frequencies(
+    name: String,
+    points: &[&ResponsePoint],
+    of: fn(&ResponsePoint) -> &OutputBounds,
+    row: usize,
+) -> OutputBounds {
+    let column = |pick: &dyn Fn(&OutputBounds) -> f64| points.iter().map(|point| pick(of(point))).collect::<Vec<f64>>();
+    let methods = points.first().map_or(&[][..], |point| &of(point).bands);
+    let band = |(place, first): (usize, &Band)| Band {
+        method: first.method,
+        lower: column(&|output| output.bands[place].lower[row]),
+        upper: column(&|output| output.bands[place].upper[row]),
+        error: BandError {
+            total: column(&|output| output.bands[place].error.total[row]),
+            unresolved: points.iter().map(|point| of(point).bands[place].error.unresolved[row]).collect(),
+            ..BandError::default()
+        },
+    };
+    OutputBounds {
+        name,
+        unit: points.first().map_or_else(String::new, |point| of(point).unit.clone()),
+        display: None,
+        nominal: column(&|output| output.nominal[row]),
+        bands: methods.iter().enumerate().map(band).collect(),
+    }
 }
 
 /// A line for each method, or one where there is none.

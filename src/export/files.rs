@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::export::analysis::{configuration_csv, response_csv};
+use crate::export::analysis::{configuration_csv, response_csv, response_svgs};
 use crate::export::error::ExportError;
 use crate::export::figure::Caption;
 use crate::export::folder::AtomicFiles;
@@ -13,7 +13,7 @@ use crate::export::report::{MOTION, PageFigure, PageScene, ReportParts, motion_j
 use crate::export::statistics::statistics_csv;
 use crate::export::stems::unique_stems;
 use crate::export::{
-    bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
+    Beside, bounds_csv, columns_json, contribution_columns_json, contributions_csv, contributions_svg, noise, plot_svg,
     reduced_csv,
 };
 use crate::grammar::display_unit::DisplayUnit;
@@ -55,6 +55,12 @@ pub fn write_results(
     }
     if !bounds.responses.is_empty() {
         files.add("response.csv", &response_csv(&bounds.times, &bounds.responses)?)?;
+        let plots =
+            response_svgs(Caption { model: &summary.model, prefix: "figure" }, &bounds.times, &bounds.responses)?;
+        let stems = unique_stems(plots.iter().map(|(name, _)| name.as_str()));
+        for (stem, (_, svg)) in stems.iter().zip(&plots) {
+            files.add(&format!("response.{stem}.svg"), svg.as_bytes())?;
+        }
     }
     let mut figures = Vec::with_capacity(bounds.outputs.len());
     let plotted = if is_alone { &[][..] } else { &bounds.outputs };
@@ -63,7 +69,9 @@ pub fn write_results(
     for ((output, name), contributions) in plotted.iter().zip(names).zip(contributions) {
         let caption = Caption { model: &summary.model, prefix: "figure" };
         let noise = noise(bounds, output);
-        let svg = plot_svg(caption, &bounds.times, output, noise, &summary.requirements)?;
+        let statistics = summary.statistics.as_deref();
+        let beside = Beside { noise, requirements: &summary.requirements, statistics };
+        let svg = plot_svg(caption, &bounds.times, output, beside)?;
         files.add(&format!("{name}.svg"), svg.as_bytes())?;
         let mut plots = vec![svg];
         if let Some(contributions) = contributions {

@@ -1,5 +1,6 @@
 //! Bounds → files: CSV, summary and plots.
 
+mod allocation;
 mod analysis;
 mod columns;
 mod contributions;
@@ -19,6 +20,7 @@ mod plot;
 mod reduced;
 mod reference;
 mod report;
+mod rounded;
 mod samples;
 mod scenes;
 mod snapshot;
@@ -28,6 +30,7 @@ mod sweep;
 mod sweep_files;
 
 pub use self::csv::bounds_csv;
+pub use allocation::{OVERLAY, shown_unit, write_allocation};
 pub use columns::{columns_json, contribution_columns_json};
 pub use contributions::{contributions_csv, contributions_svg};
 pub use cost::write_cost;
@@ -39,10 +42,11 @@ pub use folder::{prepare_folder, write_pages};
 pub use junit::{Suite, write_junit};
 pub use overlay::SceneBounds;
 pub use owned::{SUMMARY, holds_complete_results};
-pub use plot::{noise, plot_svg};
+pub use plot::{Beside, noise, plot_svg};
 pub use reduced::reduced_csv;
 pub use reference::effects as effects_page;
 pub use report::{ReportParts, stl_corners, write_report};
+pub use rounded::rounded;
 pub use samples::write_samples;
 pub use scenes::write_scenes;
 pub use snapshot::{Moved, Snapshot, moved, snapshot_file, snapshot_table, write_snapshot};

@@ -6,8 +6,10 @@ use super::figure::panel::Style;
 use super::figure::prefix::BaseUnit;
 use super::figure::style::{Color, Hue};
 use super::limits::limits;
+use super::rounded::rounded;
 use crate::methods::{About, Method};
-use crate::results::{Bounds, OutputBounds, RequirementSummary};
+use crate::numerics::BandError;
+use crate::results::{Band, Bounds, OutputBounds, RequirementSummary, StatisticsResult, Uncertain};
 
 /// Motion that is smaller than this, relative to the largest output of the same unit, is rounding noise.
 const ROUNDING: f64 = 1e-12;
@@ -20,8 +22,19 @@ fn style(method: Method) -> Style {
     Style { label: label.to_owned(), color: Color(color), edge: 2.0, fill, dashes, slant }
 }
 
-/// The plot of one output as an SVG document, with the constant limits that requirements set for it. The same data give the same
-/// bytes. `noise` is as [`noise`] has it.
+/// What is drawn into the plot of an output beside its bounds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beside<'a> {
+    /// What moves by less is a constant, as [`noise`] has it.
+    pub noise: f64,
+    /// Of these, constant limits of the output.
+    pub requirements: &'a [RequirementSummary],
+    /// Of these, the band from the least to the greatest quantile.
+    pub statistics: Option<&'a StatisticsResult>,
+}
+
+/// The plot of one output as an SVG document, with the constant limits that requirements set for it, and its quantiles. The same data give the
+/// same bytes.
 ///
 /// # Errors
 /// Only if memory cannot be written to.
@@ -29,11 +42,44 @@ pub fn plot_svg(
     caption: Caption,
     times: &[f64],
     output: &OutputBounds,
-    noise: f64,
-    requirements: &[RequirementSummary],
+    Beside { noise, requirements, statistics }: Beside,
 ) -> Result<String, serde_json::Error> {
     let limits = limits(requirements, &output.name);
-    courses_svg(caption, &Shown { limits: &limits, ..shown(output, noise, &[course(times, output)]) })
+    let quantiles = statistics.and_then(|found| quantiles(found, &output.name, times.len()));
+    let mut course = course(times, output);
+    let style = |label| Style {
+        label,
+        color: Color::of(QUANTILES),
+        edge: 1.4,
+        fill: 0.1,
+        dashes: Some(vec![1.5, 2.5]),
+        slant: 60.0,
+    };
+    let of_quantiles = |(label, band)| CourseBand { group: "quantiles".to_owned(), band, style: style(label) };
+    course.bands.extend(quantiles.as_ref().map(|(label, band)| of_quantiles((label.clone(), band))));
+    courses_svg(caption, &Shown { limits: &limits, ..shown(output, noise, &[course]) })
+}
+
+/// The number of the quantiles' colour.
+const QUANTILES: usize = 5;
+
+/// The band from an output's least to its greatest quantile, and what it is called.
+fn quantiles(statistics: &StatisticsResult, name: &str, rows: usize) -> Option<(String, Band)> {
+    let found = statistics.outputs.iter().find(|own| own.name == name)?;
+    let [first, .., last] = &found.quantiles[..] else { return None };
+    let shares = &statistics.summary.quantiles;
+    let percent = |share: &f64| format!("{} %", rounded(100.0 * share));
+    let padded = |mut values: Vec<f64>| {
+        values.resize(rows, f64::NAN);
+        values
+    };
+    let values = |of: &[Uncertain]| padded(of.iter().map(|own| own.value).collect());
+    let error = padded(first.iter().zip(last).map(|(low, high)| low.total().max(high.total())).collect());
+    let mut unresolved: Vec<bool> = found.resolved.iter().map(|resolved| !resolved).collect();
+    unresolved.resize(rows, false);
+    let error = BandError { total: error, unresolved, ..BandError::default() };
+    let band = Band { method: Method::Chebyshev, lower: values(first), upper: values(last), error };
+    Some((format!("quantiles, {} to {}", percent(shares.first()?), percent(shares.last()?)), band))
 }
 
 /// An output with all its bands.
@@ -62,8 +108,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::numerics::BandError;
-    use crate::results::{Band, LimitLine, Verdict};
+    use crate::results::{LimitLine, OutputStatistics, StatisticsSummary, Verdict};
 
     fn error(rows: usize, error: f64) -> BandError {
         BandError { total: vec![error; rows], unresolved: vec![false; rows], ..BandError::default() }
@@ -95,7 +140,7 @@ mod tests {
     /// The plot, and its scales and data.
     fn plot(times: &[f64], output: &OutputBounds) -> (String, serde_json::Value) {
         let caption = Caption { model: "crank", prefix: "p" };
-        let svg = plot_svg(caption, times, output, 0.0, &[]).unwrap();
+        let svg = plot_svg(caption, times, output, Beside::default()).unwrap();
         let document = roxmltree::Document::parse(&svg).unwrap();
         assert_eq!(document.root_element().attribute("class"), Some("mbint-figure"));
         let find = |name: &'static str| document.descendants().filter(move |node| node.has_tag_name(name));
@@ -236,7 +281,8 @@ mod tests {
             limits: vec![line(0.4, false), line(9.0, true), LimitLine { output: "y".into(), ..line(0.5, true) }],
         };
         let caption = Caption { model: "crank", prefix: "p" };
-        let svg = plot_svg(caption, &times, &output, 0.0, &[requirement]).unwrap();
+        let svg =
+            plot_svg(caption, &times, &output, Beside { requirements: &[requirement], ..Beside::default() }).unwrap();
         assert_eq!(svg.matches("class=\"forbidden\"").count(), 2, "of its own output");
         assert!(texts(&svg).contains(&"clears: x3 >= 0.4 m".to_owned()));
         assert!(svg.contains("(beyond the plot)"), "9 m is far away");
@@ -256,10 +302,44 @@ mod tests {
         output.nominal.iter_mut().for_each(|x| *x *= 1e3);
         let bounds = Bounds { times: times.clone(), outputs: vec![output, noise.clone()], ..Bounds::default() };
         let threshold = super::noise(&bounds, &noise);
-        let svg = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, threshold, &[]).unwrap();
+        let svg = plot_svg(
+            Caption { model: "m", prefix: "p" },
+            &times,
+            &noise,
+            Beside { noise: threshold, ..Beside::default() },
+        )
+        .unwrap();
         assert!(texts(&svg).contains(&"constant".to_owned()), "{:?}", texts(&svg));
         assert!(texts(&svg).contains(&"0.5".to_owned()), "an axis about zero");
-        let alone = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, 0.0, &[]).unwrap();
+        let alone = plot_svg(Caption { model: "m", prefix: "p" }, &times, &noise, Beside::default()).unwrap();
         assert!(!texts(&alone).contains(&"constant".to_owned()));
+    }
+
+    #[test]
+    fn quantiles_are_a_band_of_their_own() {
+        let (times, output) = sample(101);
+        let at = |share: f64| -> Vec<Uncertain> {
+            let of = |x: &f64| Uncertain { value: x + share, sampling: 1e-4, error: 0.0 };
+            output.nominal.iter().take(90).map(of).collect()
+        };
+        let own = OutputStatistics {
+            name: "x3".into(),
+            unit: "m".into(),
+            mean: at(0.0),
+            deviation: at(0.0),
+            quantiles: vec![at(-1e-3), at(0.0), at(1e-3)],
+            linear: vec![],
+            rss: vec![],
+            resolved: vec![true; 90],
+        };
+        let summary = StatisticsSummary { quantiles: vec![0.00135, 0.5, 0.99865], ..StatisticsSummary::default() };
+        let statistics = StatisticsResult { times: times.clone(), outputs: vec![own], summary };
+        let caption = Caption { model: "crank", prefix: "p" };
+        let beside = Beside { statistics: Some(&statistics), ..Beside::default() };
+        let svg = plot_svg(caption, &times, &output, beside).unwrap();
+        assert!(texts(&svg).contains(&"quantiles, 0.135 % to 99.865 %".to_owned()), "{:?}", texts(&svg));
+        assert!(svg.contains("p-value-quantiles") && svg.contains("p-deviation-quantiles"));
+        let other = OutputBounds { name: "y".into(), ..output.clone() };
+        assert!(!plot_svg(caption, &times, &other, beside).unwrap().contains("quantiles"));
     }
 }

@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use svg::Document;
-use svg::node::element::{Group, Line, Path as Curve, Polygon, Rectangle, Text, Title};
-
 use super::csv::number;
 use super::error::ExportError;
+use super::figure::Caption;
 use super::folder::AtomicFiles;
+use super::rounded::rounded;
 use super::stems::unique_stems;
-use crate::results::{ReducedBand, ReducedSummary, RequirementSummary, Summary, foremost};
+use super::sweep::{Swept, SweptBounds, sweep_svg};
+use crate::grammar::unit::Unit;
+use crate::numerics::BandError;
+use crate::results::{Band, Method, OutputBounds, ReducedBand, ReducedSummary, RequirementSummary, Summary, foremost};
 
 /// A parameter that is swept.
 pub struct SweepAxis {
@@ -56,7 +58,7 @@ pub fn write_sweep(dir: &Path, sweep: &Sweep) -> Result<Vec<PathBuf>, ExportErro
     let reduced = sweep.first().map_or(&[][..], |summary| &summary.reduced);
     let stems = unique_stems(reduced.iter().map(|own| own.name.as_str()));
     for (place, stem) in stems.iter().enumerate() {
-        files.add(&format!("sweep.{stem}.svg"), plot(sweep, place).as_bytes())?;
+        files.add(&format!("sweep.{stem}.svg"), plot(sweep, place)?.as_bytes())?;
     }
     files.put_in_place()
 }
@@ -104,124 +106,49 @@ fn of_requirement(own: &RequirementSummary) -> [String; 3] {
     [number(own.margin), number(own.error), own.verdict.name().to_owned()]
 }
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 420.0;
-const LEFT: f64 = 86.0;
-const RIGHT: f64 = 150.0;
-const TOP: f64 = 34.0;
-const BOTTOM: f64 = 56.0;
-const TICKS: usize = 5;
-
-/// Colours for every colour vision: those of Okabe and Ito.
-const COLORS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555"];
-
-/// A value of a reduced output at a value of the first parameter: that, lower, upper, nominal.
-type Place = [f64; 4];
-
 /// Bounds of one reduced output over the first parameter, for each value of the second one.
-fn plot(sweep: &Sweep, reduced: usize) -> String {
+fn plot(sweep: &Sweep, reduced: usize) -> Result<String, serde_json::Error> {
     let inner = sweep.axes.get(1).map_or(1, |axis| axis.values.len());
-    let mut series: Vec<Vec<Place>> = vec![Vec::new(); inner];
-    let mut name = (String::new(), String::new());
-    for (place, point) in sweep.points.iter().enumerate() {
-        let Some(own) = point.summary.as_ref().and_then(|summary| summary.reduced.get(reduced)) else { continue };
-        name = (own.name.clone(), own.unit.clone());
-        let [lower, upper] = foremost_of(own).map_or([f64::NAN; 2], |band| [band.lower, band.upper]);
-        if lower.is_finite() && upper.is_finite() {
-            series[place % inner].push([point.values[0], lower, upper, own.nominal]);
-        }
-    }
-    let extent = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        if low < high {
-            (low, high)
-        } else if low == high {
-            (low - 0.5, high + 0.5)
-        } else {
-            (0.0, 1.0)
-        }
-    };
-    let x = extent(&mut series.iter().flatten().map(|place| place[0]));
-    let y = extent(&mut series.iter().flatten().flat_map(|place| [place[1], place[2]]));
-    let at_x = |value: f64| LEFT + (value - x.0) / (x.1 - x.0) * (WIDTH - LEFT - RIGHT);
-    let at_y = |value: f64| HEIGHT - BOTTOM - (value - y.0) / (y.1 - y.0) * (HEIGHT - TOP - BOTTOM);
-    let unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
     let axis = &sweep.axes[0];
-    let mut document = Document::new()
-        .set("viewBox", (0, 0, WIDTH as i32, HEIGHT as i32))
-        .set("font-family", "sans-serif")
-        .set("font-size", 13)
-        .add(Rectangle::new().set("width", WIDTH).set("height", HEIGHT).set("fill", "white"))
-        .add(label((LEFT, 20.0), "start", &format!("{}: {}", sweep.model, name.0)))
-        .add(label(
-            (0.5 * (LEFT + WIDTH - RIGHT), HEIGHT - 14.0),
-            "middle",
-            &format!("{}{}", axis.name, unit(&axis.unit)),
-        ))
-        .add(label((8.0, TOP - 14.0), "start", &unit(&name.1)));
-    for tick in 0..=TICKS {
-        let share = tick as f64 / TICKS as f64;
-        let (own_x, own_y) = (x.0 + share * (x.1 - x.0), y.0 + share * (y.1 - y.0));
-        document = document
-            .add(line((at_x(own_x), TOP), (at_x(own_x), HEIGHT - BOTTOM)))
-            .add(line((LEFT, at_y(own_y)), (WIDTH - RIGHT, at_y(own_y))))
-            .add(label((at_x(own_x), HEIGHT - BOTTOM + 18.0), "middle", &tick_text(own_x, x.1 - x.0)))
-            .add(label((LEFT - 8.0, at_y(own_y) + 4.0), "end", &tick_text(own_y, y.1 - y.0)));
-    }
-    for (place, series) in series.iter().enumerate().filter(|(_, series)| !series.is_empty()) {
-        let color = COLORS[place % COLORS.len()];
-        let point = |x: f64, y: f64| format!("{:.2},{:.2}", at_x(x), at_y(y));
-        let upper = series.iter().map(|place| point(place[0], place[2]));
-        let lower = series.iter().rev().map(|place| point(place[0], place[1]));
-        let around: Vec<String> = upper.chain(lower).collect();
-        let nominal = series.iter().filter(|place| place[3].is_finite()).map(|place| point(place[0], place[3]));
-        let nominal: Vec<String> = nominal.collect();
-        let text = match sweep.axes.get(1) {
-            Some(second) => format!("{} = {} {}", second.name, tick_text(second.values[place], 1.0), second.unit),
-            None => "bounds, and nominal".to_owned(),
+    let si = Unit::parse(&axis.unit).map_or(1.0, |unit| unit.to_si(1.0));
+    let mut rows: Vec<(String, Vec<f64>, OutputBounds)> = Vec::new();
+    for row in 0..inner {
+        let of_point = |point: &SweepPoint| {
+            let own = point.summary.as_ref().and_then(|summary| summary.reduced.get(reduced)).cloned();
+            own.map(|own| (si * point.values[0], own))
         };
-        let shape = Polygon::new()
-            .set("points", around.join(" "))
-            .set("fill", color)
-            .set("fill-opacity", 0.2)
-            .set("stroke", color);
-        let curve = Curve::new()
-            .set("d", format!("M{}", nominal.join(" L")))
-            .set("fill", "none")
-            .set("stroke", color)
-            .set("stroke-width", 2);
-        let row = TOP + 14.0 + 20.0 * place as f64;
-        let mut group = Group::new()
-            .set("class", "series")
-            .set("data-series", format!("sweep-{place}"))
-            .add(Title::new(text.clone()))
-            .add(shape);
-        if !nominal.is_empty() {
-            group = group.add(curve);
-        }
-        if row < HEIGHT - BOTTOM {
-            group = group.add(label((WIDTH - RIGHT + 10.0, row), "start", text.trim()).set("fill", color));
-        }
-        document = document.add(group);
+        let mut points: Vec<(f64, ReducedSummary)> =
+            sweep.points.iter().skip(row).step_by(inner).filter_map(of_point).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, first)) = points.first() else { continue };
+        let label = sweep.axes.get(1).map_or_else(String::new, |second| {
+            format!("{} = {} {}", second.name, rounded(second.values[row]), second.unit).trim_end().to_owned()
+        });
+        let band = |place: usize| {
+            let column = |of: fn(&ReducedBand) -> f64| {
+                points.iter().map(|(_, own)| own.bands.get(place).map_or(f64::NAN, of)).collect()
+            };
+            let unresolved = points.iter().map(|(_, own)| own.bands.get(place).is_none_or(|band| band.unresolved));
+            let error = BandError {
+                total: column(|band| band.error),
+                unresolved: unresolved.collect(),
+                ..BandError::default()
+            };
+            let method = Method::ALL.into_iter().find(|method| method.name() == first.bands[place].method)?;
+            Some(Band { method, lower: column(|band| band.lower), upper: column(|band| band.upper), error })
+        };
+        let output = OutputBounds {
+            name: first.name.clone(),
+            unit: first.unit.clone(),
+            display: first.display.clone(),
+            nominal: points.iter().map(|(_, own)| own.nominal).collect(),
+            bands: (0..first.bands.len()).filter_map(band).collect(),
+        };
+        rows.push((label, points.iter().map(|point| point.0).collect(), output));
     }
-    format!("{document}\n")
-}
-
-fn line(from: (f64, f64), to: (f64, f64)) -> Line {
-    let line = Line::new().set("x1", from.0).set("y1", from.1).set("x2", to.0).set("y2", to.1);
-    line.set("stroke", "#dddddd")
-}
-
-fn label((x, y): (f64, f64), anchor: &str, text: &str) -> Text {
-    Text::new(text).set("x", x).set("y", y).set("text-anchor", anchor)
-}
-
-/// As many digits as the range needs.
-fn tick_text(value: f64, range: f64) -> String {
-    let digits = (2.0 - symdiff::math::log10(range.abs().max(f64::MIN_POSITIVE)).floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{value:.digits$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
+    let swept = Swept { name: &axis.name, unit: &axis.unit, si };
+    let rows: Vec<SweptBounds> =
+        rows.iter().map(|(label, values, output)| SweptBounds { label, values, output }).collect();
+    let requirements = sweep.first().map_or(&[][..], |first| &first.requirements);
+    sweep_svg(Caption { model: &sweep.model, prefix: "sweep" }, swept, &rows, requirements)
 }

@@ -27,7 +27,7 @@ pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};
 pub use robot::{RobotTree, Shape, TreeJoint, TreeLink, Visual};
 pub use simulation::{Formulation, SchemeChoice, Simulation, Stepping};
 pub use start::StartValue;
-pub use statistics::{Correlation, Law, Statistics};
+pub use statistics::{Correlation, Cost, Grade, Law, Statistics};
 
 /// A mechanism, its uncertain parameters and what is asked of it.
 ///

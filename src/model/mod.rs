@@ -18,6 +18,7 @@ mod display;
 mod effects;
 mod joints;
 mod load;
+mod overlay;
 mod overrides;
 mod parameters;
 mod parts;
@@ -41,4 +42,5 @@ pub use crate::grammar::{Coordinate, JointCoordinate, PointRef, Reference, Rotat
 pub use description::*;
 pub use file::{SCHEMA_VERSION, schema};
 pub use load::{Reading, Scene, UnknownScene, is_standard_input, load, load_str, read, read_str, shown};
+pub use overlay::read_overlay;
 pub use overrides::Override;

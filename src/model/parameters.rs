@@ -1,6 +1,7 @@
 //! `parameters:` and the `--set` that replace them.
 
 mod corners;
+mod cost;
 mod dependent;
 mod interval;
 pub(super) mod law;
@@ -171,20 +172,26 @@ fn finish(reader: &mut Reader, draft: &Draft, index: usize, values: &mut [f64]) 
         values[index] = number.unwrap_or(f64::NAN);
         reader.model.parameters[index].value = ParameterValue::Formula(formula);
     }
-    if let (false, Some(node)) = (draft.spec.is_uncertain(), &draft.spec.distribution) {
-        let help = "give it a `tolerance` or an `interval`".to_owned();
-        reader.error(node.span.clone(), "the parameter is not uncertain, but has a `distribution`", help);
+    for (node, key) in [(&draft.spec.distribution, "distribution"), (&draft.spec.cost, "cost")] {
+        if let (false, Some(node)) = (draft.spec.is_uncertain(), node) {
+            let help = "give it a `tolerance` or an `interval`".to_owned();
+            reader.error(node.span.clone(), format!("the parameter is not uncertain, but has a `{key}`"), help);
+        }
     }
     settle(reader, draft, index, kind);
 }
 
-/// Reads the law of an uncertain parameter.
+/// Reads the law of an uncertain parameter, and what its tolerance costs.
 fn says_more(reader: &mut Reader, draft: &Draft, index: usize, place: law::Place, kind: &mut Kind) {
     let name = reader.model.parameters[index].name.clone();
     if let Some(node) = &draft.spec.distribution {
         let law = law::read(reader, draft, node, place, kind);
         reader.model.statistics.asked = true;
-        reader.model.statistics.laws.extend(law.map(|law| (name, law)));
+        reader.model.statistics.laws.extend(law.map(|law| (name.clone(), law)));
+    }
+    if let Some(node) = &draft.spec.cost {
+        let cost = cost::read(reader, draft, node, place.nominal, kind);
+        reader.model.statistics.costs.extend(cost.map(|cost| (name, cost)));
     }
 }
 

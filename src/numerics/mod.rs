@@ -11,6 +11,7 @@
 
 mod along;
 mod bernstein;
+mod cheapest;
 mod chebyshev;
 mod decay;
 mod design;
@@ -21,6 +22,7 @@ mod error;
 mod evaluation;
 mod extent;
 mod extremes;
+pub mod iso286;
 mod lattice;
 mod leja;
 mod observed_order;
@@ -43,6 +45,7 @@ mod taylor;
 mod tensor;
 mod time_shift;
 
+pub use cheapest::{Linear, Power, cheapest};
 pub use decay::truncation;
 pub use design::{Design, MOST_AXES};
 pub use domain::{ParameterBox, Sample};

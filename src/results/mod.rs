@@ -1,5 +1,6 @@
 //! What a run yields, as data only.
 
+mod allocation;
 mod analysis;
 mod bounds;
 mod cost;
@@ -19,6 +20,7 @@ mod structure;
 mod summary;
 
 pub use crate::methods::Method;
+pub use allocation::{AllocatedTolerance, Allocation, Criterion, NotMet, ToleranceZone, TradePoint};
 pub use analysis::{AnalysisSummary, ValueSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
 #[cfg(test)]

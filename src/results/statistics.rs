@@ -93,9 +93,12 @@ pub struct StatisticsSummary {
     pub simulations: usize,
     /// By output, where it varies most.
     pub outputs: Vec<OutputStatisticsSummary>,
-    /// How many fulfil each requirement that is over time.
+    /// How many fulfil each requirement.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<YieldSummary>,
+    /// The same of all requirements together, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub together: Option<YieldSummary>,
     /// What prevents it, or a part of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -128,7 +131,7 @@ pub struct OutputStatisticsSummary {
     pub quantiles: Vec<Uncertain>,
 }
 
-/// The share of what is made that fulfils a requirement, by samples of the surrogate at the output times.
+/// The share of what is made that fulfils a requirement, by samples of the surrogate of its margin: over the whole motion, between rows too.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct YieldSummary {
     /// Name of the requirement.
@@ -144,10 +147,14 @@ pub struct YieldSummary {
     /// Capability at the worst time, (U − L)/(6σ); of a requirement with two limits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cp: Option<f64>,
-    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ.
-    pub cpk: f64,
+    /// Capability at the worst time, the mean's distance from the nearer limit over 3σ; that of the margin of what is one number a motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpk: Option<f64>,
     /// When that is, s.
-    pub time: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
     /// Samples.
     pub samples: usize,
+    /// Whether they were drawn about the likeliest points that fail (importance sampling), since so few do.
+    pub about_failures: bool,
 }

@@ -45,6 +45,7 @@ impl Study<'_> {
             surrogate,
             errors: Vec::new(),
             times: times[..rows].to_vec(),
+            reduced: results.found.kept.take(),
         };
         let (_, outcome) = results.methods.iter().find(|(method, _)| *method == METHOD)?;
         let errors = self.errors_of_values(&part, results, outcome).ok()?;

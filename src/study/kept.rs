@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::reduced::KeptReduced;
 use crate::methods::{self, KeptSurrogate};
 use crate::numerics::{BandError, SparseBasis};
 use crate::simulate::{Closure, SimulationError, Simulator};
@@ -21,6 +22,8 @@ pub(super) struct KeptPart {
     pub errors: Vec<BandError>,
     /// Output times, s.
     pub times: Vec<f64>,
+    /// Reduced outputs and margins, where the model has some.
+    pub reduced: Option<KeptReduced>,
 }
 
 /// The surrogates of all subsystems of a run.
@@ -106,6 +109,12 @@ impl Kept {
         let Placed { part, parameters } = &self.parts[number];
         let pick = |sample: &P| -> Vec<f64> { parameters.iter().map(|&own| sample.as_ref()[own]).collect() };
         part.surrogate.own_values(row, &[place], &samples.iter().map(pick).collect::<Vec<_>>())
+    }
+
+    /// Reduced outputs, then margins of requirements, and the numbers of the uncertain parameters on which they may depend. `None` where the
+    /// model has none: one that has some is one subsystem.
+    pub fn reduced(&self) -> Option<(&KeptReduced, &[usize])> {
+        self.parts.iter().find_map(|placed| Some((placed.part.reduced.as_ref()?, placed.parameters.as_slice())))
     }
 
     /// Prepares evaluation: compiles the loop closures that outputs need.

@@ -6,8 +6,9 @@
 //! the methods found. `feasible` bounds the part of a box in which there is a motion, `formulation` chooses the coordinates, `cost` runs one
 //! model with many settings to find what accuracy costs, and `explain` says what a model is compiled to. `price` tells what a run costs, `drawing`
 //! and `motion` show the mechanism, `internal` keeps a panic to what panicked, `keeping` and `kept` keep surrogates for whoever
-//! evaluates them after the run, as `statistics` does.
+//! evaluates them after the run, as `statistics` does, and `allocate`, which looks for tolerances.
 
+mod allocate;
 mod analysis;
 mod assemblies;
 mod conclude;
@@ -53,6 +54,7 @@ use crate::store::PartStore;
 
 use subsystems::Prepared;
 
+pub use allocate::{AllocateError, AllocateOptions, allocate};
 pub use assemblies::of as assemblies;
 pub use cost::{CostOptions, cost};
 pub use drawing::drawing;

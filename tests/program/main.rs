@@ -2,6 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with the standard library's functions")]
 
+mod allocate;
 mod bad_models;
 mod book;
 mod cli;

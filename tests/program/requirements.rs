@@ -91,3 +91,28 @@ fn a_sweep_has_a_row_for_each_value() {
         assert!((cells[column].parse::<f64>().unwrap() + g / 8.0).abs() < 1e-9, "{line}");
     }
 }
+
+#[test]
+fn what_is_undecided_ends_with_3_and_says_what_decides() {
+    let place = Place::new();
+    // 0.25 m at least; the line through two nodes says 0.125 m.
+    let text = "
+model: square
+parameters: { k: { value: 1, tolerance: 0.5 } }
+bodies: { block: { mass: 1, coordinates: [x] } }
+initial: { block.x: k^2*(1 m), block.vx: 0 }
+outputs: { x: block.x }
+requirements: { far: x >= 0.2 m }
+simulation: { duration: 0.02, step: 0.01, output_step: 0.01 }
+bounds: { chebyshev: { order: 1, expand: output }, budget: { solves: 40 } }
+";
+    fs::write(place.path().join("square.yaml"), text).unwrap();
+    let (output, _) = place.run("run square.yaml -o out --junit verdicts.xml", 3);
+    assert!(output.contains("far is undecided; it takes"), "{output}");
+    let xml = fs::read_to_string(place.path().join("verdicts.xml")).unwrap();
+    assert!(xml.contains("errors=\"1\"") && xml.contains("failures=\"0\""), "{xml}");
+    // With the budget left as it is, the order is raised until it is decided.
+    fs::write(place.path().join("square.yaml"), text.replace(", budget: { solves: 40 }", "")).unwrap();
+    let (output, _) = place.run("run square.yaml -o out", 0);
+    assert!(output.contains("holds") && output.contains("earlier round"), "{output}");
+}

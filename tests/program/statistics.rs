@@ -26,3 +26,53 @@ fn the_guides_example_has_statistics_beside_its_bounds() {
     let last: Vec<f64> = table.lines().last().unwrap().split(',').take(13).map(|cell| cell.parse().unwrap()).collect();
     assert!((last[1] - 1e-3).abs() < 1e-7 && (last[11] - 0.41e-3).abs() < 1e-9, "{last:?}");
 }
+
+/// Φ(−z) by its continued fraction (Abramowitz & Stegun 26.2.14).
+fn tail(z: f64) -> f64 {
+    let fraction = (1..200).rev().fold(z, |below, k| z + f64::from(k) / below);
+    (-0.5 * z * z).exp() / (std::f64::consts::TAU.sqrt() * fraction)
+}
+
+#[test]
+fn yields_of_reduced_outputs_between_rows_and_of_few_that_fail() {
+    let place = Place::new();
+    // Thrown up at v: the peak v²/2g lies between rows; at the end y = v/2 − g/8.
+    let text = "
+model: thrown
+parameters: { v: { value: 2, unit: m/s, tolerance: 60 mm/s, distribution: normal } }
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { ball.y: 0, ball.vy: v }
+outputs:
+  y: ball.y
+  peak: { max: y }
+requirements:
+  low: { output: peak, max: 0.212110092 m }
+  below: y <= 0.212110092 m
+  rare: { output: y, at: 0.5, max: -0.17625 m }
+simulation: { duration: 0.5, step: 1e-3, output_step: 0.25 }
+bounds: { chebyshev: { order: 3 } }
+";
+    fs::write(place.path().join("thrown.yaml"), text).unwrap();
+    // Worst case: 2.06²/19.62 is 0.2163.
+    let (printed, _) = place.run("run thrown.yaml -o out", 4);
+    assert!(printed.contains("by importance sampling") && printed.contains("all requirements"), "{printed}");
+    let summary = fs::read_to_string(place.path().join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    // v > 2.04 is two deviations; v > 2.1 are five.
+    for (number, fails, most) in [(0, tail(2.0), 0.02), (1, tail(2.0), 0.02), (2, tail(5.0), 0.05)] {
+        let found = &summary["statistics"]["requirements"][number];
+        let ppm = |key: &str| found[key].as_f64().unwrap();
+        assert!((1e-6 * ppm("ppm") / fails - 1.0).abs() < most, "{found} {fails}");
+        let ends = [0, 1].map(|end| 1e-6 * found["ppm_interval"][end].as_f64().unwrap());
+        assert!(ends[0] <= fails && fails <= ends[1], "{found} {fails}");
+        assert_eq!(found["about_failures"].as_bool().unwrap(), number == 2, "{found}");
+    }
+    let together = 1e-6 * summary["statistics"]["together"]["ppm"].as_f64().unwrap();
+    assert!((together / tail(2.0) - 1.0).abs() < 0.02, "{together}");
+    // The plot has the quantiles beside the bounds, and so has the report.
+    for file in ["y.svg", "report.html"] {
+        let text = fs::read_to_string(place.path().join("out").join(file)).unwrap();
+        assert!(text.contains("quantiles, 0.135 % to 99.865 %"), "{file}");
+    }
+}

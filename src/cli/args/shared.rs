@@ -1,10 +1,12 @@
 //! Arguments that several commands have.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::{methods, parse_override};
 use crate::cli::Failure;
-use crate::model::Override;
+use crate::model::{Override, read_overlay};
 use crate::results::Method;
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
@@ -71,19 +73,31 @@ pub(in crate::cli) struct SetArgs {
     /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
     #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
     set: Vec<Override>,
+
+    /// Set the parameters of this YAML file (`parameters: { l1: 0.16 ± 2% }`), as `mbint allocate` writes it; `--set` goes before.
+    #[arg(long, value_name = "FILE")]
+    with: Vec<PathBuf>,
 }
 
 impl SetArgs {
     /// What is set; every parameter at most once.
     ///
     /// # Errors
-    /// For the first that is set twice.
-    pub fn overrides(&self) -> Result<&[Override], Failure> {
-        let twice =
-            |&(i, setting): &(usize, &Override)| self.set[..i].iter().any(|earlier| earlier.name == setting.name);
-        match self.set.iter().enumerate().find(twice) {
-            Some((_, setting)) => Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name))),
-            None => Ok(&self.set),
+    /// For the first that is set twice, and for what is wrong with a file.
+    pub fn overrides(&self) -> Result<Vec<Override>, Failure> {
+        let mut laid: Vec<Override> = Vec::new();
+        for path in &self.with {
+            laid.extend(read_overlay(path).map_err(|wrong| Failure::Wrong(wrong.to_string()))?);
         }
+        for all in [&laid, &self.set] {
+            let twice =
+                |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);
+            if let Some((_, setting)) = all.iter().enumerate().find(twice) {
+                return Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name)));
+            }
+        }
+        laid.retain(|own| self.set.iter().all(|setting| setting.name != own.name));
+        laid.extend(self.set.iter().cloned());
+        Ok(laid)
     }
 }

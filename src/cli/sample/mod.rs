@@ -40,9 +40,10 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
     let (path, format) = target(args.output, args.format);
     let store = args.store.map(|folder| KeptRun::new(folder, Missing::Simulate));
     let scenes: Vec<String> = args.scene.into_iter().collect();
+    let overrides = args.set.overrides()?;
     let sampling = Sampling {
         model: &args.model,
-        overrides: args.set.overrides()?,
+        overrides: &overrides,
         scenes: &scenes,
         points: &points,
         output: Some((&path, format)),

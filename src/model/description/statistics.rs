@@ -15,6 +15,8 @@ pub struct Statistics {
     pub laws: Vec<(String, Law)>,
     /// Parameters that depend on each other.
     pub correlations: Vec<Correlation>,
+    /// What tolerances cost, by the names of uncertain parameters.
+    pub costs: Vec<(String, Cost)>,
 }
 
 /// A parameter's law.
@@ -35,7 +37,34 @@ pub struct Correlation {
     pub matrix: Vec<Vec<f64>>,
 }
 
+/// What a parameter's tolerance costs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cost {
+    /// It stays as it is.
+    Fixed,
+    /// So much at the model's tolerance, and inversely proportional to the tolerance.
+    Reciprocal(f64),
+    /// Grades of processes, the tightest first.
+    Grades(Vec<Grade>),
+}
+
+/// A grade of a process.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grade {
+    /// `IT7`.
+    pub name: String,
+    /// To either side, in the parameter's SI unit.
+    pub tolerance: f64,
+    /// What it costs.
+    pub cost: f64,
+}
+
 impl Statistics {
+    /// What a parameter's tolerance costs, where the model says so.
+    pub fn cost(&self, name: &str) -> Option<&Cost> {
+        self.costs.iter().find(|(known, _)| known == name).map(|(_, cost)| cost)
+    }
+
     /// The law of a parameter that lies in an interval.
     pub fn law(&self, name: &str, lower: f64, upper: f64) -> Law {
         let known = self.laws.iter().find(|(known, _)| known == name).map(|(_, law)| law.clone());

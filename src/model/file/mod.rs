@@ -102,6 +102,7 @@ mod tests {
         same_keys::<Statistics>();
         same_keys::<CorrelationFile>();
         same_keys::<LawKinds>();
+        same_keys::<CostKinds>();
         same_keys::<Held>();
         same_keys::<Rotation>();
         same_keys::<Simulation>();

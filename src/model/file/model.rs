@@ -166,6 +166,8 @@ grammar! {
         minus: Option<Number>,
         /// How it is distributed, for statistics; by default uniformly over its interval.
         distribution: Option<LawFile>,
+        /// What its tolerance costs, for `mbint allocate`.
+        cost: Option<CostFile>,
         /// What it is, for people.
         description: Option<String>,
     }

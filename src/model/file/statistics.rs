@@ -1,5 +1,6 @@
-//! Laws of parameters, and statistics.
+//! Laws of parameters, statistics and what tolerances cost.
 
+use indexmap::IndexMap;
 use schemars::JsonSchema;
 
 use super::*;
@@ -23,6 +24,19 @@ schema_only! {
     pub enum LawFile {
         Name(LawName),
         Full(Box<LawKinds>),
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum FixedName {
+        Fixed,
+    }
+
+    /// What a tolerance costs.
+    #[schemars(untagged, inline)]
+    pub enum CostFile {
+        /// It stays as it is.
+        Fixed(FixedName),
+        Full(Box<CostKinds>),
     }
 }
 
@@ -88,5 +102,15 @@ grammar! {
         coefficient: Option<f64>,
         /// Instead: a row for each, with ones on the diagonal.
         matrix: Option<Vec<Vec<f64>>>,
+    }
+
+    /// How cost depends on the tolerance.
+    CostKinds is "a `cost`" {
+        /// The cost at the model's tolerance; it is inversely proportional to the tolerance.
+        reciprocal: Option<f64>,
+        /// Costs by grade: `IT5` to `IT12` of ISO 286-1, or a tolerance such as `0.02 mm`.
+        grades: Option<IndexMap<String, f64>>,
+        /// The nominal size by which ISO 286 chooses the width of a grade; by default the parameter's value.
+        size: Option<Number>,
     }
 }

@@ -18,6 +18,7 @@ pub struct Spec {
     pub plus: Option<Node>,
     pub minus: Option<Node>,
     pub distribution: Option<Node>,
+    pub cost: Option<Node>,
     /// The deviation is said twice, as was reported: there is none to go on with.
     pub contradictory: bool,
     /// Value and deviation stand in one piece.
@@ -53,7 +54,12 @@ impl Spec {
 
     /// Takes what the command line says instead: all of it, or the deviation alone.
     pub fn replace(&mut self, reader: &mut Reader, node: &Node) {
-        let kept = Self { unit: self.unit.take(), distribution: self.distribution.take(), ..Self::default() };
+        let kept = Self {
+            unit: self.unit.take(),
+            distribution: self.distribution.take(),
+            cost: self.cost.take(),
+            ..Self::default()
+        };
         let before = std::mem::replace(self, kept);
         self.whole(reader, node);
         if self.value.is_none() && self.interval.is_none() {
@@ -76,6 +82,7 @@ impl Spec {
         }
         self.unit = fields.get("unit").cloned();
         self.distribution = fields.get("distribution").cloned();
+        self.cost = fields.get("cost").cloned();
         if let Some(description) = fields.get("description") {
             reader.scalar(description, "a text");
         }

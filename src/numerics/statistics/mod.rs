@@ -5,10 +5,13 @@ mod copula;
 mod distribution;
 mod estimates;
 mod points;
+mod rare;
 mod special;
 
 pub use copula::Copula;
 pub use distribution::Distribution;
 pub use estimates::share_interval;
-pub use estimates::{Estimate, Replicates};
+pub use estimates::{Estimate, Replicates, quantile_of};
 pub use points::{REPLICATES, replicate};
+pub use rare::{RARE_SAMPLES, rare_share};
+pub use special::{normal_cdf, normal_quantile};

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range as Rows;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
@@ -31,7 +31,7 @@ pub fn steps_of(schedule: &Schedule) -> Steps {
 /// What samples were reduced to.
 #[derive(Debug)]
 pub struct Store {
-    pub plan: Plan,
+    pub plan: Arc<Plan>,
     /// By steps and the bits of the parameters.
     kept: Mutex<BTreeMap<Key, Vec<f64>>>,
 }
@@ -43,7 +43,7 @@ fn bits(sample: &Sample) -> Vec<u64> {
 impl Store {
     /// Of nothing yet.
     pub fn new(plan: Plan) -> Self {
-        Self { plan, kept: Mutex::default() }
+        Self { plan: Arc::new(plan), kept: Mutex::default() }
     }
 
     /// Keeps what samples were reduced to, channel by channel, sample by sample.
@@ -188,9 +188,9 @@ impl Ensemble for ReducedEnsemble<'_> {
 }
 
 /// Values from channels.
-struct Composition<'a> {
-    plan: &'a Plan,
-    independent: Vec<usize>,
+pub(super) struct Composition<'a> {
+    pub plan: &'a Plan,
+    pub independent: Vec<usize>,
 }
 
 impl methods::Closure for Composition<'_> {

@@ -1,5 +1,6 @@
 //! What was found of reduced outputs and requirements.
 
+use super::kept::KeptReduced;
 use crate::results::{MethodSummary, ReducedSummary, RequirementSummary};
 
 /// What was found of reduced outputs and requirements.
@@ -9,4 +10,6 @@ pub struct Found {
     pub requirements: Vec<RequirementSummary>,
     /// What it took besides the samples of the outputs.
     pub summary: Option<MethodSummary>,
+    /// Where surrogates are kept.
+    pub kept: Option<KeptReduced>,
 }

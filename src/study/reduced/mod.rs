@@ -1,11 +1,14 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements (`found` has all of it); `refine` runs a model until all are decided.
+//! what the methods see; `verdicts` decides requirements (`found` has all of it); `keeping` and `kept` evaluate
+//! them after the run; `refine` runs a model until all are decided.
 
 mod ensemble;
 mod expand;
 mod found;
+mod keeping;
+mod kept;
 mod plan;
 mod refine;
 mod verdicts;
@@ -13,6 +16,7 @@ mod verdicts;
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
 pub(super) use found::Found;
+pub use kept::KeptReduced;
 pub(super) use refine::run;
 
 use super::conclude::{bands, contributions};
@@ -113,7 +117,8 @@ impl Study<'_> {
         let with_odd = ReducedEnsemble::new(&motions_odd, store, &odd);
         let ensembles =
             Ensembles { direct: &direct, halved: &with_halved, odd: &with_odd, ratio: schedule.ratio_to(&odd) };
-        let results = self.bounds_of(ensembles, schedule, &halved)?;
+        let mut results = self.bounds_of(ensembles, schedule, &halved)?;
+        let kept = self.kept_reduced(&mut results, &store.plan, rows.unreliable_from().is_some());
         let mut samples = Vec::new();
         let all = store.samples(steps_of(schedule));
         for (sample, channels) in &all {
@@ -145,7 +150,7 @@ impl Study<'_> {
             expanded_outputs: Vec::new(),
             seconds: Some(begun.elapsed().as_secs_f64()),
         });
-        Ok(Found { reduced, requirements, summary })
+        Ok(Found { reduced, requirements, summary, kept })
     }
 
     /// What each sampled method finds of all values.

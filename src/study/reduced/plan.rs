@@ -22,8 +22,11 @@ pub struct Plan {
     pub channels: Vec<Channel>,
     /// Number of those that the surrogate expands.
     pub expanded: usize,
-    /// Reduced outputs, then margins of requirements.
+    /// Reduced outputs, then parts of the requirements' margins.
     values: Vec<Value>,
+    /// For each requirement, which values are parts of its margin: it is the least of them. Each part is bounded alone, so that the
+    /// kinks between them do no harm.
+    margins: Vec<std::ops::Range<usize>>,
     /// For each requirement over the time, the channels that say when each slack is least, and how much it is then.
     whens: Vec<Vec<(usize, usize)>>,
 }
@@ -85,7 +88,12 @@ impl Plan {
         let end = description.simulation.duration;
         let mut planner = Planner { channels: Vec::new(), nominal, times };
         let mut values: Vec<Value> = description.reduced.iter().map(|reduced| planner.reduced(reduced, end)).collect();
-        values.extend(description.requirements.iter().map(|own| planner.margin(description, own)));
+        let mut margins = Vec::with_capacity(description.requirements.len());
+        for own in &description.requirements {
+            let first = values.len();
+            values.extend(planner.margin(description, own));
+            margins.push(first..values.len());
+        }
         let expanded = planner.channels.len();
         let when = |own: &Requirement| match own.times {
             Some((from, to)) if from < to => {
@@ -96,12 +104,22 @@ impl Plan {
             _ => Vec::new(),
         };
         let whens = description.requirements.iter().map(when).collect();
-        Self { channels: planner.channels, expanded, values, whens }
+        Self { channels: planner.channels, expanded, values, margins, whens }
     }
 
     /// Number of values.
     pub fn values(&self) -> usize {
         self.values.len()
+    }
+
+    /// Which values are parts of a requirement's margin.
+    pub fn parts(&self, requirement: usize) -> std::ops::Range<usize> {
+        self.margins[requirement].clone()
+    }
+
+    /// A requirement's margin, given all values; NaN where a part is unknown.
+    pub fn margin(&self, requirement: usize, value: impl Fn(usize) -> f64) -> f64 {
+        self.parts(requirement).map(value).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
     }
 
     /// All values of a motion with these channels and parameters.
@@ -189,13 +207,17 @@ impl Planner<'_> {
         }
     }
 
-    /// The least slack.
-    fn margin(&mut self, description: &Description, own: &Requirement) -> Value {
-        match own.times {
-            Some((from, to)) if from == to => Value::Least(self.windowed_at(&own.places, from)),
-            Some(span) => Value::Least(own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect()),
-            None => Value::Formulas(Box::new(Formulas::of(description, &own.slacks))),
-        }
+    /// What the margin is the least of.
+    fn margin(&mut self, description: &Description, own: &Requirement) -> Vec<Value> {
+        let channels = match own.times {
+            Some((from, to)) if from == to => self.windowed_at(&own.places, from),
+            Some(span) => own.places.iter().flat_map(|&place| self.extremes(place, -1.0, span)).collect(),
+            None => {
+                let formula = |slack| Value::Formulas(Box::new(Formulas::of(description, slack)));
+                return own.slacks.iter().map(std::slice::from_ref).map(formula).collect();
+            }
+        };
+        channels.into_iter().map(|channel| Value::Least(vec![channel])).collect()
     }
 
     fn windowed_at(&mut self, places: &[usize], at: f64) -> Vec<usize> {

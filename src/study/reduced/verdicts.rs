@@ -18,6 +18,21 @@ const SAFETY: f64 = 1.25;
 const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
 
+/// Bounds of a part of a margin.
+struct Part {
+    lower: f64,
+    error: f64,
+    surrogate: f64,
+    time: f64,
+    is_reliable: bool,
+    method: &'static str,
+}
+
+/// NaN is passed on.
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a || b.is_nan() { b } else { a }
+}
+
 impl Study<'_> {
     /// The verdict of each requirement.
     ///
@@ -40,13 +55,14 @@ impl Study<'_> {
         rows: &Results,
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<RequirementSummary, SimulationError> {
-        let place = self.description.reduced.len() + number;
-        let bands = bands(self, values.results, place, 1);
-        let band = foremost(&bands, |band: &Band| !band.error.unresolved[0]);
-        let lower = band.map_or(f64::NAN, |band| band.lower[0]);
-        let error = band.map_or(f64::NAN, |band| band.error.total[0]);
-        let is_reliable = band.is_some_and(|band| !band.error.unresolved[0]) && !values.unreliable;
-        let holds = is_reliable && lower - error >= 0.0;
+        let parts: Vec<Part> = ensembles[0].plan().parts(number).map(|place| self.part(values, place)).collect();
+        let lower = parts.iter().map(|part| part.lower).fold(f64::INFINITY, smaller);
+        let least = parts.iter().map(|part| part.lower - part.error).fold(f64::INFINITY, smaller);
+        let error = lower - least;
+        // The part that decides.
+        let part = parts.iter().min_by(|a, b| (a.lower - a.error).total_cmp(&(b.lower - b.error)));
+        let is_reliable = parts.iter().all(|part| part.is_reliable) && !values.unreliable;
+        let holds = is_reliable && least >= 0.0;
         let nearest = self.nearest((number, own), values, holds, ensembles)?;
         let fails = nearest.as_ref().is_some_and(|case| case.margin.is_nan() || case.margin + case.error < 0.0);
         let verdict = match (fails, holds) {
@@ -59,7 +75,7 @@ impl Study<'_> {
             _ => lower,
         };
         let limit = own.limits.first().map(|limit| limit.value.abs()).filter(|limit| *limit > 0.0);
-        let [surrogate, time] = [band.map(|band| band.error.surrogate), band.map(|band| band.error.time)];
+        let [surrogate, time] = [part.map(|part| part.surrogate), part.map(|part| part.time)];
         let decides = (verdict == Verdict::Undecided)
             .then(|| decides(lower, [surrogate, time].map(|error| error.unwrap_or(f64::NAN)), is_reliable));
         Ok(RequirementSummary {
@@ -73,11 +89,25 @@ impl Study<'_> {
             error,
             surrogate: surrogate.unwrap_or(f64::NAN),
             time: time.unwrap_or(f64::NAN),
-            method: band.map_or("nominal", |band| band.method.name()).to_owned(),
+            method: part.map_or("nominal", |part| part.method).to_owned(),
             nearest,
             decides,
             limits: self.limit_lines(own),
         })
+    }
+
+    /// Bounds of a part of a margin, by the foremost method.
+    fn part(&self, values: &Values, place: usize) -> Part {
+        let bands = bands(self, values.results, place, 1);
+        let band = foremost(&bands, |band: &Band| !band.error.unresolved[0]);
+        Part {
+            lower: band.map_or(f64::NAN, |band| band.lower[0]),
+            error: band.map_or(f64::NAN, |band| band.error.total[0]),
+            surrogate: band.map_or(f64::NAN, |band| band.error.surrogate),
+            time: band.map_or(f64::NAN, |band| band.error.time),
+            is_reliable: band.is_some_and(|band| !band.error.unresolved[0]),
+            method: band.map_or("nominal", |band| band.method.name()),
+        }
     }
 
     /// The simulated sample with the least margin; where bounds do not tell that all hold, the neighbours of the best are tried too.
@@ -88,14 +118,14 @@ impl Study<'_> {
         holds: bool,
         [direct, halved]: [&ReducedEnsemble; 2],
     ) -> Result<Option<NearestCase>, SimulationError> {
-        let place = self.description.reduced.len() + number;
+        let margin = |all: &[f64]| direct.plan().margin(number, |place| all[place]);
         // What has no value fails more than what has one.
         let key = |value: f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
-        let best = values.samples.iter().min_by(|a, b| key(a.1[place]).total_cmp(&key(b.1[place])));
-        let Some((sample, found)) = best else { return Ok(None) };
-        let mut best = (sample.clone(), found[place]);
+        let of_sample = |(sample, all): &(Sample, Vec<f64>)| (sample.clone(), margin(all));
+        let best = values.samples.iter().map(of_sample).min_by(|a, b| key(a.1).total_cmp(&key(b.1)));
+        let Some(mut best) = best else { return Ok(None) };
         if !holds && best.1 > 0.0 {
-            self.search(place, &mut best, direct)?;
+            self.search(number, &mut best, direct)?;
         }
         let sample = std::slice::from_ref(&best.0);
         let of = |ensemble: &ReducedEnsemble| {
@@ -103,16 +133,16 @@ impl Study<'_> {
             let channels = channels.swap_remove(0);
             let mut all = Vec::new();
             ensemble.plan().evaluate(&channels, &sample[0], &mut all);
-            Ok::<_, SimulationError>((all[place], channels))
+            Ok::<_, SimulationError>((margin(&all), channels))
         };
-        let ((margin, channels), (finer, _)) = (of(direct)?, of(halved)?);
-        let error = SAFETY * step_error(&[margin], &[finer]);
+        let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
+        let error = SAFETY * step_error(&[least], &[finer]);
         let xi = self.domain.xi(&best.0);
         let known = self.simulator.system.parameters.iter().zip(best.0.iter());
         Ok(Some(NearestCase {
             parameters: best.0.to_vec(),
-            margin,
-            error: if error.is_nan() && !margin.is_nan() { f64::INFINITY } else { error },
+            margin: least,
+            error: if error.is_nan() && !least.is_nan() { f64::INFINITY } else { error },
             time: direct.plan().when((number, own), &channels),
             corner: !xi.is_empty() && xi.iter().all(|xi| (xi.abs() - 1.0).abs() < 1e-12),
             settings: known.map(|(parameter, value)| setting(&parameter.name, *value, &parameter.unit)).collect(),
@@ -123,7 +153,7 @@ impl Study<'_> {
     /// Looks for a smaller margin around the best sample, along each axis and towards the corners of the box.
     fn search(
         &self,
-        place: usize,
+        requirement: usize,
         best: &mut (Sample, f64),
         ensemble: &ReducedEnsemble,
     ) -> Result<(), SimulationError> {
@@ -144,8 +174,9 @@ impl Study<'_> {
             let before = best.1;
             for (sample, channels) in samples.iter().zip(&channels) {
                 ensemble.plan().evaluate(channels, sample, &mut values);
-                if values[place] < best.1 {
-                    *best = (sample.clone(), values[place]);
+                let margin = ensemble.plan().margin(requirement, |place| values[place]);
+                if margin < best.1 {
+                    *best = (sample.clone(), margin);
                 }
             }
             if best.1 < 0.0 {

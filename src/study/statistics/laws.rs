@@ -2,7 +2,7 @@
 
 use super::{intervals, law_summary};
 use crate::model::{Description, Law, ParameterValue};
-use crate::numerics::statistics::{Copula, Distribution, replicate};
+use crate::numerics::statistics::{Copula, Distribution, normal_cdf, replicate};
 use crate::results::LawSummary;
 
 /// A surrogate reaches as many standard deviations to either side of a normal law: 2e-9 of it lies beyond.
@@ -68,10 +68,7 @@ impl Laws {
     /// The model over a box that has nearly all of the laws; samples are drawn from it then.
     pub fn widened(&mut self, description: &Description) -> Description {
         for (place, law) in self.laws.iter().enumerate() {
-            if let Distribution::Normal { mean, sigma } = law.distribution {
-                self.least[place] = self.lower[place].min(mean - REACH * sigma);
-                self.most[place] = self.upper[place].max(mean + REACH * sigma);
-            }
+            (self.least[place], self.most[place]) = ends(law, (self.lower[place], self.upper[place]));
         }
         let mut wider = description.clone();
         let uncertain = wider.parameters.iter_mut().filter_map(|parameter| match &mut parameter.value {
@@ -126,9 +123,27 @@ impl Laws {
         samples
     }
 
+    /// The sample with these independent normal scores.
+    pub fn of_scores(&self, scores: &[f64]) -> Vec<f64> {
+        let mut scores = scores.to_vec();
+        self.copula.correlate_scores(&mut scores);
+        let value = |(place, score): (usize, &f64)| {
+            self.laws[place].distribution.quantile(normal_cdf(*score)).clamp(self.least[place], self.most[place])
+        };
+        scores.iter().enumerate().map(value).collect()
+    }
+
     /// As they are printed.
     pub fn summaries(&self) -> Vec<LawSummary> {
         let ends = self.lower.iter().copied().zip(self.upper.iter().copied());
         self.names.iter().zip(&self.laws).zip(ends).map(|((name, law), ends)| law_summary(name, law, ends)).collect()
+    }
+}
+
+/// The ends of an interval that has nearly all of a law.
+pub(super) fn ends(law: &Law, (lower, upper): (f64, f64)) -> (f64, f64) {
+    match law.distribution {
+        Distribution::Normal { mean, sigma } => (lower.min(mean - REACH * sigma), upper.max(mean + REACH * sigma)),
+        _ => (lower, upper),
     }
 }

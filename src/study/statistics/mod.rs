@@ -10,6 +10,7 @@ use super::{Options, RunError, reduced, subsystems};
 use crate::methods::Method;
 use crate::model::{Description, ParameterValue};
 use crate::numerics::BandError;
+use crate::numerics::statistics::REPLICATES;
 use crate::results::{
     Bounds, LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Summary,
 };
@@ -72,7 +73,7 @@ fn of_run(
     let kept = wide.as_ref().unwrap_or(kept);
     let rows = Rows::new(description, &laws, kept)?;
     let outputs = rows.outputs(shown);
-    let requirements = requirements::all(&rows);
+    let (requirements, together) = requirements::all(&rows);
     let summary = StatisticsSummary {
         samples: rows.samples(),
         parameters: laws.summaries(),
@@ -82,6 +83,7 @@ fn of_run(
         simulations,
         outputs: outputs.iter().enumerate().filter_map(|(place, output)| side_by_side(bounds, place, output)).collect(),
         requirements,
+        together,
         failure: note,
     };
     Ok(StatisticsResult { times: kept.times().to_vec(), outputs, summary })
@@ -120,6 +122,30 @@ fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Opt
         deviation: output.deviation[row],
         quantiles: output.quantiles.iter().map(|values| values[row]).collect(),
     })
+}
+
+/// About so many samples of a model's laws, values of all uncertain parameters.
+///
+/// # Errors
+/// Where nothing is uncertain.
+pub(super) fn samples(description: &Description, count: usize) -> Result<Vec<Vec<f64>>, String> {
+    let mut laws = Laws::of(description)?;
+    laws.widened(description);
+    let each = count / REPLICATES;
+    let of = |number: usize| -> Vec<Vec<f64>> {
+        laws.samples(number, each).chunks_exact(laws.dimension()).map(<[f64]>::to_vec).collect()
+    };
+    Ok((0..REPLICATES).flat_map(of).collect())
+}
+
+/// How many times its tolerance the law of a parameter reaches.
+pub(super) fn reach(description: &Description, name: &str) -> f64 {
+    let Some((_, [nominal, lower, upper])) = intervals(description).find(|(known, _)| *known == name) else {
+        return 1.0;
+    };
+    let law = description.statistics.law(name, lower, upper);
+    let ends = laws::ends(&law, (lower, upper));
+    ((ends.1 - nominal) / (upper - nominal)).max((nominal - ends.0) / (nominal - lower)).max(1.0)
 }
 
 /// The uncertain parameters: name, and nominal, least and largest value.

@@ -1,92 +1,190 @@
-//! The share of what is made that fulfils a requirement over time.
+//! The share of what is made that fulfils requirements: over the whole motion, between rows too, by samples of the surrogate of their margins.
 
 use rayon::prelude::*;
 
 use super::rows::Rows;
 use crate::model::Requirement;
-use crate::numerics::statistics::{REPLICATES, share_interval};
+use crate::numerics::statistics::{
+    Estimate, RARE_SAMPLES, REPLICATES, normal_quantile, rare_share, replicate, share_interval,
+};
 use crate::results::YieldSummary;
+use crate::study::reduced::KeptReduced;
 
-/// Evaluations of slacks that a requirement takes, at most.
-const MOST: usize = 1 << 23;
+/// Samples of margins, at most.
+const MOST: usize = 1 << 18;
 
-/// Samples of a replicate where each costs a loop closure.
-const FEW: usize = 1 << 10;
+/// Where fewer than these fail, samples are drawn where it fails.
+const FEW: usize = 400;
 
-/// All requirements that are over time.
-pub(super) fn all(rows: &Rows) -> Vec<YieldSummary> {
-    let requirements = rows.description.requirements.iter();
-    requirements.filter_map(|requirement| of_requirement(rows, requirement)).collect()
+/// Samples from which places that fail are looked for.
+const STARTS: usize = 12;
+
+/// What most of a requirement's name is when it stands for all of them.
+const TOGETHER: &str = "all requirements";
+
+/// Margins of samples, by requirement.
+struct Margins<'a> {
+    rows: &'a Rows<'a>,
+    kept: &'a KeptReduced,
+    places: &'a [usize],
+    /// By replicate, every so many of its samples.
+    fewer: usize,
+    /// By requirement, sample by sample.
+    values: Vec<Vec<f64>>,
 }
 
-/// What one row says: each sample's smallest slack, how far it may be off, and the capabilities.
-struct Slack {
-    values: Vec<f64>,
-    error: f64,
-    cp: Option<f64>,
-    cpk: f64,
-}
-
-fn of_requirement(rows: &Rows, requirement: &Requirement) -> Option<YieldSummary> {
-    let (from, to) = requirement.times?;
-    let times = rows.kept.times();
-    let rounding = 1e-9 * times.last().copied().unwrap_or(0.0);
-    let within: Vec<usize> =
-        (0..times.len()).filter(|&row| times[row] >= from - rounding && times[row] <= to + rounding).collect();
-    if within.is_empty() || requirement.places.is_empty() {
-        return None;
+/// All requirements, and where there are several all together.
+pub(super) fn all(rows: &Rows) -> (Vec<YieldSummary>, Option<YieldSummary>) {
+    let Some((kept, places)) = rows.kept.reduced() else { return (Vec::new(), None) };
+    let requirements = &rows.description.requirements;
+    if requirements.is_empty() {
+        return (Vec::new(), None);
     }
-    let each = MOST / (within.len() * requirement.places.len() * REPLICATES);
-    let by_closure = |row: &usize| requirement.places.iter().any(|&output| rows.needs_closure(*row, output));
-    let most = if within.par_iter().any(by_closure) { FEW } else { usize::MAX };
-    let fewer = rows.fewer(1 << each.clamp(1, most).ilog2());
-    let slacks: Vec<Slack> = within.par_iter().map(|&row| slack(rows, requirement, row, fewer)).collect();
-    let count = slacks.iter().map(|slack| slack.values.len()).min()?;
-    let error = slacks.iter().map(|slack| slack.error).fold(0.0, f64::max);
-    if slacks.iter().any(|slack| slack.values.len() != count || !slack.error.is_finite()) {
-        return None;
-    }
-    let margin = |sample: usize| slacks.iter().map(|slack| slack.values[sample]).fold(f64::INFINITY, f64::min);
-    let margins: Vec<f64> = (0..count).into_par_iter().map(margin).collect();
-    let seen = |least: f64| margins.iter().filter(|margin| **margin >= least).count();
-    let share = seen(0.0) as f64 / count as f64;
-    // What the error may turn counts against it, and so does what lies outside of the surrogate.
-    let lower = share_interval(seen(error), count)[0] * (1.0 - rows.laws.left_out());
-    let upper = share_interval(seen(-error), count)[1];
-    let worst = (0..slacks.len()).min_by(|&a, &b| slacks[a].cpk.total_cmp(&slacks[b].cpk))?;
-    let ppm = |share: f64| 1e6 * (1.0 - share);
-    Some(YieldSummary {
-        requirement: requirement.name.clone(),
-        share,
-        interval: [lower, upper],
-        ppm: ppm(share),
-        ppm_interval: [ppm(upper), ppm(lower)],
-        cp: slacks[worst].cp,
-        cpk: slacks[worst].cpk,
-        time: times[within[worst]],
-        samples: count,
-    })
-}
-
-fn slack(rows: &Rows, requirement: &Requirement, row: usize, fewer: usize) -> Slack {
-    let mut found = Slack { values: Vec::new(), error: 0.0, cp: None, cpk: f64::INFINITY };
-    let mut moments: Vec<(f64, f64)> = Vec::new();
-    for &output in &requirement.places {
-        let (values, error) = rows.all_values(row, output, fewer);
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let deviation = (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0)).sqrt();
-        moments.push((mean, deviation));
-        found.cpk = found.cpk.min(mean / (3.0 * deviation));
-        found.error = if error > found.error || error.is_nan() { error } else { found.error };
-        if found.values.is_empty() {
-            found.values = values;
-        } else {
-            found.values.iter_mut().zip(values).for_each(|(least, value)| *least = least.min(value));
+    let fewer = rows.fewer(MOST / REPLICATES);
+    let mut margins = Margins { rows, kept, places, fewer, values: vec![Vec::new(); requirements.len()] };
+    for replicate in 0..REPLICATES {
+        let samples = margins.own(&rows.points(replicate, fewer));
+        let found = margins.of(&samples);
+        for (all, own) in margins.values.iter_mut().zip(found.chunks_exact(samples.len())) {
+            all.extend_from_slice(own);
         }
     }
-    if let [(above, deviation), (below, _)] = moments[..] {
-        found.cp = Some((above + below) / (6.0 * deviation));
+    let alone = |number: usize| margins.summary(&requirements[number].name, &[number]);
+    let each = (0..requirements.len()).filter_map(|number| {
+        let mut summary = alone(number)?;
+        capability(rows, &requirements[number], &margins.values[number], &mut summary);
+        Some(summary)
+    });
+    let each: Vec<YieldSummary> = each.collect();
+    let every: Vec<usize> = (0..requirements.len()).collect();
+    let together = (every.len() > 1 && each.len() == every.len()).then(|| margins.summary(TOGETHER, &every)).flatten();
+    (each, together)
+}
+
+impl Margins<'_> {
+    /// The parameters that margins depend on.
+    fn own(&self, samples: &[&[f64]]) -> Vec<Vec<f64>> {
+        samples.iter().map(|sample| self.places.iter().map(|&place| sample[place]).collect()).collect()
     }
-    found
+
+    /// Margins of samples, requirement by requirement.
+    fn of(&self, samples: &[Vec<f64>]) -> Vec<f64> {
+        self.kept.margins(self.values.len(), samples)
+    }
+
+    /// The share that fulfils some of the requirements.
+    fn summary(&self, name: &str, of: &[usize]) -> Option<YieldSummary> {
+        let errors: Vec<f64> = of.iter().map(|&number| self.kept.error(number)).collect();
+        if errors.iter().any(|error| !error.is_finite()) {
+            return None;
+        }
+        let count = self.values[of[0]].len();
+        // NaN has no value, and fails.
+        let fulfils = |sample: &usize, sign: f64| {
+            of.iter().zip(&errors).all(|(&number, error)| self.values[number][*sample] >= sign * error)
+        };
+        let seen = |sign: f64| (0..count).into_par_iter().filter(|sample| fulfils(sample, sign)).count();
+        let (share, mut interval) =
+            (seen(0.0), [share_interval(seen(1.0), count)[0], share_interval(seen(-1.0), count)[1]]);
+        let mut fails = 1.0 - share as f64 / count as f64;
+        let (mut samples, mut about_failures) = (count, false);
+        if count - share < FEW
+            && let [Some(better), Some(nominal), Some(worse)] =
+                [-1.0, 0.0, 1.0].map(|sign| self.rare(of, &errors, sign))
+        {
+            fails = nominal.value;
+            let most = worse.value + worse.sampling;
+            interval = [(1.0 - most).max(0.0), (1.0 - better.value + better.sampling).min(1.0)];
+            (samples, about_failures) = (RARE_SAMPLES, true);
+        }
+        // What lies outside of the surrogate counts against it.
+        interval[0] *= 1.0 - self.rows.laws.left_out();
+        let ppm = |share: f64| 1e6 * (1.0 - share);
+        Some(YieldSummary {
+            requirement: name.to_owned(),
+            share: 1.0 - fails,
+            interval,
+            ppm: 1e6 * fails,
+            ppm_interval: [ppm(interval[1]), ppm(interval[0])],
+            cp: None,
+            cpk: None,
+            time: None,
+            samples,
+            about_failures,
+        })
+    }
+
+    /// The share that fails, with so many times the errors counted against it.
+    fn rare(&self, of: &[usize], errors: &[f64], sign: f64) -> Option<Estimate> {
+        let laws = self.rows.laws;
+        let scales: Vec<f64> = of.iter().map(|&number| mean_size(&self.values[number])).collect();
+        // The least of all, each in its own scale.
+        let slack = |points: &[Vec<f64>]| -> Vec<f64> {
+            let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
+            let samples: Vec<&[f64]> = samples.iter().map(Vec::as_slice).collect();
+            let found = self.of(&self.own(&samples));
+            let of_sample = |sample: usize| {
+                let slack =
+                    |place: usize| (found[of[place] * samples.len() + sample] - sign * errors[place]) / scales[place];
+                (0..of.len()).map(slack).fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+            };
+            (0..samples.len()).map(of_sample).collect()
+        };
+        rare_share(&self.starts(of), &slack)
+    }
+
+    /// Independent normal scores of those of the first replicate's samples that have the least margins.
+    fn starts(&self, of: &[usize]) -> Vec<Vec<f64>> {
+        let each = self.values[of[0]].len() / REPLICATES;
+        let k = self.rows.laws.dimension();
+        let shares = replicate(0, k, each * self.fewer);
+        let scores = |&sample: &usize| -> Vec<f64> {
+            shares[sample * self.fewer * k..][..k].iter().map(|&p| normal_quantile(p)).collect()
+        };
+        let of_one = |&number: &usize| -> Vec<Vec<f64>> {
+            let values = &self.values[number][..each];
+            let mut order: Vec<usize> = (0..each).collect();
+            order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+            order.iter().take(STARTS).map(scores).collect()
+        };
+        of.iter().flat_map(of_one).collect()
+    }
+}
+
+/// How large values are, on average.
+fn mean_size(values: &[f64]) -> f64 {
+    let known = values.iter().filter(|value| value.is_finite());
+    (known.map(|value| value.abs()).sum::<f64>() / values.len() as f64).max(f64::MIN_POSITIVE)
+}
+
+/// Capabilities of a requirement over time at its worst time, of another by its margin.
+fn capability(rows: &Rows, requirement: &Requirement, margins: &[f64], summary: &mut YieldSummary) {
+    let moments = |values: &[f64]| {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        (mean, (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0)).sqrt())
+    };
+    let Some((from, to)) = requirement.times else {
+        let (mean, deviation) = moments(margins);
+        summary.cpk = Some(mean / (3.0 * deviation)).filter(|cpk| cpk.is_finite());
+        return;
+    };
+    let times = rows.kept.times();
+    let rounding = 1e-9 * times.last().copied().unwrap_or(0.0);
+    let within = |row: &usize| times[*row] >= from - rounding && times[*row] <= to + rounding;
+    let of_row = |row: usize| {
+        let own = |&output: &usize| moments(&rows.few_values(row, output));
+        let moments: Vec<(f64, f64)> = requirement.places.iter().map(own).collect();
+        let cpk = moments.iter().map(|(mean, deviation)| mean / (3.0 * deviation)).fold(f64::INFINITY, f64::min);
+        let cp = match moments[..] {
+            [(above, deviation), (below, _)] => Some((above + below) / (6.0 * deviation)),
+            _ => None,
+        };
+        (row, cp, cpk)
+    };
+    let all: Vec<_> = (0..times.len()).filter(within).collect::<Vec<_>>().into_par_iter().map(of_row).collect();
+    let known = all.into_iter().filter(|(_, _, cpk)| cpk.is_finite());
+    if let Some((row, cp, cpk)) = known.min_by(|a, b| a.2.total_cmp(&b.2)) {
+        (summary.cp, summary.cpk, summary.time) = (cp, Some(cpk), Some(times[row]));
+    }
 }

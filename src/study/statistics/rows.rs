@@ -21,6 +21,10 @@ const MOST_NUMBERS: usize = 1 << 25;
 /// Samples, at most, where each costs a loop closure.
 const CLOSED: usize = 1 << 14;
 
+/// Samples of a replicate for a mean and a deviation alone, also where each costs a loop closure.
+const FEW: usize = 1 << 12;
+const FEW_CLOSED: usize = 1 << 8;
+
 /// Samples at which the polynomial through an output's own samples is held against the loop closure.
 const COMPARED: usize = 256;
 
@@ -76,7 +80,7 @@ impl<'a> Rows<'a> {
     }
 
     /// One replicate's samples: every so many of the lattice's points are a lattice again.
-    fn points(&self, replicate: usize, fewer: usize) -> Vec<&[f64]> {
+    pub fn points(&self, replicate: usize, fewer: usize) -> Vec<&[f64]> {
         self.samples[replicate].chunks_exact(self.laws.dimension()).step_by(fewer).collect()
     }
 
@@ -128,21 +132,11 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Whether an output's values in a row take a loop closure each.
-    pub fn needs_closure(&self, row: usize, output: usize) -> bool {
-        self.own_error(row, output, self.kept.error(output).total[row]).is_none()
-    }
-
-    /// An output's values in a row of all replicates, and how far they may be off.
-    pub fn all_values(&self, row: usize, output: usize, fewer: usize) -> (Vec<f64>, f64) {
-        let stated = self.kept.error(output).total[row];
-        let own_error = self.own_error(row, output, stated);
-        // All rows have to have the same samples, whichever way they are evaluated.
-        let of = |replicate: usize| match own_error {
-            Some(_) => self.values(row, output, (replicate, fewer), true),
-            None => self.evaluator.values(row, &[output], &self.points(replicate, fewer)),
-        };
-        ((0..REPLICATES).flat_map(of).collect(), stated + own_error.unwrap_or(0.0))
+    /// An output's values in a row, enough of them for mean and deviation.
+    pub fn few_values(&self, row: usize, output: usize) -> Vec<f64> {
+        let by_own = self.own_error(row, output, self.kept.error(output).total[row]).is_some();
+        let fewer = self.fewer(if by_own { FEW } else { FEW_CLOSED });
+        (0..REPLICATES).flat_map(|replicate| self.values(row, output, (replicate, fewer), by_own)).collect()
     }
 
     /// An output's values in a row, by its own polynomial or through the loop closure.

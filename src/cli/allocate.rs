@@ -1,0 +1,151 @@
+//! `mbint allocate`: the loosest, or cheapest, tolerances that meet all requirements.
+
+use super::args::AllocateArgs;
+use super::console::{BOLD, Console, count, file_names};
+use super::progress::Progress;
+use super::run::results_of;
+use super::table::{Align, Table};
+use super::verdicts::{requirements, short};
+use super::{Failure, Status, interrupt, load, statistics};
+use crate::export::{OVERLAY, prepare_folder, rounded, shown_unit, write_allocation};
+use crate::results::{AllocatedTolerance, Allocation, Criterion, ToleranceZone};
+use crate::study::{self, AllocateError, AllocateOptions, RunError};
+
+pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Status, Failure> {
+    let overrides = args.set.overrides()?;
+    let Some(model) = load::load(&args.model, &overrides, args.scene.as_ref(), console)? else {
+        return Ok(Status::Wrong);
+    };
+    let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
+    prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
+    interrupt::listen();
+    let progress = Progress::new(&model.name, !args.quiet);
+    let options = study::Options {
+        threads: args.threads.number(),
+        costly: args.yes,
+        stage: &|stage| progress.stage(stage),
+        interrupted: &interrupt::asked,
+        ..study::Options::default()
+    };
+    let asked = AllocateOptions { share: args.share, widest: args.widest };
+    let found = study::allocate(&model, asked, &options).map_err(|error| {
+        let message = format!("{}: {error}", model.name);
+        match error {
+            AllocateError::Unsuitable(_) | AllocateError::Run(RunError::Costly(_)) => Failure::Wrong(message),
+            AllocateError::Run(_) => Failure::Failed(message),
+        }
+    })?;
+    drop(progress);
+    let files = write_allocation(&folder, &found);
+    let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
+    if !args.quiet {
+        let mut text = overview(&found);
+        text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
+        if found.not_met.is_empty() {
+            let model = args.model.display();
+            text += &format!("  mbint run {model} --with {}\n", folder.join(OVERLAY).display());
+        }
+        console.print(&text)?;
+    }
+    for own in &found.not_met {
+        let message = format!(
+            "{}: `{}` cannot be met: with the tightest tolerances it is missed by {} {} (± {:.1e})",
+            found.model,
+            own.requirement,
+            short(-own.margin),
+            own.unit,
+            own.error
+        );
+        console.error(&message);
+    }
+    Ok(match (found.not_met.is_empty(), found.is_confirmed) {
+        _ if interrupt::asked() => Status::Interrupted,
+        (false, _) => Status::NotMet,
+        (true, true) => Status::Done,
+        (true, false) => {
+            console.warning(&format!("{}: a study at the result does not confirm it", found.model));
+            Status::Unresolved
+        }
+    })
+}
+
+/// What was found, for people.
+fn overview(found: &Allocation) -> String {
+    let criterion = match found.criterion {
+        Criterion::WorstCase => "every case".to_owned(),
+        Criterion::Share(share) => format!("a yield of {} %", rounded(100.0 * share)),
+    };
+    let mut text = format!(
+        "{BOLD}{}{BOLD:#}: {}, for {criterion}\n  {} for the surrogate, {} to confirm; the surrogate's margins are off by {:.1e} of the nominal ones at most\n\n",
+        found.model,
+        count(found.tolerances.len(), "tolerance", "tolerances"),
+        count(found.simulations, "simulation", "simulations"),
+        found.confirming,
+        found.surrogate_error,
+    );
+    text += &tolerances(found);
+    if !found.is_exhaustive {
+        text += "  there are too many grades to try all: cheaper ones may exist\n";
+    }
+    if found.tolerances.iter().any(|own| own.at_widest && own.grade.is_none()) {
+        text += "  *: as loose as was looked for; --widest looks further\n";
+    }
+    text += "\n";
+    if !found.requirements.is_empty() && found.criterion == Criterion::WorstCase {
+        text += &format!("{}\n", requirements(&found.requirements));
+    }
+    text += &statistics::yields(&found.yields);
+    if !found.yields.is_empty() {
+        text += "\n";
+    }
+    text
+}
+
+fn tolerances(found: &Allocation) -> String {
+    let mut table = Table::new([
+        ("parameter", Align::Left),
+        ("tolerance", Align::Right),
+        ("allocated", Align::Right),
+        ("unit", Align::Left),
+        ("grade", Align::Left),
+        ("cost", Align::Right),
+        ("then", Align::Right),
+        ("share", Align::Right),
+        ("then", Align::Right),
+    ]);
+    let cost = |cost: Option<f64>| cost.map_or_else(String::new, short);
+    let percent = |share: f64| if share.is_nan() { String::new() } else { format!("{:.0} %", 100.0 * share) };
+    for own in &found.tolerances {
+        let (_, unit) = shown_unit(own);
+        let star = if own.at_widest && own.grade.is_none() { "*" } else { "" };
+        let after = if own.is_free { format!("{}{star}", zone(own, own.after)) } else { "stays".to_owned() };
+        table.row([
+            own.parameter.clone(),
+            zone(own, own.before),
+            after,
+            unit.to_owned(),
+            own.grade.clone().unwrap_or_default(),
+            cost(own.cost_before),
+            cost(own.cost_after),
+            percent(own.share_before),
+            percent(own.share_after),
+        ]);
+    }
+    let costs = found.costs();
+    if costs[1].is_some() {
+        let empty = String::new;
+        let [before, after] = costs.map(cost);
+        table.row(["in all".to_owned(), empty(), empty(), empty(), empty(), before, after, empty(), empty()]);
+    }
+    format!("{}  shares are of `{}`\n", table.render(2), found.tightest)
+}
+
+/// `± 0.3`, or `+0.3 -0.1`.
+fn zone(own: &AllocatedTolerance, ToleranceZone { above, below }: ToleranceZone) -> String {
+    let (scale, _) = shown_unit(own);
+    let digits = |value: f64| short(scale * value);
+    if (above - below).abs() <= 1e-9 * above.max(below) {
+        return format!("± {}", digits(above));
+    }
+    format!("+{} -{}", digits(above), digits(below))
+}

@@ -1,0 +1,68 @@
+//! The arguments of `mbint allocate`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{SetArgs, Threads};
+
+#[derive(Debug, Args)]
+#[command(after_help = ALLOCATE_HELP)]
+pub(in crate::cli) struct AllocateArgs {
+    /// Model file.
+    #[arg(value_name = "MODEL")]
+    pub model: PathBuf,
+
+    /// Folder for the results [default: results/<model's name>].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Meet all requirements for this share of what is made, as `99.73%`, instead of in every case.
+    #[arg(long = "yield", value_name = "SHARE", value_parser = share)]
+    pub share: Option<f64>,
+
+    /// Loosen no tolerance to more than so many times what the model says; grades have their own widths.
+    #[arg(long, value_name = "TIMES", value_parser = at_least_one, default_value_t = 3.0)]
+    pub widest: f64,
+
+    #[command(flatten)]
+    pub set: SetArgs,
+
+    /// Use this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    #[command(flatten)]
+    pub threads: Threads,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+
+    /// Run what takes more than 20000 simulations or about a minute.
+    #[arg(short, long)]
+    pub yes: bool,
+}
+
+/// The highest yield: of more, samples do not tell enough.
+const MOST: f64 = 0.9999;
+
+fn share(text: &str) -> Result<f64, String> {
+    let number = match text.trim().strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
+        None => text.trim().parse::<f64>(),
+    };
+    let wrong = "a yield is a share from 50% to 99.99%, as `99.73%`; beyond, allocate for every case";
+    number.ok().filter(|share| (0.5..=MOST + 1e-12).contains(share)).ok_or_else(|| wrong.to_owned())
+}
+
+fn at_least_one(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| (1.0..=1000.0).contains(number));
+    number.ok_or_else(|| "it is a number from 1 to 1000".to_owned())
+}
+
+const ALLOCATE_HELP: &str = "\
+Finds the cheapest tolerances that meet all requirements (`cost` of parameters), or the loosest by
+one factor where no costs are given. Writes allocation.csv (tolerance, cost and share before and
+after), allocation.yaml (the new tolerances, for --with or a scene) and allocation.svg (cost
+against margin). The exit status is 4 where no tolerances meet the requirements.";

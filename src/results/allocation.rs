@@ -1,0 +1,127 @@
+//! Tolerances before and after they are allocated.
+
+use serde::Serialize;
+
+use super::{RequirementSummary, YieldSummary};
+
+/// How a requirement counts for tolerances.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Criterion {
+    /// For every case of the box.
+    WorstCase,
+    /// For this share of what is made, all requirements together.
+    Share(f64),
+}
+
+/// A tolerance to either side, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ToleranceZone {
+    /// Upwards.
+    pub above: f64,
+    /// Downwards.
+    pub below: f64,
+}
+
+/// What becomes of a parameter's tolerance.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AllocatedTolerance {
+    /// The parameter's name, as a model file has it.
+    pub parameter: String,
+    /// Its SI unit; empty where dimensionless or unknown.
+    pub unit: String,
+    /// Its nominal value; unknown of a deviation around another parameter.
+    pub nominal: f64,
+    /// As the model has it.
+    pub before: ToleranceZone,
+    /// As it was found.
+    pub after: ToleranceZone,
+    /// The grade of the process, where it has grades.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grade: Option<String>,
+    /// Costs before and after; absent where none is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cost_before: Option<f64>,
+    /// The same, after.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cost_after: Option<f64>,
+    /// Its share of what takes up the tightest requirement's margin before: of the linearised worst case, or of the variance.
+    pub share_before: f64,
+    /// The same, after.
+    pub share_after: f64,
+    /// Whether it was free to change.
+    pub is_free: bool,
+    /// Whether it is as loose as was looked for.
+    pub at_widest: bool,
+}
+
+/// A requirement that no tolerances meet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NotMet {
+    /// Name of the requirement.
+    pub requirement: String,
+    /// Its SI unit.
+    pub unit: String,
+    /// Its margin with the tightest tolerances: negative.
+    pub margin: f64,
+    /// How far that may be off.
+    pub error: f64,
+}
+
+/// A point of cost against margin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TradePoint {
+    /// The share of the nominal margin that is left at least.
+    pub margin: f64,
+    /// What that costs: the sum of all costs, or how much tighter all tolerances are.
+    pub cost: f64,
+}
+
+/// What an allocation found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Allocation {
+    /// Name of the model.
+    pub model: String,
+    /// How requirements count.
+    pub criterion: Criterion,
+    /// By parameter.
+    pub tolerances: Vec<AllocatedTolerance>,
+    /// The requirement that shares are of.
+    pub tightest: String,
+    /// Requirements that cannot be met; then tolerances are as before.
+    pub not_met: Vec<NotMet>,
+    /// Whether the cheapest grades are proven to be: not where there are too many of them.
+    pub is_exhaustive: bool,
+    /// Verdicts of a study of its own at the result.
+    pub requirements: Vec<RequirementSummary>,
+    /// Yields of that study.
+    pub yields: Vec<YieldSummary>,
+    /// Whether that study confirms the result.
+    pub is_confirmed: bool,
+    /// Cost against margin.
+    pub trade: Vec<TradePoint>,
+    /// The model's own tolerances there; absent where they do not meet the requirements or their cost is unknown.
+    pub trade_before: Option<TradePoint>,
+    /// The result there.
+    pub trade_after: Option<TradePoint>,
+    /// Simulations for the surrogate.
+    pub simulations: usize,
+    /// Simulations of the studies that confirm.
+    pub confirming: usize,
+    /// How far the surrogate's margins may be off, as the largest share of a nominal margin.
+    pub surrogate_error: f64,
+    /// How many times the model's tolerances the surrogate reaches, at most.
+    pub widest: f64,
+}
+
+impl Allocation {
+    /// Cost before and after, where all are known.
+    pub fn costs(&self) -> [Option<f64>; 2] {
+        let sum = |of: fn(&AllocatedTolerance) -> Option<f64>| -> Option<f64> {
+            let priced = self.tolerances.iter().filter(|tolerance| tolerance.cost_after.is_some());
+            priced.clone().next()?;
+            priced.map(of).sum()
+        };
+        [sum(|tolerance| tolerance.cost_before), sum(|tolerance| tolerance.cost_after)]
+    }
+}

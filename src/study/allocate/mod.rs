@@ -1,0 +1,326 @@
+//! Tolerances that are as loose, or as cheap, as the requirements allow.
+//!
+//! One run over the widest box (`items`, `wide`) gives a surrogate of the requirements' margins (`surface`). On it, `choose` finds the cheapest
+//! tolerances under what worst cases (`worst`) or yields (`share`) leave of the margins. A study of its own at the result then says whether
+//! they hold, its errors included; by what it differs from the surrogate, the next round knows better.
+
+mod choose;
+mod items;
+mod share;
+mod surface;
+mod wide;
+mod worst;
+
+use super::{Options, RunError, reduced, statistics};
+use crate::model::Description;
+use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
+use choose::{Chosen, choose};
+use items::{Choice, Item, items, with_tolerances};
+use share::Share;
+use surface::Surface;
+use wide::{Wide, largest_error, of, run_simulations, surrogate};
+use worst::{Slack, Worst};
+
+/// Studies that confirm, at most, and what they may leave of a nominal margin before another round looks for more.
+const ROUNDS: usize = 4;
+const UNUSED: f64 = 5e-3;
+
+/// Of what may fail, the share that is aimed at: what samples tell of it differs a little from study to study.
+const AIM: f64 = 0.98;
+
+/// Samples for a yield: so many that this many fail, within these ends.
+const FAILING: f64 = 150.0;
+const SAMPLES: [usize; 2] = [1 << 13, 1 << 18];
+
+/// Shares of the nominal margins for which the cost is told.
+const TRADED: usize = 6;
+
+/// How to allocate.
+#[derive(Clone, Copy, Debug)]
+pub struct AllocateOptions {
+    /// The share of what is made that fulfils all requirements; every case where absent.
+    pub share: Option<f64>,
+    /// How many times the model's tolerances are looked at, at most.
+    pub widest: f64,
+}
+
+/// Why nothing was allocated.
+#[derive(Debug, thiserror::Error)]
+pub enum AllocateError {
+    /// The model asks for something else.
+    #[error("{0}")]
+    Unsuitable(String),
+    /// The study failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// Finds the loosest, or cheapest, tolerances that meet all requirements.
+///
+/// # Errors
+/// Where a model has no requirement or no tolerance that may change, or where it cannot be run.
+pub fn allocate(
+    description: &Description,
+    asked: AllocateOptions,
+    options: &Options,
+) -> Result<Allocation, AllocateError> {
+    let unsuitable = |message: &str| Err(AllocateError::Unsuitable(message.to_owned()));
+    if description.requirements.is_empty() {
+        return unsuitable(
+            "tolerances are allocated to meet requirements, and the model has none: add e.g. `requirements: { clears: x >= 0.4 m }`",
+        );
+    }
+    let all = items(description, asked.widest);
+    if all.is_empty() {
+        return unsuitable("no parameter is uncertain: there is no tolerance to allocate");
+    }
+    if all.iter().all(|item| item.choice == Choice::Fixed) {
+        return unsuitable(
+            "no tolerance may change: all are `cost: fixed`, or have a distribution that does not follow the tolerance",
+        );
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
+    let pool = pool.map_err(RunError::from)?;
+    pool.install(|| {
+        let model = reduced::expanded(description);
+        let wide = surrogate(&model, asked, options)?;
+        Allocator { model: &model, shown: description.outputs.len(), asked, options, wide: &wide }.run()
+    })
+}
+
+struct Allocator<'a> {
+    model: &'a Description,
+    shown: usize,
+    asked: AllocateOptions,
+    options: &'a Options<'a>,
+    wide: &'a Wide,
+}
+
+impl Allocator<'_> {
+    fn run(&self) -> Result<Allocation, AllocateError> {
+        let items = &self.wide.items;
+        let mut slack = self.slack()?;
+        let present = vec![1.0; items.len()];
+        let mut allocation = self.begun();
+        let mut best: Option<(f64, Chosen, Summary)> = None;
+        let mut chosen = None;
+        let mut may_fail = self.asked.share.map(|share| 1.0 - share);
+        let mut start = present.clone();
+        for _ in 0..ROUNDS {
+            (self.options.stage)("choosing tolerances");
+            let Some(mut found) = choose(&mut *slack, items, &start) else { break };
+            start.clone_from(&found.multiples);
+            for (multiple, item) in found.multiples.iter_mut().zip(items) {
+                *multiple = item.rounded(*multiple);
+            }
+            let left = slack.left(&found.multiples);
+            let summary = self.confirm(&found.multiples, &mut allocation)?;
+            let (holds, unused) = self.compare(&summary, &left, &mut *slack, &mut may_fail);
+            let cost = self.cost(&found.multiples);
+            if holds && best.as_ref().is_none_or(|best| cost < best.0) {
+                best = Some((cost, found.clone(), summary));
+            } else if best.is_none() {
+                chosen = Some((found.clone(), summary));
+            }
+            if (holds && unused < UNUSED) || (self.options.interrupted)() {
+                break;
+            }
+            if let Some(may_fail) = may_fail {
+                slack.allow(may_fail);
+            }
+        }
+        let confirmed = best.is_some();
+        let last = best.map(|(_, found, summary)| (found, summary)).or(chosen);
+        let Some((found, summary)) = last else {
+            allocation.not_met = self.not_met(&mut *slack);
+            allocation.tolerances = self.tolerances((&present, &present), &mut *slack, &mut allocation.tightest);
+            return Ok(allocation);
+        };
+        allocation.is_confirmed = confirmed;
+        allocation.is_exhaustive = found.is_exhaustive;
+        allocation.tolerances = self.tolerances((&present, &found.multiples), &mut *slack, &mut allocation.tightest);
+        self.trade(&mut *slack, &found.multiples, &mut allocation);
+        allocation.requirements = summary.requirements;
+        if let Some(found) = summary.statistics {
+            allocation.yields = found.summary.requirements.into_iter().chain(found.summary.together).collect();
+        }
+        Ok(allocation)
+    }
+
+    fn begun(&self) -> Allocation {
+        let surface = self.surface();
+        Allocation {
+            model: self.model.name.clone(),
+            criterion: self.asked.share.map_or(Criterion::WorstCase, Criterion::Share),
+            tolerances: Vec::new(),
+            tightest: String::new(),
+            not_met: Vec::new(),
+            is_exhaustive: true,
+            requirements: Vec::new(),
+            yields: Vec::new(),
+            is_confirmed: false,
+            trade: Vec::new(),
+            trade_before: None,
+            trade_after: None,
+            simulations: self.wide.simulations,
+            confirming: 0,
+            surrogate_error: surface.as_ref().map_or(f64::NAN, largest_error),
+            widest: self.wide.items.iter().map(|item| item.widest).fold(0.0, f64::max),
+        }
+    }
+
+    fn surface(&self) -> Option<Surface<'_>> {
+        let reduced = self.wide.kept.reduced()?;
+        Some(Surface::new(reduced, &self.wide.items, self.model.requirements.len()))
+    }
+
+    /// What the requirements leave: every case, or a share of samples.
+    fn slack(&self) -> Result<Box<dyn Slack + '_>, AllocateError> {
+        let Some(surface) = self.surface() else {
+            return Err(AllocateError::Unsuitable("there is no surrogate over the whole box".to_owned()));
+        };
+        let Some(share) = self.asked.share else { return Ok(Box::new(Worst::new(surface))) };
+        let wanted = (FAILING / (1.0 - share)) as usize;
+        let samples = statistics::samples(self.model, wanted.clamp(SAMPLES[0], SAMPLES[1]).next_power_of_two());
+        let samples = samples.map_err(AllocateError::Unsuitable)?;
+        Ok(Box::new(Share::new(surface, samples, 1.0 - share)))
+    }
+
+    /// A study at these multiples.
+    fn confirm(&self, multiples: &[f64], allocation: &mut Allocation) -> Result<Summary, AllocateError> {
+        (self.options.stage)("confirming");
+        let mut model = with_tolerances(self.model, &self.wide.items, multiples);
+        let options = of(self.options);
+        let (_, summary) = if self.asked.share.is_some() {
+            model.statistics.asked = true;
+            statistics::run(&model, self.shown, &options)?
+        } else {
+            let (bounds, summary, _) = reduced::run(&model, &options, false)?;
+            (bounds, summary)
+        };
+        allocation.confirming += run_simulations(&summary);
+        allocation.confirming += summary.statistics.as_ref().map_or(0, |found| found.summary.simulations);
+        Ok(summary)
+    }
+
+    /// Whether a study confirms what the surrogate said, and what it leaves unused; by what it differs, the next round knows better.
+    fn compare(
+        &self,
+        summary: &Summary,
+        left: &[f64],
+        slack: &mut dyn Slack,
+        may_fail: &mut Option<f64>,
+    ) -> (bool, f64) {
+        if let (Some(share), Some(may_fail)) = (self.asked.share, may_fail) {
+            let known = summary.statistics.as_ref().map(|found| &found.summary);
+            let yields = known.and_then(|found| found.together.as_ref().or(found.requirements.first()));
+            let Some(found) = yields else { return (false, 0.0) };
+            let fails = 1.0 - found.interval[0];
+            let unused = (1.0 - share - fails) / (1.0 - share);
+            *may_fail *= (AIM * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.5, 2.0);
+            // Of few that fail, a tenth is hardly a change of a tolerance.
+            return (unused >= 0.0, 0.05 * unused);
+        }
+        let surface = self.surface();
+        let mut holds = true;
+        let mut unused = f64::INFINITY;
+        for (place, requirement) in summary.requirements.iter().enumerate() {
+            let scale = surface.as_ref().map_or(1.0, |surface| surface.scale(place));
+            let known = (requirement.margin - requirement.error) / scale;
+            holds &= requirement.verdict == Verdict::Holds;
+            if known.is_finite() {
+                slack.reserve(place, scale * (left[place] - known) + 1e-9 * scale);
+                unused = unused.min(known.max(0.0));
+            }
+        }
+        (holds, unused)
+    }
+
+    /// The sum of all costs, or how much tighter all tolerances are.
+    fn cost(&self, multiples: &[f64]) -> f64 {
+        let items = &self.wide.items;
+        let together = items.iter().zip(multiples).find(|(item, _)| item.choice == Choice::Together);
+        match together {
+            Some((_, multiple)) => 1.0 / multiple,
+            None => items.iter().zip(multiples).filter_map(|(item, multiple)| item.cost(*multiple)).sum(),
+        }
+    }
+
+    /// Requirements of which the tightest tolerances leave nothing.
+    fn not_met(&self, slack: &mut dyn Slack) -> Vec<NotMet> {
+        let tightest: Vec<f64> = self.wide.items.iter().map(Item::tightest).collect();
+        let left = slack.left(&tightest);
+        let Some(surface) = self.surface() else { return Vec::new() };
+        let of = |(place, left): (usize, &f64)| {
+            let own = &self.model.requirements[place];
+            let error = slack.reserved(place);
+            let margin = left * surface.scale(place) + error;
+            NotMet { requirement: own.name.clone(), unit: own.unit.clone(), margin, error }
+        };
+        let mut all: Vec<NotMet> =
+            left.iter().enumerate().filter(|(_, left)| **left < 0.0 || left.is_nan()).map(of).collect();
+        if all.is_empty() {
+            // Each alone is met, but not all together.
+            all = left.iter().enumerate().map(of).collect();
+        }
+        all
+    }
+
+    fn tolerances(
+        &self,
+        (before, after): (&[f64], &[f64]),
+        slack: &mut dyn Slack,
+        tightest: &mut String,
+    ) -> Vec<AllocatedTolerance> {
+        let left = slack.left(after);
+        let place = (0..left.len()).min_by(|&a, &b| left[a].total_cmp(&left[b])).unwrap_or(0);
+        tightest.clone_from(&self.model.requirements[place].name);
+        let shares = [before, after].map(|multiples| slack.shares(multiples, place));
+        let of = |(place, item): (usize, &Item)| {
+            let zone = |multiple: f64| ToleranceZone { above: multiple * item.above, below: multiple * item.below };
+            let own_name = item.name.strip_suffix(".deviation");
+            AllocatedTolerance {
+                parameter: own_name.unwrap_or(&item.name).to_owned(),
+                unit: item.unit.clone(),
+                nominal: if own_name.is_some() { f64::NAN } else { item.nominal },
+                before: zone(before[place]),
+                after: zone(after[place]),
+                grade: item.grade(after[place]),
+                cost_before: item.cost(before[place]),
+                cost_after: item.cost(after[place]),
+                share_before: shares[0][place],
+                share_after: shares[1][place],
+                is_free: item.choice != Choice::Fixed,
+                at_widest: item.choice != Choice::Fixed && after[place] >= item.widest * (1.0 - 1e-3),
+            }
+        };
+        self.wide.items.iter().enumerate().map(of).collect()
+    }
+
+    /// Cost against the share of the nominal margins that is left, on the surrogate.
+    fn trade(&self, slack: &mut dyn Slack, found: &[f64], allocation: &mut Allocation) {
+        let Some(surface) = self.surface() else { return };
+        let point = |left: f64, cost: f64| TradePoint { margin: left, cost };
+        let present = vec![1.0; found.len()];
+        let priced =
+            self.wide.items.iter().all(|item| {
+                item.choice == Choice::Fixed || item.choice == Choice::Together || item.cost(1.0).is_some()
+            });
+        let now = slack.least(&present);
+        allocation.trade_before = priced.then(|| point(now, self.cost(&present)));
+        allocation.trade_after = Some(point(slack.least(found), self.cost(found)));
+        let step = 0.8 / TRADED as f64;
+        let mut start = found.to_vec();
+        for number in 0..=TRADED {
+            if (self.options.interrupted)() {
+                break;
+            }
+            if number > 0 {
+                (0..surface.count).for_each(|place| slack.reserve(place, step * surface.scale(place)));
+            }
+            let Some(chosen) = choose(slack, &self.wide.items, &start) else { break };
+            start.clone_from(&chosen.multiples);
+            allocation.trade.push(point(number as f64 * step, self.cost(&chosen.multiples)));
+        }
+    }
+}

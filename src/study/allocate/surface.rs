@@ -1,0 +1,77 @@
+//! Margins of requirements over the widest box, each in multiples of its nominal one.
+
+use crate::study::reduced::KeptReduced;
+
+use super::items::Item;
+
+/// A margin that is unknown is taken for one that is this far from being fulfilled: an event that does not occur fails.
+const UNKNOWN: f64 = -10.0;
+
+/// Margins as functions of the parameters.
+pub struct Surface<'k> {
+    kept: &'k KeptReduced,
+    /// Numbers of the parameters that they depend on.
+    places: &'k [usize],
+    pub items: &'k [Item],
+    /// How many there are.
+    pub count: usize,
+    /// Nominal margins, in their units.
+    pub nominal: Vec<f64>,
+    /// What is taken off each margin, in its unit: what the surrogate leaves open.
+    pub reserves: Vec<f64>,
+}
+
+impl<'k> Surface<'k> {
+    /// Of so many requirements, with the surrogate's errors in reserve.
+    pub fn new((kept, places): (&'k KeptReduced, &'k [usize]), items: &'k [Item], count: usize) -> Self {
+        let mut surface = Self { kept, places, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
+        let nominal: Vec<f64> = items.iter().map(|item| item.nominal).collect();
+        surface.nominal = surface.raw(&[nominal]);
+        surface.reserves = (0..count).map(|place| surface.error(place)).collect();
+        surface
+    }
+
+    /// How far a margin may be off; unknown where it cannot be relied on.
+    pub fn error(&self, requirement: usize) -> f64 {
+        self.kept.error(requirement)
+    }
+
+    /// The part of a margin's error that a better surrogate would not have.
+    pub fn surrogate_error(&self, requirement: usize) -> f64 {
+        self.kept.surrogate_error(requirement)
+    }
+
+    /// The size of a margin that others are compared with.
+    pub fn scale(&self, requirement: usize) -> f64 {
+        self.nominal[requirement].abs().max(f64::MIN_POSITIVE)
+    }
+
+    /// Margins in their units, requirement by requirement.
+    pub fn raw(&self, samples: &[Vec<f64>]) -> Vec<f64> {
+        let own: Vec<Vec<f64>> =
+            samples.iter().map(|sample| self.places.iter().map(|&place| sample[place]).collect()).collect();
+        self.kept.margins(self.count, &own)
+    }
+
+    /// What is left of the margins of samples, in multiples of the nominal ones, requirement by requirement.
+    pub fn slacks(&self, samples: &[Vec<f64>]) -> Vec<f64> {
+        let mut slacks = self.raw(samples);
+        for (requirement, own) in slacks.chunks_exact_mut(samples.len().max(1)).enumerate() {
+            let (reserve, scale) = (self.reserves[requirement], self.scale(requirement));
+            for slack in own {
+                *slack = if slack.is_nan() { UNKNOWN } else { (*slack - reserve) / scale };
+            }
+        }
+        slacks
+    }
+
+    /// The sample at ξ of the box with these multiples of the tolerances.
+    pub fn sample(&self, multiples: &[f64], xi: &[f64]) -> Vec<f64> {
+        let along = |axis: usize| {
+            let item = &self.items[axis];
+            let side = if xi[axis] < 0.0 { item.below } else { item.above };
+            item.nominal + multiples[axis] * xi[axis] * side
+        };
+        (0..xi.len()).map(along).collect()
+    }
+}

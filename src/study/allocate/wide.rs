@@ -1,0 +1,105 @@
+//! The surrogate over the widest box that has one.
+
+use super::items::{Item, items, with_tolerances};
+use super::surface::Surface;
+use super::{AllocateError, AllocateOptions};
+use crate::methods::{Chebyshev, Degree, Method};
+use crate::model::Description;
+use crate::results::Summary;
+use crate::study::{Kept, Options, RunError, statistics, subsystems};
+
+/// Where the surrogate over the widest box is not known, the box is made smaller so many times.
+const NARROWER: usize = 4;
+
+/// The surrogate's order is raised while its margins are off by more than this share of the nominal ones, so many times.
+const ROUGH: f64 = 0.02;
+const ORDERS: usize = 3;
+
+/// A surrogate over the widest box.
+pub struct Wide {
+    pub kept: Kept,
+    pub items: Vec<Item>,
+    pub simulations: usize,
+}
+
+/// The surrogate over the widest box that has one.
+pub fn surrogate(model: &Description, asked: AllocateOptions, options: &Options) -> Result<Wide, AllocateError> {
+    let mut widest = asked.widest;
+    let mut simulations = 0;
+    let mut narrower = 0;
+    loop {
+        let items = items(model, widest);
+        let reach =
+            |item: &Item| item.widest * if asked.share.is_some() { statistics::reach(model, &item.name) } else { 1.0 };
+        let multiples: Vec<f64> = items.iter().map(reach).collect();
+        let mut wide = with_tolerances(model, &items, &multiples);
+        (options.stage)("the surrogate over the widest tolerances");
+        for order in 0..=ORDERS {
+            let only = Options { methods: Some(vec![Method::Chebyshev]), ..of(options) };
+            let ran = subsystems::run(&wide, &only, true);
+            let failure = match ran {
+                Ok((_, summary, kept)) => {
+                    simulations += run_simulations(&summary);
+                    match kept.filter(|kept| is_known(model, &items, kept)) {
+                        Some(kept) if order == ORDERS || !is_rough(model, &items, &kept) || !raise(&mut wide) => {
+                            return Ok(Wide { kept, items, simulations });
+                        }
+                        Some(_) => continue,
+                        None if raise(&mut wide) && order < ORDERS => continue,
+                        None => None,
+                    }
+                }
+                Err(error @ (RunError::Infeasible(_) | RunError::Simulation(_))) => Some(error),
+                Err(error) => return Err(error.into()),
+            };
+            if narrower == NARROWER {
+                let unknown = "there is no reliable surrogate of the margins: bound the model with `mbint run` first";
+                return Err(failure.map_or_else(|| AllocateError::Unsuitable(unknown.to_owned()), AllocateError::Run));
+            }
+            break;
+        }
+        narrower += 1;
+        widest = 1.0 + 0.5 * (widest - 1.0);
+    }
+}
+
+/// The same options for a run inside.
+pub fn of<'a>(options: &Options<'a>) -> Options<'a> {
+    Options { methods: None, store: None, ..*options }
+}
+
+pub fn run_simulations(summary: &Summary) -> usize {
+    summary.methods.iter().map(|method| method.simulations).sum()
+}
+
+/// Whether every margin has a surrogate that can be relied on.
+fn is_known(model: &Description, items: &[Item], kept: &Kept) -> bool {
+    let Some(reduced) = kept.reduced() else { return false };
+    let surface = Surface::new(reduced, items, model.requirements.len());
+    (0..surface.count).all(|place| surface.error(place).is_finite() && surface.nominal[place].is_finite())
+}
+
+/// Whether a higher order is worth it.
+fn is_rough(model: &Description, items: &[Item], kept: &Kept) -> bool {
+    let Some(reduced) = kept.reduced() else { return true };
+    let surface = Surface::new(reduced, items, model.requirements.len());
+    (0..surface.count).any(|place| surface.surrogate_error(place) > ROUGH * surface.scale(place))
+}
+
+/// The largest error of a margin, as a share of the nominal one.
+pub fn largest_error(surface: &Surface) -> f64 {
+    (0..surface.count).map(|place| surface.error(place) / surface.scale(place)).fold(0.0, f64::max)
+}
+
+/// Raises the order, where it is given and the budget allows it.
+fn raise(model: &mut Description) -> bool {
+    let budget = model.bounds.budget.simulations as f64;
+    let Some(Chebyshev { degree: Degree::Fixed { order, nodes }, .. }) = &mut model.bounds.chebyshev else {
+        return false;
+    };
+    if nodes.iter().map(|nodes| (nodes + 2) as f64).product::<f64>() > budget {
+        return false;
+    }
+    order.iter_mut().chain(nodes).for_each(|count| *count += 2);
+    true
+}

@@ -1,0 +1,134 @@
+//! Worst cases: the least margin over a box, and how it changes with the box.
+
+use super::surface::Surface;
+use crate::numerics::{ExtremeSearch, Extremes, Linear, Power};
+
+/// What requirements leave of tolerances.
+pub trait Slack {
+    /// What is left of each requirement's margin with these multiples of the tolerances.
+    fn left(&mut self, multiples: &[f64]) -> Vec<f64>;
+
+    /// Whether something that is known already tells that too little is left.
+    fn is_known_to_fail(&self, multiples: &[f64]) -> bool;
+
+    /// What is left, linearised in a power of the multiples.
+    fn linearised(&self, multiples: &[f64]) -> Vec<Linear>;
+
+    /// In which power.
+    fn power(&self) -> Power;
+
+    /// What each tolerance takes of a requirement's margin.
+    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64>;
+
+    /// Takes so much more off each margin, in its unit.
+    fn reserve(&mut self, requirement: usize, more: f64);
+
+    /// What is taken off a margin, in its unit.
+    fn reserved(&self, requirement: usize) -> f64;
+
+    /// Lets another share fail, where one may.
+    fn allow(&mut self, _: f64) {}
+
+    /// What requirements leave at least.
+    fn least(&mut self, multiples: &[f64]) -> f64 {
+        self.left(multiples).into_iter().fold(f64::INFINITY, |a, b| if b < a || b.is_nan() { b } else { a })
+    }
+}
+
+/// A difference quotient's step, as a share of a multiple.
+pub const STEP: f64 = 1e-3;
+
+/// Places nearer than this are one.
+const ALIKE: f64 = 0.05;
+
+/// The worst case of every requirement.
+pub struct Worst<'s> {
+    pub surface: Surface<'s>,
+    search: ExtremeSearch,
+    before: Vec<Extremes>,
+    /// ξ of the worst cases so far, by requirement.
+    known: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'s> Worst<'s> {
+    pub fn new(surface: Surface<'s>) -> Self {
+        let search = ExtremeSearch::new(surface.items.len());
+        let known = vec![Vec::new(); surface.count];
+        Self { surface, search, before: Vec::new(), known }
+    }
+
+    /// Derivatives of a requirement's slack at ξ with respect to the multiples, and its value.
+    fn slopes(&self, multiples: &[f64], requirement: usize, xi: &[f64]) -> (f64, Vec<f64>) {
+        let mut samples = vec![self.surface.sample(multiples, xi)];
+        for axis in 0..multiples.len() {
+            for sign in [1.0, -1.0] {
+                let mut moved = multiples.to_vec();
+                moved[axis] *= 1.0 + sign * STEP;
+                samples.push(self.surface.sample(&moved, xi));
+            }
+        }
+        let slacks = self.surface.slacks(&samples);
+        let own = &slacks[requirement * samples.len()..][..samples.len()];
+        let slope = |axis: usize| (own[2 * axis + 1] - own[2 * axis + 2]) / (2.0 * STEP * multiples[axis]);
+        (own[0], (0..multiples.len()).map(slope).collect())
+    }
+}
+
+impl Slack for Worst<'_> {
+    fn left(&mut self, multiples: &[f64]) -> Vec<f64> {
+        let count = self.surface.count;
+        let surface = &self.surface;
+        let evaluate = |points: &[Vec<f64>], values: &mut [f64]| {
+            let samples: Vec<Vec<f64>> = points.iter().map(|xi| surface.sample(multiples, xi)).collect();
+            values.copy_from_slice(&surface.slacks(&samples));
+            Ok::<_, std::convert::Infallible>(())
+        };
+        let places: Vec<Vec<f64>> = self.known.iter().flatten().cloned().collect();
+        let Ok(found) = self.search.extremes(count, &self.before, &places, evaluate);
+        for (known, found) in self.known.iter_mut().zip(&found) {
+            let is_near = |other: &Vec<f64>| other.iter().zip(&found.lowest).all(|(a, b)| (a - b).abs() < ALIKE);
+            if !known.iter().any(is_near) {
+                known.push(found.lowest.clone());
+            }
+        }
+        let left = found.iter().map(|found| found.range.lower).collect();
+        self.before = found;
+        left
+    }
+
+    fn is_known_to_fail(&self, multiples: &[f64]) -> bool {
+        let places: Vec<Vec<f64>> = self.known.iter().flatten().map(|xi| self.surface.sample(multiples, xi)).collect();
+        self.surface.slacks(&places).iter().any(|slack| *slack < 0.0)
+    }
+
+    fn linearised(&self, multiples: &[f64]) -> Vec<Linear> {
+        let of = |(requirement, known): (usize, &Vec<Vec<f64>>)| -> Vec<Linear> {
+            let linear = |xi: &Vec<f64>| {
+                let (value, slopes) = self.slopes(multiples, requirement, xi);
+                Linear { value, slopes }
+            };
+            known.iter().map(linear).collect()
+        };
+        self.known.iter().enumerate().flat_map(of).collect()
+    }
+
+    fn power(&self) -> Power {
+        Power::First
+    }
+
+    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
+        self.left(multiples);
+        let (_, slopes) = self.slopes(multiples, requirement, &self.before[requirement].lowest.clone());
+        let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
+        let all: f64 = taken.iter().sum();
+        taken.into_iter().map(|own| own / all).collect()
+    }
+
+    fn reserve(&mut self, requirement: usize, more: f64) {
+        self.surface.reserves[requirement] += more;
+    }
+
+    fn reserved(&self, requirement: usize) -> f64 {
+        self.surface.reserves[requirement]
+    }
+}

@@ -1,0 +1,46 @@
+//! What a study keeps of the bounds of reduced outputs and margins.
+
+use std::sync::Arc;
+
+use super::super::outcome::Results;
+use super::super::single::Study;
+use super::kept::KeptReduced;
+use super::plan::Plan;
+use crate::methods::Method;
+use crate::numerics::{BandError, Sample, largest, step_error, surrogate_error};
+
+impl Study<'_> {
+    /// What is kept of the bounds of reduced outputs and margins, with the errors of their values.
+    pub(super) fn kept_reduced(
+        &self,
+        results: &mut Results,
+        plan: &Arc<Plan>,
+        unreliable: bool,
+    ) -> Option<KeptReduced> {
+        if !self.request.keep {
+            return None;
+        }
+        let place = results.methods.iter().position(|(method, _)| *method == Method::Chebyshev)?;
+        let surrogate = results.methods[place].1.result.kept.take().filter(|kept| kept.rows() > 0)?;
+        let outcome = &results.methods[place].1;
+        let (validation, _) = results.validation.as_ref()?;
+        let mut kept = KeptReduced { surrogate, plan: plan.clone(), errors: Vec::new() };
+        let samples: Vec<Sample> = self.domain.samples(&validation.points);
+        let every: Vec<usize> = (0..plan.values()).collect();
+        let own = kept.surrogate.values(0, (&every, &samples), &kept.closures());
+        let of_value = |value: usize| {
+            let direct = validation.direct.at(0, value);
+            let known = &own[value * samples.len()..][..samples.len()];
+            let surrogate = largest([surrogate_error(known, &direct), outcome.result.surrogate[value][0]]);
+            let correction = validation.corrections(value, 1, None)[0];
+            let time = correction.of(step_error(&direct, &validation.halved.at(0, value)));
+            let ranges = &outcome.result.bands[value][..1];
+            let span = validation.spans[value];
+            let mut error = BandError::new(ranges, &[surrogate], &[time], span, self.request.tolerance);
+            error.unresolved[0] |= unreliable;
+            error
+        };
+        kept.errors = every.iter().map(|&value| of_value(value)).collect();
+        Some(kept)
+    }
+}

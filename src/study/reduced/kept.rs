@@ -1,0 +1,68 @@
+//! Reduced outputs and margins as functions of the parameters, kept after the run.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::ensemble::Composition;
+use super::plan::Plan;
+use crate::methods::{Closure, KeptSurrogate};
+use crate::numerics::{BandError, largest};
+
+/// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
+const CHUNK: usize = 512;
+
+/// The surrogate of all reduced outputs, then of all margins of requirements.
+#[derive(Clone, Debug)]
+pub struct KeptReduced {
+    pub(super) surrogate: KeptSurrogate,
+    pub(super) plan: Arc<Plan>,
+    /// Of the values, in the plan's order.
+    pub(super) errors: Vec<BandError>,
+}
+
+impl KeptReduced {
+    /// How far a requirement's margin may be from the truth anywhere in the box; unknown where it cannot be relied on.
+    pub fn error(&self, requirement: usize) -> f64 {
+        let of_part = |part: usize| {
+            let error = &self.errors[part];
+            if error.unresolved[0] { f64::NAN } else { error.total[0] }
+        };
+        largest(self.plan.parts(requirement).map(of_part))
+    }
+
+    /// The part of it that a better surrogate would not have.
+    pub fn surrogate_error(&self, requirement: usize) -> f64 {
+        largest(self.plan.parts(requirement).map(|part| self.errors[part].surrogate))
+    }
+
+    /// Margins of the first so many requirements at samples of the subsystem's box, requirement by requirement, sample by sample; NaN where one is
+    /// unknown. In parallel, with the same bits for any number of threads.
+    pub fn margins<P: AsRef<[f64]> + Sync>(&self, count: usize, samples: &[P]) -> Vec<f64> {
+        let first = if count == 0 { self.plan.values() } else { self.plan.parts(0).start };
+        let wanted: Vec<usize> = (first..self.plan.values()).collect();
+        let closures = self.closures();
+        let of_chunk = |samples: &[P]| {
+            let values = self.surrogate.values(0, (&wanted, samples), &closures);
+            let margin = |place: usize| {
+                let (requirement, sample) = (place / samples.len(), place % samples.len());
+                self.plan.margin(requirement, |value| values[(value - first) * samples.len() + sample])
+            };
+            (0..count * samples.len()).map(margin).collect::<Vec<f64>>()
+        };
+        let chunks: Vec<Vec<f64>> = samples.par_chunks(CHUNK).map(of_chunk).collect();
+        let mut margins = Vec::with_capacity(count * samples.len());
+        for requirement in 0..count {
+            for (chunk, samples) in chunks.iter().zip(samples.chunks(CHUNK)) {
+                margins.extend_from_slice(&chunk[requirement * samples.len()..][..samples.len()]);
+            }
+        }
+        margins
+    }
+
+    /// By what values follow from channels.
+    pub(super) fn closures(&self) -> Vec<Box<dyn Closure + '_>> {
+        let closure = |independent| Box::new(Composition { plan: &self.plan, independent }) as Box<dyn Closure + '_>;
+        self.surrogate.independent().into_iter().map(closure).collect()
+    }
+}
