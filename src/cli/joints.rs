@@ -42,11 +42,16 @@ mod tests {
         insta::assert_snapshot!(gear, @r"
         gear  Angles in a fixed ratio: angle of the second = ratio * angle of the first + offset.
           φ₂ − ratio φ₁ − offset = 0
+          with a pressure angle: F = F_t t + |F_t| tan α/cos β m − F_t tan β g at the pitch point, F_t = τ₂/r₂
           Source: Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 4.
           Example: { between: [pinion, wheel], ratio: -0.5 }
-            between *  Two bodies (their angles about z) or two joints.
-            ratio *    Angle of the second per angle of the first; negative for external gears.
-            offset     Angle of the second where that of the first is zero, rad; by default 0.
+            between *       Two bodies (their angles about z) or two joints.
+            ratio *         Angle of the second per angle of the first; negative for external gears.
+            offset          Angle of the second where that of the first is zero, rad; by default 0.
+            pressure_angle  Of the teeth across their direction, e.g. `20 deg`: then bearings feel the teeth, rad; by default the torque alone is known, and bearings that the teeth push on have no known reactions.
+            helix_angle     Of the first gear's teeth against its axis, or of a bevel gear's against the cone; positive for a right-handed gear, rad; by default 0.
+            face            Where the middle of the teeth is along the first joint's axis, from that joint's point; of parallel axes, m; by default 0.
+            cone_distance   From the point where the axes intersect to the middle of the teeth of bevel gears, m.
           Constraints and their multipliers:
             its constraint, rad  λ: N m: −λ is the torque on the second, +ratio λ that on the first
         ");

@@ -5,11 +5,6 @@ use crate::methods::expansion::{Expansion, Moves};
 use crate::methods::kept::KeptRow;
 use crate::numerics::{Extent, Range, SparseWork, largest, surrogate_error, truncation};
 
-/// Degrees up to this one are resolved as they are.
-const PLAIN: u8 = 8;
-/// Terms below this share of the largest are not seen on a lattice.
-const VISIBLE: f64 = 1e-3;
-
 impl Row<'_> {
     /// Values of the polynomials through outputs' own samples, output by output.
     pub(super) fn own_polynomials(&self, outputs: &[usize], points: &[Vec<f64>]) -> Vec<f64> {
@@ -29,27 +24,6 @@ impl Row<'_> {
     pub(super) fn own_samples(&self, output: usize) -> &[f64] {
         let count = self.surrogate.samples().len();
         &self.at_samples[output * count..][..count]
-    }
-
-    /// Degree along each axis that a first lattice has to resolve: where the surrogate's is high, as a narrow tolerance asks for, that of the
-    /// terms that are to be seen. The search makes the lattice finer where it has to.
-    pub(super) fn visible_degrees(&self) -> Vec<u8> {
-        let basis = self.surrogate.basis();
-        if basis.orders().iter().all(|&order| order <= PLAIN) {
-            return basis.orders().to_vec();
-        }
-        let n = self.extent.len() / 2;
-        let outputs = self.extent.len()..self.coefficients.len() / basis.len();
-        let mut degrees: Vec<u8> = basis.orders().iter().map(|&order| order.min(PLAIN)).collect();
-        for line in self.closure.independent().iter().copied().filter(|&line| line < n).chain(outputs) {
-            let coefficients = &self.coefficients[line * basis.len()..][..basis.len()];
-            let most = coefficients[1..].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-            let is_visible = |&term: &usize| coefficients[term].abs() > VISIBLE * most || coefficients[term].is_nan();
-            for term in (1..basis.len()).filter(is_visible) {
-                degrees.iter_mut().zip(basis.degrees(term)).for_each(|(degree, &own)| *degree = own.max(*degree));
-            }
-        }
-        degrees
     }
 
     /// The range of an output over its samples, and where its ends are.

@@ -10,7 +10,7 @@ mod evaluation;
 
 use rayon::prelude::*;
 
-use super::range_search::{Functions, Previous, RangeSearch};
+use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
 use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error};
 
@@ -194,7 +194,6 @@ impl<'r> Row<'r> {
             outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
         };
         let mut extents = vec![Extent::unknown(self.domain.dimension()); outputs];
-        let degrees = self.visible_degrees();
         let places = if range_search.climbs().is_some() { self.seeds(previous) } else { Vec::new() };
         let by_closure = |wanted: &[usize], points: &[Vec<f64>]| {
             let values = self.evaluate(points);
@@ -202,14 +201,7 @@ impl<'r> Row<'r> {
         };
         let by_coefficients = |wanted: &[usize], points: &[Vec<f64>]| self.own_polynomials(wanted, points);
         let of_polynomials = |outputs: &[usize], previous: &mut Previous| {
-            let functions = Functions {
-                outputs: outputs.to_vec(),
-                degrees: &degrees,
-                are_polynomials: true,
-                rounding: &rounding,
-                places: &places,
-                evaluate: &by_coefficients,
-            };
+            let functions = self.functions(outputs.to_vec(), true, (&rounding, &places), &by_coefficients);
             range_search.range(&functions, &of(outputs, &own, points.len()), previous)
         };
         let found = of_polynomials(&alike, previous);
@@ -226,14 +218,7 @@ impl<'r> Row<'r> {
         }
         composed.sort_unstable();
         let composed_values = of(&composed, &values, all.len());
-        let functions = Functions {
-            outputs: composed,
-            degrees: &degrees,
-            are_polynomials: false,
-            rounding: &rounding,
-            places: &places,
-            evaluate: &by_closure,
-        };
+        let functions = self.functions(composed, false, (&rounding, &places), &by_closure);
         for (&output, extent) in
             functions.outputs.iter().zip(range_search.range(&functions, &composed_values, previous))
         {
@@ -290,6 +275,16 @@ impl<'r> Row<'r> {
             largest([values[0] - found.range.lower, values[1] - found.range.upper])
         };
         outputs.iter().zip(found).enumerate().map(of_output).collect()
+    }
+
+    fn functions<'f>(
+        &'f self,
+        outputs: Vec<usize>,
+        are_polynomials: bool,
+        (rounding, places): (&'f [f64], &'f [Vec<f64>]),
+        evaluate: &'f Evaluate<'f>,
+    ) -> Functions<'f> {
+        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, rounding, places, evaluate }
     }
 
     /// What of an output is too small a difference to be one.
