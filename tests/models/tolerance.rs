@@ -58,6 +58,17 @@ fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
     assert!(summary.errors[0].unresolved_from.is_some());
 }
 
+/// Wherever the budget ends, be it between two nodes that are simulated together.
+#[test]
+fn a_budget_may_end_anywhere() {
+    for budget in 27..=45 {
+        let (bounds, summary) = run_methods(&within(model("slider_crank").rows_every(0.5), 1e-5, budget), None);
+        let chebyshev = summary.methods.iter().find(|method| method.method == "chebyshev").unwrap();
+        assert!(chebyshev.simulations <= budget, "{budget}: {}", chebyshev.simulations);
+        assert!(unresolved(&bounds) > 0, "{budget}");
+    }
+}
+
 /// A pendulum that swings over the top: after a second no polynomial in its length follows it.
 #[test]
 #[ignore = "20 s: neighbours that part"]

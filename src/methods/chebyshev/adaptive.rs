@@ -202,7 +202,8 @@ impl<'r> Adaptation<'r> {
             added.truncate(room - count);
             count += added.len();
         }
-        if count == 0 {
+        generations.retain(|added| !added.is_empty());
+        if generations.is_empty() {
             return Ok(());
         }
         let first = sub_box.grid.len();
