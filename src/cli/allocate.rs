@@ -13,15 +13,15 @@ use crate::study::{self, AllocateError, AllocateOptions, RunError};
 
 pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Status, Failure> {
     let overrides = args.set.overrides()?;
-    let Some(model) = load::load(&args.model, &overrides, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, &overrides, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     interrupt::listen();
-    let progress = Progress::new(&model.name, !args.quiet);
+    let progress = Progress::new(&model.name, !args.run.quiet);
     let options = study::Options {
-        threads: args.threads.number(),
+        threads: args.run.threads.number(),
         costly: args.yes,
         stage: &|stage| progress.stage(stage),
         interrupted: &interrupt::asked,
@@ -38,7 +38,7 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     drop(progress);
     let files = write_allocation(&folder, &found);
     let files = files.map_err(|error| Failure::Failed(format!("{}: {error}", model.name)))?;
-    if !args.quiet {
+    if !args.run.quiet {
         let mut text = overview(&found);
         text += &format!("  {}: {}\n", folder.display(), file_names(files.iter()));
         if found.not_met.is_empty() {

@@ -20,7 +20,7 @@ pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
-pub(super) use shared::{AskedArgs, SetArgs, Threads};
+pub(super) use shared::{AskedArgs, OneRunArgs, SetArgs, Threads};
 pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
@@ -166,16 +166,8 @@ pub(super) struct CostArgs {
     #[command(flatten)]
     pub set: SetArgs,
 
-    /// Use this scene of the model.
-    #[arg(long, value_name = "NAME")]
-    pub scene: Option<String>,
-
     #[command(flatten)]
-    pub threads: Threads,
-
-    /// Print nothing but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
+    pub run: OneRunArgs,
 }
 
 const COST_HELP: &str = "\

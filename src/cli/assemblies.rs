@@ -9,7 +9,7 @@ pub(super) fn lines(assemblies: &[AssemblySummary]) -> String {
 }
 
 fn line(of: &AssemblySummary) -> String {
-    /// Names that are told.
+    /// Names that are shown.
     const MOST: usize = 8;
     let names = |names: &[String]| {
         let shown = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");

@@ -15,18 +15,18 @@ use crate::results::{CostPoint, CostStudy, Deviation, cost_curves, pareto};
 use crate::study::{self, CostOptions};
 
 pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Failure> {
-    let Some(model) = load::load(&args.model, &args.set.overrides()?, args.scene.as_ref(), console)? else {
+    let Some(model) = load::load(&args.model, &args.set.overrides()?, args.run.scene.as_ref(), console)? else {
         return Ok(Status::Wrong);
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
 
     let failed = |error: &dyn std::fmt::Display| Failure::Failed(format!("{}: {error}", model.name));
-    let progress = Progress::new(&model.name, !args.quiet);
+    let progress = Progress::new(&model.name, !args.run.quiet);
     let options = CostOptions {
         tolerance: wanted(&args, &model),
         budget: args.budget,
-        threads: args.threads.number(),
+        threads: args.run.threads.number(),
         progress: &|fraction| progress.set(fraction),
         interrupted: &interrupt::asked,
     };
@@ -44,7 +44,7 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
     };
     drop(progress);
     let files = write_cost(&folder, &study).map_err(|error| failed(&error))?;
-    if !args.quiet {
+    if !args.run.quiet {
         console.print(&overview(&study, &folder, &files))?;
     }
     Ok(if interrupt::asked() { Status::Interrupted } else { Status::Done })

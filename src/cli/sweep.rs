@@ -73,7 +73,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     if runs > MOST_RUNS {
         return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
     }
-    let settings = Settings { threads: args.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
+    let settings = Settings { threads: args.run.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
     let mut status = Status::Done;
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();
@@ -86,7 +86,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         for (axis, &value) in axes.iter().zip(&values) {
             overrides.push(setting(&axis.setting(value))?);
         }
-        let scenes: Vec<String> = args.scene.iter().cloned().collect();
+        let scenes: Vec<String> = args.run.scene.iter().cloned().collect();
         let loaded = load::load_all(std::slice::from_ref(&args.model), &overrides, &scenes, console)?;
         let Some(model) = loaded.and_then(|loaded| loaded.models.into_iter().next()) else { return Ok(Status::Wrong) };
         let Some((_, description)) = model.scenes.into_iter().next() else { return Ok(Status::Wrong) };
@@ -120,7 +120,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let folder = args.output.clone().unwrap_or_else(|| results_of(&name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     let files = write_sweep(&folder, &sweep).map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
-    if !args.quiet {
+    if !args.run.quiet {
         let simulations = sweep.simulations();
         let head = format!(
             "{BOLD}{name}{BOLD:#}: {}, {}\n\n",

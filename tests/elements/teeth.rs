@@ -281,7 +281,7 @@ simulation: { duration: 0.01, step: 1e-3, output_step: 0.01 }
     assert!((last(&bounds, "needed") - needed).abs() < 1e-6, "{}", last(&bounds, "needed"));
 }
 
-/// Bearings between which teeth cannot touch are told.
+/// Bearings between which teeth cannot touch are reported.
 #[test]
 fn teeth_that_cannot_touch_are_refused() {
     let text = |joints: &str, gear: &str| {

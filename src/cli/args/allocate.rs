@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{SetArgs, Threads};
+use super::{OneRunArgs, SetArgs};
 
 #[derive(Debug, Args)]
 #[command(after_help = ALLOCATE_HELP)]
@@ -28,16 +28,8 @@ pub(in crate::cli) struct AllocateArgs {
     #[command(flatten)]
     pub set: SetArgs,
 
-    /// Use this scene of the model.
-    #[arg(long, value_name = "NAME")]
-    pub scene: Option<String>,
-
     #[command(flatten)]
-    pub threads: Threads,
-
-    /// Print nothing but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
+    pub run: OneRunArgs,
 
     /// Run what takes more than 20000 simulations or about a minute.
     #[arg(short, long)]

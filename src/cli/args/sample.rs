@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{SetArgs, Threads};
+use super::{OneRunArgs, SetArgs};
 
 #[derive(Debug, Args)]
 #[command(after_help = SAMPLE_HELP)]
@@ -27,16 +27,8 @@ pub(in crate::cli) struct SampleArgs {
     #[command(flatten)]
     pub set: SetArgs,
 
-    /// Sample this scene of the model.
-    #[arg(long, value_name = "NAME")]
-    pub scene: Option<String>,
-
     #[command(flatten)]
-    pub threads: Threads,
-
-    /// Print nothing but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
+    pub run: OneRunArgs,
 
     /// Keep all simulations in this folder, and take from it those that are there.
     #[arg(long, value_name = "DIR")]

@@ -27,6 +27,21 @@ impl Threads {
     }
 }
 
+/// Which scene of one model is simulated, and how.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct OneRunArgs {
+    /// Use this scene of the model.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    #[command(flatten)]
+    pub threads: Threads,
+
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
 /// What is asked of a model.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct AskedArgs {

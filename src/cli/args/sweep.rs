@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Threads;
+use super::OneRunArgs;
 
 #[derive(Debug, Args)]
 #[command(after_help = SWEEP_HELP)]
@@ -22,16 +22,8 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
     pub set: Vec<String>,
 
-    /// Use this scene of the model.
-    #[arg(long, value_name = "NAME")]
-    pub scene: Option<String>,
-
     #[command(flatten)]
-    pub threads: Threads,
-
-    /// Print nothing but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
+    pub run: OneRunArgs,
 
     /// Run what takes more than 20000 simulations or about a minute for one value.
     #[arg(short, long)]

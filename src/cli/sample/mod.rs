@@ -39,7 +39,7 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
     };
     let (path, format) = target(args.output, args.format);
     let store = args.store.map(|folder| KeptRun::new(folder, Missing::Simulate));
-    let scenes: Vec<String> = args.scene.into_iter().collect();
+    let scenes: Vec<String> = args.run.scene.into_iter().collect();
     let overrides = args.set.overrides()?;
     let sampling = Sampling {
         model: &args.model,
@@ -47,8 +47,8 @@ pub(super) fn sample(args: SampleArgs, console: &mut Console) -> Result<Status, 
         scenes: &scenes,
         points: &points,
         output: Some((&path, format)),
-        threads: args.threads,
-        quiet: args.quiet,
+        threads: args.run.threads,
+        quiet: args.run.quiet,
         store: store.as_ref(),
     };
     sampling.run(console)

@@ -13,7 +13,7 @@ use crate::store::{Asked, AskedPoints};
 
 /// What a plan has to say of the points; `None` where bounds are asked for.
 pub(super) fn asked(args: &PointArgs) -> Result<Option<AskedPoints>, Failure> {
-    // What is wrong is told before anything is written.
+    // Errors are reported before anything is written.
     Points::asked(args)?;
     if let Some(path) = &args.points {
         let absolute = std::path::absolute(path);

@@ -210,17 +210,16 @@ impl<'r> Adaptation<'r> {
         let mut grown = sub_box.grid.clone();
         generations.iter().flatten().for_each(|levels| grown.add(levels));
         let nodes: Vec<Vec<f64>> = (first..grown.len()).map(|node| grown.sample(node)).collect();
-        let mut values = self.simulate(&sub_box.domain, &nodes)?.1;
-        let mut nodes = nodes.as_slice();
+        let (count, values) = self.simulate(&sub_box.domain, &nodes)?;
         for added in generations {
             let before = Surrogate::sparse(&sub_box.grid);
-            let (own, rest) = split_samples(&values, nodes.len(), added.len());
-            let (own_nodes, rest_nodes) = nodes.split_at(added.len());
-            let surplus = self.errors_at(&before, sub_box, own_nodes, &own)?;
+            let done = before.samples().len() - first;
+            let places = done..done + added.len();
+            let own = of_samples(&values, count, places.clone());
+            let surplus = self.errors_at(&before, sub_box, &nodes[places], &own)?;
             added.iter().for_each(|levels| sub_box.grid.add(levels));
             sub_box.nodes.push((added.len(), own));
             sub_box.surplus.extend(added.into_iter().zip(surplus));
-            (values, nodes) = (rest, rest_nodes);
         }
         self.check(sub_box)
     }
@@ -387,9 +386,7 @@ fn is_missed(error: f64) -> bool {
     error > 1.0 || error.is_nan()
 }
 
-/// Values of the first `count` of some samples, line by line, and those of the others.
-fn split_samples(values: &[f64], samples: usize, count: usize) -> (Vec<f64>, Vec<f64>) {
-    let lines = || values.chunks_exact(samples.max(1));
-    let first = lines().flat_map(|line| &line[..count]).copied().collect();
-    (first, lines().flat_map(|line| &line[count..]).copied().collect())
+/// Values of a part of some samples, line by line.
+fn of_samples(values: &[f64], samples: usize, part: std::ops::Range<usize>) -> Vec<f64> {
+    values.chunks_exact(samples).flat_map(|line| &line[part.clone()]).copied().collect()
 }

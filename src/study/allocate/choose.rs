@@ -205,14 +205,12 @@ mod tests {
             Power::First
         }
 
-        fn shares(&mut self, _: &[f64], _: usize) -> Vec<f64> {
-            Vec::new()
+        fn slopes_at_least(&mut self, _: &[f64], _: usize) -> Vec<f64> {
+            self.0.iter().map(|s| -s).collect()
         }
 
-        fn reserve(&mut self, _: usize, _: f64) {}
-
-        fn reserved(&self, _: usize) -> f64 {
-            0.0
+        fn reserves(&mut self) -> &mut [f64] {
+            &mut []
         }
     }
 

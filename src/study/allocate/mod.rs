@@ -32,7 +32,7 @@ const AIM: f64 = 0.98;
 const FAILING: f64 = 150.0;
 const SAMPLES: [usize; 2] = [1 << 13, 1 << 18];
 
-/// Shares of the nominal margins for which the cost is told.
+/// Shares of the nominal margins for which the cost is reported.
 const TRADED: usize = 6;
 
 /// How to allocate.
@@ -229,7 +229,7 @@ impl Allocator<'_> {
             let known = (requirement.margin - requirement.error) / scale;
             holds &= requirement.verdict == Verdict::Holds;
             if known.is_finite() {
-                slack.reserve(place, scale * (left[place] - known) + 1e-9 * scale);
+                slack.reserves()[place] += scale * (left[place] - known) + 1e-9 * scale;
                 unused = unused.min(known.max(0.0));
             }
         }
@@ -251,9 +251,10 @@ impl Allocator<'_> {
         let tightest: Vec<f64> = self.wide.items.iter().map(Item::tightest).collect();
         let left = slack.left(&tightest);
         let Some(surface) = self.surface() else { return Vec::new() };
+        let reserves = &*slack.reserves();
         let of = |(place, left): (usize, &f64)| {
             let own = &self.model.requirements[place];
-            let error = slack.reserved(place);
+            let error = reserves[place];
             let margin = left * surface.scale(place) + error;
             NotMet { requirement: own.name.clone(), unit: own.unit.clone(), margin, error }
         };
@@ -316,7 +317,7 @@ impl Allocator<'_> {
                 break;
             }
             if number > 0 {
-                (0..surface.count).for_each(|place| slack.reserve(place, step * surface.scale(place)));
+                (0..surface.count).for_each(|place| slack.reserves()[place] += step * surface.scale(place));
             }
             let Some(chosen) = choose(slack, &self.wide.items, &start) else { break };
             start.clone_from(&chosen.multiples);

@@ -97,22 +97,15 @@ impl Slack for Share<'_> {
         Power::Second
     }
 
-    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
+    fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
         let n = self.samples.len();
         let beside = self.beside(&self.slacks(multiples)[requirement * n..][..n]);
         let count = beside.len();
-        let slopes = self.slopes(multiples, &beside, |slacks, place| slacks[requirement * count + place]);
-        let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
-        let all: f64 = taken.iter().sum();
-        taken.into_iter().map(|own| own / all).collect()
+        self.slopes(multiples, &beside, |slacks, place| slacks[requirement * count + place])
     }
 
-    fn reserve(&mut self, requirement: usize, more: f64) {
-        self.surface.reserves[requirement] += more;
-    }
-
-    fn reserved(&self, requirement: usize) -> f64 {
-        self.surface.reserves[requirement]
+    fn reserves(&mut self) -> &mut [f64] {
+        &mut self.surface.reserves
     }
 
     fn allow(&mut self, may_fail: f64) {

@@ -17,17 +17,22 @@ pub trait Slack {
     /// In which power.
     fn power(&self) -> Power;
 
-    /// What each tolerance takes of a requirement's margin.
-    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64>;
+    /// Derivatives of what is left of a requirement's margin with respect to the multiples, where that is least.
+    fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64>;
 
-    /// Takes so much more off each margin, in its unit.
-    fn reserve(&mut self, requirement: usize, more: f64);
-
-    /// What is taken off a margin, in its unit.
-    fn reserved(&self, requirement: usize) -> f64;
+    /// What is taken off each margin, in its unit.
+    fn reserves(&mut self) -> &mut [f64];
 
     /// Lets another share fail, where one may.
     fn allow(&mut self, _: f64) {}
+
+    /// What each tolerance takes of a requirement's margin, as a share of what all take.
+    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
+        let slopes = self.slopes_at_least(multiples, requirement);
+        let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
+        let all: f64 = taken.iter().sum();
+        taken.into_iter().map(|own| own / all).collect()
+    }
 
     /// What requirements leave at least.
     fn least(&mut self, multiples: &[f64]) -> f64 {
@@ -116,19 +121,12 @@ impl Slack for Worst<'_> {
         Power::First
     }
 
-    fn shares(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
+    fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
         self.left(multiples);
-        let (_, slopes) = self.slopes(multiples, requirement, &self.before[requirement].lowest.clone());
-        let taken: Vec<f64> = slopes.iter().zip(multiples).map(|(slope, multiple)| (slope * multiple).abs()).collect();
-        let all: f64 = taken.iter().sum();
-        taken.into_iter().map(|own| own / all).collect()
+        self.slopes(multiples, requirement, &self.before[requirement].lowest).1
     }
 
-    fn reserve(&mut self, requirement: usize, more: f64) {
-        self.surface.reserves[requirement] += more;
-    }
-
-    fn reserved(&self, requirement: usize) -> f64 {
-        self.surface.reserves[requirement]
+    fn reserves(&mut self) -> &mut [f64] {
+        &mut self.surface.reserves
     }
 }
