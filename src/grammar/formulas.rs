@@ -2,19 +2,19 @@
 
 use symdiff::formula::indices::Index;
 use symdiff::formula::{Names, Vocabulary};
-use symdiff::{Builder, Formula, Spline};
+use symdiff::{Builder, Formula, Spline, Unary};
 
 use super::dimension::{self, Kind};
 use super::names::{self, Context, NameError};
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
-use super::symbols::{ReactionComponent, Symbol, SymbolTable};
+use super::symbols::{JointCoordinate, ReactionComponent, Sensor, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::scope::Scope;
+use crate::syntax::scope::{Scope, Stands};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
@@ -31,6 +31,17 @@ pub enum Written {
 impl<S: SymbolTable> Reader<'_, S> {
     /// What stands in a field, its names not yet looked at.
     pub fn written(&mut self, node: &Node) -> Option<Written> {
+        let written = self.unsigned(node)?;
+        let is_negated = node.scalar().and_then(|scalar| scalar.scope.as_ref()).is_some_and(|scope| scope.is_negated());
+        Some(match written {
+            Written::Quantity { value, unit } if is_negated => Written::Quantity { value: -value, unit },
+            Written::Formula(formula) if is_negated => Written::Formula(formula.applied(Unary::Neg)),
+            written => written,
+        })
+    }
+
+    /// The same without the sign that a mirror gives it.
+    fn unsigned(&mut self, node: &Node) -> Option<Written> {
         let scalar = self.scalar(node, "a number or a formula")?;
         if is_toleranced(&scalar.text) {
             let help = "name it under `parameters`, and write its name here".to_owned();
@@ -86,13 +97,26 @@ impl<S: SymbolTable> Reader<'_, S> {
                 self.error(node.span.clone(), message, "split it into parameters".to_owned());
                 None
             }
-            Ok(formula) => Some(formula),
+            Ok(formula) => Some(match own_names.map(|names| names.scope.stands()) {
+                Some(Stands::Mirrored) => self.in_mirror(&formula),
+                _ => formula,
+            }),
             Err(error) => {
                 let span = part.start + error.span.start..part.start + error.span.end;
                 self.error(scalar.place(&node.span, span), error.message, error.help);
                 None
             }
         }
+    }
+
+    /// A formula of a mirrored instance, in which angles of joints count the other way.
+    fn in_mirror(&self, formula: &Formula) -> Formula {
+        formula.with_names(|name| match self.symbol(name)? {
+            Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } => {
+                Some(Formula::name(name).applied(Unary::Neg))
+            }
+            _ => None,
+        })
     }
 
     /// Whether a word is a name that formulas may use, and so no unit where both may stand.
@@ -117,6 +141,16 @@ impl<S: SymbolTable> Reader<'_, S> {
                         *used = true;
                     }
                 }
+                Ok(symbol) if self.is_of_frame(node, symbol) => {
+                    all_known = false;
+                    let part = offset + span.start..offset + span.end;
+                    let place =
+                        node.scalar().map_or_else(|| node.span.clone(), |scalar| scalar.place(&node.span, part));
+                    let message = format!("`{}` is in the model's frame, not in that of the instance", clip(name));
+                    let help =
+                        "in an assembly that is placed or mirrored, use coordinates of joints and lengths of effects";
+                    self.error(place, message, help.to_owned());
+                }
                 Ok(_) => {}
                 Err(error) => {
                     all_known = false;
@@ -129,6 +163,17 @@ impl<S: SymbolTable> Reader<'_, S> {
             }
         }
         all_known
+    }
+
+    /// Whether a name is of a number that is another in the frame of the instance that the formula is in.
+    fn is_of_frame(&self, node: &Node, symbol: Symbol) -> bool {
+        let scope = node.scalar().and_then(|scalar| scalar.scope.as_deref());
+        match (scope.map_or(Stands::AsWritten, Scope::stands), symbol) {
+            (Stands::AsWritten, _) => false,
+            (_, Symbol::Coordinate { .. } | Symbol::Point { .. } | Symbol::AngularMotion { .. }) => true,
+            (Stands::Mirrored, Symbol::Sensor { measure, .. }) => measure == Sensor::ANGLE,
+            _ => false,
+        }
     }
 
     /// What a name stands for; effects that are not in the model are numbered after those that are.

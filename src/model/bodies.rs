@@ -5,7 +5,7 @@ use symdiff::Formula;
 
 use super::beams;
 use super::description::{Analysis, Body, FlexibleBeam, Inertia, Point};
-use super::file;
+use super::{file, parts};
 use crate::grammar::motions::is_motion;
 use crate::grammar::names::{Context, GROUND};
 use crate::grammar::quantity::Dimension;
@@ -119,7 +119,8 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     let center =
         fields.get("center_of_mass").and_then(|node| reader.components(node, Context::Constant, Dimension::LENGTH));
     let (prescribed, prescribed_orientation) = prescribed(reader, &fields, &coordinates);
-    if let Some(node) = fields.get("coordinates").filter(|_| coordinates.is_empty()) {
+    let is_ground = || parts::is_ground(&entry.key);
+    if let Some(node) = fields.get("coordinates").filter(|_| coordinates.is_empty() && !is_ground()) {
         needs_motion(reader, node, &prescribed);
     }
     points(reader, &fields, index);

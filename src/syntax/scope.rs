@@ -17,8 +17,24 @@ pub struct Scope {
     ground: Option<String>,
     /// Of the repetitions around it, the innermost last.
     indices: Vec<(String, Index)>,
-    /// Parameters that are whole numbers, by their full names.
+    /// Parameters that are whole numbers.
     counts: Arc<HashMap<String, i64>>,
+    /// Whether the number has the other sign, in a mirror.
+    is_negated: bool,
+    /// How the instance stands against the ground.
+    stands: Stands,
+}
+
+/// How an instance stands against the ground of the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stands {
+    /// As the assembly is written.
+    #[default]
+    AsWritten,
+    /// Elsewhere.
+    Placed,
+    /// Mirrored, and perhaps elsewhere.
+    Mirrored,
 }
 
 /// What does not move.
@@ -32,7 +48,34 @@ impl Scope {
 
     /// Of an instance by its full name.
     pub fn of_instance(name: &str, ground: Option<String>, counts: Arc<HashMap<String, i64>>) -> Self {
-        Self { prefix: format!("{name}."), ground, indices: Vec::new(), counts }
+        Self { prefix: format!("{name}."), ground, counts, ..Self::default() }
+    }
+
+    /// The same, standing so.
+    #[must_use]
+    pub fn standing(self, stands: Stands) -> Self {
+        Self { stands, ..self }
+    }
+
+    /// How the instance stands.
+    pub fn stands(&self) -> Stands {
+        self.stands
+    }
+
+    /// What `ground` is, where it is not the model's.
+    pub fn ground(&self) -> Option<&str> {
+        self.ground.as_deref()
+    }
+
+    /// Whether the number has the other sign.
+    pub fn is_negated(&self) -> bool {
+        self.is_negated
+    }
+
+    /// The same with a sign.
+    #[must_use]
+    pub fn with_sign(&self, is_negated: bool) -> Self {
+        Self { is_negated, ..self.clone() }
     }
 
     /// The same in a repetition.

@@ -56,6 +56,12 @@ impl Scalar {
         Self { text: text.into(), plain: true, start, scope: None }
     }
 
+    /// Gives the number the other sign.
+    pub fn negate(&mut self) {
+        let scope = self.scope.clone().unwrap_or_default();
+        self.scope = Some(Arc::new(scope.with_sign(!scope.is_negated())));
+    }
+
     /// The text as the name of something.
     pub fn name(&self) -> Cow<'_, str> {
         match &self.scope {

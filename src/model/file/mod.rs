@@ -98,6 +98,7 @@ mod tests {
         same_keys::<Assembly>();
         same_keys::<InstanceFile>();
         same_keys::<PointPort>();
+        same_keys::<PlaceFile>();
         same_keys::<Part>();
         same_keys::<Statistics>();
         same_keys::<CorrelationFile>();

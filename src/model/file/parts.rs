@@ -47,8 +47,22 @@ grammar! {
     InstanceFile is "an instance" {
         /// The assembly.
         of: String,
+        /// Where the assembly's ground is, and where its bodies start: a position, or a frame. Its numbers are parameters, `front_left.at.x`.
+        at: Option<AtFile>,
+        /// The axis across which it is mirrored, before it is placed.
+        mirror: Option<AxisName>,
         /// Parameters that are not as the assembly says, in its units.
         parameters: Option<IndexMap<String, ParameterFile>>,
+    }
+
+    /// Where an instance is.
+    PlaceFile is "`at`" {
+        /// Of the assembly's origin, m.
+        position: Option<Components>,
+        /// About z, rad; in the plane.
+        angle: Option<Number>,
+        /// In space.
+        rotation: Option<Rotation>,
     }
 
     /// A point of a body by which others hold an assembly.
@@ -74,6 +88,20 @@ schema_only! {
     pub enum AllName {
         /// Every parameter.
         All,
+    }
+
+    /// A position, or a frame.
+    #[schemars(untagged, inline)]
+    pub enum AtFile {
+        Position(Components),
+        Frame(Box<PlaceFile>),
+    }
+
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum AxisName {
+        X,
+        Y,
+        Z,
     }
 
     /// `body`, `body.point`, or a point of its own.

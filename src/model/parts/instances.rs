@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::Writer;
 use super::parameters::{is_shared, scope_of_shared};
+use super::placement::{GROUND, Placement};
 use crate::model::description::{Instance, InstanceKind};
 use crate::model::file;
-use crate::syntax::scope::Scope;
+use crate::syntax::scope::{Scope, Stands};
 use crate::syntax::source::{Span, Within};
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
@@ -16,6 +17,20 @@ const MAX_DEPTH: usize = 20;
 
 /// Sections whose entries an instance has under its own name.
 const NAMED: [&str; 5] = ["bodies", "joints", "effects", "initial", "guess"];
+
+/// An instance to be written out.
+struct New {
+    /// Its full name.
+    name: String,
+    /// Its assembly.
+    of: String,
+    definition: Arc<Entry>,
+    /// Parameters that it gives.
+    given: Vec<Entry>,
+    placement: Placement,
+    /// Of the instance that it is in.
+    outer: Option<Arc<Scope>>,
+}
 
 impl Writer<'_, '_> {
     /// Writes out the instances of the model, and what all instances of an assembly share.
@@ -103,22 +118,24 @@ impl Writer<'_, '_> {
         }
         let name = format!("{outer}{}", entry.key);
         let given = fields.get("parameters").map_or(&[][..], |node| self.reader.entries(node, "parameters")).to_vec();
+        let Some(placement) = self.placement(&fields) else { return };
+        let outer = scalar.scope.clone();
+        if let Some(outer) = outer.as_ref().filter(|outer| placement.is_one() && outer.stands() != Stands::AsWritten) {
+            let message = format!("`{}` is placed already", outer.prefix().trim_end_matches('.'));
+            let help = "only one of instances within each other can have `at` and `mirror`".to_owned();
+            self.reader.error(entry.key_span.clone(), message, help);
+            return;
+        }
         around.push(of.clone());
-        self.written_out(&name, &of, &definition, entry, given, around);
+        let new = New { name, of, definition, given, placement, outer };
+        self.written_out(&new, entry, around);
         around.pop();
     }
 
-    fn written_out(
-        &mut self,
-        name: &str,
-        of: &str,
-        definition: &Entry,
-        entry: &Entry,
-        given: Vec<Entry>,
-        around: &mut Vec<String>,
-    ) {
+    fn written_out(&mut self, new: &New, entry: &Entry, around: &mut Vec<String>) {
+        let New { name, of, definition, placement, .. } = new;
         let prefix = format!("{name}.");
-        let within = Within { instance: name.to_owned(), of: of.to_owned(), span: entry.key_span.clone() };
+        let within = Within { instance: name.clone(), of: of.clone(), span: entry.key_span.clone() };
         let shift = self.reader.diagnostics.sources.copy(&definition.key_span, within);
         let entries_of = |section: &str| match definition.value.get(section).map(|node| &node.value) {
             Some(Value::Mapping(entries)) => entries.clone(),
@@ -132,28 +149,104 @@ impl Writer<'_, '_> {
         for node in sections.filter(wrong).filter_map(|section| definition.value.get(section)) {
             self.reader.entries(node, "the parts of an assembly");
         }
-        self.parts.instances.push(Instance { name: name.to_owned(), kind: InstanceKind::Assembly(of.to_owned()) });
+        self.parts.instances.push(Instance { name: name.clone(), kind: InstanceKind::Assembly(of.clone()) });
 
         let plain = Arc::new(Scope::of_instance(name, None, Arc::default()));
         let own = self.repeated(&entries_of("parameters"), shift, Some(&plain));
         let shared = definition.value.get("shared");
-        let parameters = self.parameters(of, &prefix, own, &given, |name| is_shared(shared, name));
+        let parameters = self.parameters(of, &prefix, own, &new.given, |name| is_shared(shared, name));
         let counts = Arc::new(self.counts_of_instance(&prefix, &parameters));
         for parameter in parameters {
             self.add("parameters", parameter);
         }
-        let scope = Arc::new(Scope::of_instance(name, None, counts));
-        for section in NAMED {
-            for entry in self.repeated(&entries_of(section), shift, Some(&scope)) {
-                let key = scope.full(&entry.key);
-                self.add(section, Entry { key, ..entry });
-            }
+        self.parameters_of(&prefix, placement);
+        let has_points = definition.value.get("bodies").and_then(|bodies| bodies.get(GROUND)).is_some();
+        let own = format!("{prefix}{GROUND}");
+        let (ground, stands) = match &new.outer {
+            _ if placement.mirror().is_some() => (Some(own), Stands::Mirrored),
+            _ if placement.is_one() => (Some(own), Stands::Placed),
+            Some(outer) if outer.stands() != Stands::AsWritten => (outer.ground().map(str::to_owned), outer.stands()),
+            _ => (has_points.then_some(own), Stands::AsWritten),
+        };
+        let scope = Arc::new(Scope::of_instance(name, ground, counts).standing(stands));
+        if stands == Stands::Mirrored && placement.mirror().is_none() {
+            let message = "an assembly with instances within cannot be mirrored";
+            self.reader.error(entry.key_span.clone(), message, "mirror the instances within".to_owned());
         }
+        self.sections_of(&prefix, &entries_of, placement, shift, &scope);
         for instance in self.repeated(&entries_of("instances"), shift, Some(&scope)) {
             self.instance(&prefix, &instance, around);
         }
         let ports = self.repeated(&entries_of("ports"), shift, Some(&scope));
-        self.ports(&prefix, ports);
+        self.ports(&prefix, ports, placement);
+    }
+
+    /// Adds bodies, joints, effects and start values of an instance.
+    fn sections_of(
+        &mut self,
+        prefix: &str,
+        entries_of: &dyn Fn(&str) -> Vec<Entry>,
+        placement: &Placement,
+        shift: usize,
+        scope: &Arc<Scope>,
+    ) {
+        let copies = NAMED.map(|section| self.repeated(&entries_of(section), shift, Some(scope)));
+        let [bodies, mut joints, mut effects, initial, guess] = copies;
+        let (ground, mut bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
+        if scope.ground().is_some_and(|ground| ground.strip_prefix(prefix) == Some(GROUND)) {
+            let points = ground.first().and_then(|ground| ground.value.get("points")).cloned();
+            self.ground(prefix, placement, points, scope);
+        } else if let Some(ground) = ground.first() {
+            let message = "the ground of an instance within a placed one has no points of its own";
+            self.reader.error(ground.key_span.clone(), message, "give them to the assembly that is placed".to_owned());
+        }
+        let turning: Vec<String> = joints
+            .iter()
+            .filter(|joint| joint.value.get("revolute").is_some())
+            .map(|joint| joint.key.clone())
+            .collect();
+        let names: Vec<String> = bodies.iter().map(|body| body.key.clone()).collect();
+        let given: Vec<String> = initial.iter().chain(&guess).map(|entry| entry.key.clone()).collect();
+        let more = self.guess(placement, &bodies, &given, scope);
+        let initial = self.start(placement, initial, &names, scope);
+        let mut guess = self.start(placement, guess, &names, scope);
+        guess.extend(more);
+        if let Some(axis) = placement.mirror() {
+            bodies = bodies.into_iter().map(|body| self.image_of_body(body, axis)).collect();
+            for entries in [&mut joints, &mut effects] {
+                let turns = |joint: &str| turning.iter().any(|known| known == joint);
+                let image = |entry| self.image_of_kind(entry, axis, &turns);
+                *entries = std::mem::take(entries).into_iter().map(image).collect();
+            }
+        }
+        if placement.turns() {
+            self.refuse_directions(&effects);
+        }
+        for (section, entries) in NAMED.into_iter().zip([bodies, joints, effects, initial, guess]) {
+            for entry in entries {
+                let key = scope.full(&entry.key);
+                self.add(section, Entry { key, ..entry });
+            }
+        }
+    }
+
+    /// Reports directions of the ground in effects of an instance that is turned.
+    fn refuse_directions(&mut self, effects: &[Entry]) {
+        const DIRECTIONS: [(&str, &str); 4] =
+            [("spring_damper", "along"), ("force", "value"), ("drag", "wind"), ("torque", "value")];
+        for effect in effects {
+            for (kind, key) in DIRECTIONS {
+                let Some(node) = effect.value.get(kind) else { continue };
+                let in_body = node.get("frame").and_then(Node::scalar).is_some_and(|frame| frame.text == "body");
+                let is_number = kind == "torque" && node.get(key).is_some_and(|value| value.scalar().is_some());
+                if let Some(value) = node.get(key).filter(|_| !in_body && !is_number) {
+                    let message =
+                        format!("`{key}` of a `{kind}` is along the model's axes, but the instance is turned");
+                    let help = "use `frame: body` or an element between points, or turn the assembly's own directions";
+                    self.reader.error(value.span.clone(), message, help.to_owned());
+                }
+            }
+        }
     }
 
     /// Reports instances that are called like something else, and names that are there twice.

@@ -7,8 +7,10 @@
 mod include;
 mod instances;
 mod many;
+mod mirror;
 mod parameters;
 pub mod patterns;
+mod placement;
 mod ports;
 mod repeat;
 
@@ -22,6 +24,7 @@ use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::scope::Scope;
 use crate::syntax::source::Span;
 use crate::syntax::yaml::{Entry, Node, Value};
+pub use placement::is_ground;
 use ports::Port;
 
 /// Nodes of the tree that is written out, beyond which the number of copies must be a slip.

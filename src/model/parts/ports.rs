@@ -1,6 +1,7 @@
 //! `ports:`, bodies and points by which others hold an instance.
 
-use super::Writer;
+use super::placement::Placement;
+use super::{Writer, mirror};
 use crate::grammar::SymbolTable;
 use crate::model::file;
 use crate::model::names::Reader;
@@ -21,8 +22,11 @@ pub(super) struct Port {
 
 impl Writer<'_, '_> {
     /// Notes the ports of an instance; one with a place of its own becomes a point of its body.
-    pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>) {
-        for entry in entries {
+    pub(super) fn ports(&mut self, prefix: &str, entries: Vec<Entry>, placement: &Placement) {
+        for mut entry in entries {
+            if let Some(axis) = placement.mirror().filter(|_| matches!(entry.value.value, Value::Mapping(_))) {
+                mirror::frame(&mut entry.value, axis);
+            }
             if !self.reader.name(&entry, "a port") {
                 continue;
             }

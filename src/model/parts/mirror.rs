@@ -1,0 +1,248 @@
+//! `mirror: y`: what the entries of an instance are in the image that a mirror shows.
+//!
+//! M is the reflection at the plane through the instance's origin across the axis. A body at r with the rotation R is at M r with M R M,
+//! so a polar vector v of any frame becomes M v, an axial one, of a rotation or a torque, −M v. Axes of joints are reflected as polar vectors;
+//! so their angles count the other way, in the plane and in space.
+
+use super::Writer;
+use super::placement::Placement;
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Entry, Node, Scalar, Value};
+
+/// What a value is to a mirror.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Image {
+    /// A vector, or an axis by its letter.
+    Polar,
+    /// A vector of a torque; one number is about z.
+    Axial,
+    /// A list of polar vectors.
+    Polars,
+    /// A number that counts the other way where the joint of `on` turns, or there is none.
+    Turning,
+    /// The name of its key changes place with the other's, and it counts the other way.
+    End,
+}
+
+use Image::{Axial, End, Polar, Polars, Turning};
+
+/// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
+const KINDS: [(&str, &[(&str, Image)]); 24] = [
+    ("revolute", &[("axis", Polar)]),
+    ("prismatic", &[("axis", Polar), ("angle", Turning)]),
+    ("spherical", &[]),
+    ("distance", &[]),
+    ("fixed", &[("angle", Turning)]),
+    ("point_on_line", &[("axis", Polar)]),
+    ("point_on_plane", &[("normal", Polar)]),
+    ("planar", &[("normal", Polar)]),
+    ("pin_in_slot", &[("axis", Polar)]),
+    ("universal", &[("axes", Polars)]),
+    ("motor", &[("position", Turning), ("speed", Turning), ("to", Turning), ("from", Turning)]),
+    ("spring_damper", &[("along", Polar)]),
+    ("cable", &[]),
+    ("drag", &[("wind", Polar)]),
+    ("force", &[("value", Polar)]),
+    ("joint_friction", &[]),
+    ("stop", &[("lower", End), ("upper", End)]),
+    ("servo", &[("target", Turning)]),
+    ("torsional_spring_damper", &[("free_angle", Turning), ("torque", Turning)]),
+    ("clearance_joint", &[("axis", Polar)]),
+    ("torque", &[("value", Axial)]),
+    ("bushing", &[]),
+    ("gravity", &[]),
+    ("preload", &[]),
+];
+
+/// Keys of which nobody says what their images are.
+const REFUSED: [(&str, &str); 3] = [("bushing", "stiffness_matrix"), ("bushing", "damping_matrix"), ("preload", "on")];
+
+/// Keys of torques by which the kind is one of a joint.
+const JOINT: &str = "on";
+
+impl Writer<'_, '_> {
+    /// The image of a joint or an effect; `turns` says of a joint of the instance whether it turns.
+    pub(super) fn image_of_kind(&mut self, mut entry: Entry, axis: usize, turns: &dyn Fn(&str) -> bool) -> Entry {
+        let Value::Mapping(kinds) = &mut entry.value.value else { return entry };
+        let [kind] = kinds.as_mut_slice() else { return entry };
+        let Some((_, images)) = KINDS.iter().find(|(keyword, _)| *keyword == kind.key) else {
+            let message = format!("`{}` cannot be mirrored", clip(&kind.key));
+            let help = "write the mirrored assembly out, or give the parts that differ to the model".to_owned();
+            self.reader.error(kind.key_span.clone(), message, help);
+            return entry;
+        };
+        let Value::Mapping(keys) = &mut kind.value.value else { return entry };
+        for (_, key) in REFUSED.iter().filter(|(keyword, _)| *keyword == kind.key) {
+            if let Some(found) = keys.iter().find(|known| known.key == *key) {
+                let message = format!("`{key}` of a `{}` cannot be mirrored", kind.key);
+                self.reader.error(found.key_span.clone(), message, None);
+            }
+        }
+        let on = keys.iter().find(|key| key.key == JOINT).and_then(|on| on.value.scalar()).map(|on| on.text.clone());
+        let is_turning = on.as_deref().is_none_or(turns);
+        let is_of_joint = kind.key == "torque" && on.as_deref().is_some_and(turns);
+        for key in keys.iter_mut() {
+            let Some((_, image)) = images.iter().find(|(known, _)| *known == key.key) else { continue };
+            match image {
+                Polar => polar(&mut key.value, axis),
+                Axial if is_of_joint => negate(&mut key.value),
+                Axial => axial(&mut key.value, axis),
+                Polars => {
+                    if let Value::Sequence(items) = &mut key.value.value {
+                        items.iter_mut().for_each(|item| polar(item, axis));
+                    }
+                }
+                Turning if is_turning => negate(&mut key.value),
+                End if is_turning => {
+                    negate(&mut key.value);
+                    key.key = if key.key == "lower" { "upper" } else { "lower" }.to_owned();
+                }
+                Turning | End => {}
+            }
+        }
+        // An axis along z that is not written is reflected, too.
+        let has_axis = images.contains(&("axis", Polar)) && matches!(kind.key.as_str(), "revolute" | "clearance_joint");
+        if has_axis && axis == 2 && !keys.iter().any(|key| key.key == "axis") {
+            let at = kind.key_span.clone();
+            let numbers =
+                ["0", "0", "-1"].map(|text| Node { span: at.clone(), value: Value::Scalar(Scalar::plain(text, None)) });
+            let value = Node { span: at.clone(), value: Value::Sequence(numbers.into()) };
+            keys.push(Entry { key: "axis".to_owned(), key_span: at, value });
+        }
+        entry
+    }
+
+    /// The image of a body.
+    pub(super) fn image_of_body(&mut self, mut entry: Entry, axis: usize) -> Entry {
+        let Value::Mapping(keys) = &mut entry.value.value else { return entry };
+        for key in keys {
+            match key.key.as_str() {
+                "center_of_mass" => polar(&mut key.value, axis),
+                "inertia" => products(&mut key.value, axis),
+                "points" => {
+                    let Value::Mapping(points) = &mut key.value.value else { continue };
+                    points.iter_mut().for_each(|point| frame(&mut point.value, axis));
+                }
+                "held" => {
+                    let Value::Mapping(held) = &mut key.value.value else { continue };
+                    for value in held {
+                        match value.key.as_str() {
+                            "orientation" => rotation(&mut value.value, axis),
+                            coordinate if counts_back(coordinate, axis) => negate(&mut value.value),
+                            _ => {}
+                        }
+                    }
+                }
+                "beam" => {
+                    let message = "a beam that bends cannot be mirrored";
+                    self.reader.error(key.key_span.clone(), message, None);
+                }
+                _ => {}
+            }
+        }
+        entry
+    }
+}
+
+/// Whether a coordinate of a body, or its rate, changes sign.
+pub(super) fn counts_back(coordinate: &str, axis: usize) -> bool {
+    let letter = ["x", "y", "z"][axis];
+    match coordinate {
+        "angle" | "angular_velocity" => axis != 2,
+        _ => coordinate.strip_prefix('v').unwrap_or(coordinate) == letter,
+    }
+}
+
+/// A point: its place, or its frame.
+pub(super) fn frame(node: &mut Node, axis: usize) {
+    let Value::Mapping(keys) = &mut node.value else { return polar(node, axis) };
+    for key in keys {
+        match key.key.as_str() {
+            "position" => polar(&mut key.value, axis),
+            "rotation" => rotation(&mut key.value, axis),
+            _ => {}
+        }
+    }
+}
+
+/// A rotation S becomes M S M: its axis is axial, its angle stays.
+pub(super) fn rotation(node: &mut Node, axis: usize) {
+    let Value::Mapping(keys) = &mut node.value else { return };
+    for key in keys {
+        match key.key.as_str() {
+            "rpy" | "axis" => axial(&mut key.value, axis),
+            "quaternion" => {
+                let Value::Sequence(items) = &mut key.value.value else { continue };
+                items
+                    .iter_mut()
+                    .skip(1)
+                    .enumerate()
+                    .filter(|(place, _)| *place != axis)
+                    .for_each(|(_, item)| negate(item));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Products of inertia of which one axis is the mirror's.
+fn products(node: &mut Node, axis: usize) {
+    let Value::Mapping(keys) = &mut node.value else { return };
+    let letter = ["x", "y", "z"][axis];
+    for key in keys.iter_mut().filter(|key| matches!(key.key.as_str(), "xy" | "xz" | "yz") && key.key.contains(letter))
+    {
+        negate(&mut key.value);
+    }
+}
+
+fn polar(node: &mut Node, axis: usize) {
+    written_out(node);
+    if let Value::Sequence(items) = &mut node.value
+        && let Some(item) = items.get_mut(axis)
+    {
+        negate(item);
+    }
+}
+
+pub(super) fn axial(node: &mut Node, axis: usize) {
+    written_out(node);
+    match &mut node.value {
+        Value::Sequence(items) => {
+            items.iter_mut().enumerate().filter(|(place, _)| *place != axis).for_each(|(_, item)| negate(item));
+        }
+        _ if axis != 2 => negate(node),
+        _ => {}
+    }
+}
+
+/// An axis by its letter as a list.
+fn written_out(node: &mut Node) {
+    let Some(place) = node.scalar().and_then(|scalar| ["x", "y", "z"].iter().position(|axis| *axis == scalar.text))
+    else {
+        return;
+    };
+    let one = |axis: usize| {
+        let text = if axis == place { "1" } else { "0" };
+        Node { span: node.span.clone(), value: Value::Scalar(Scalar::plain(text, None)) }
+    };
+    let last = if place == 2 { 3 } else { 2 };
+    node.value = Value::Sequence((0..last).map(one).collect());
+}
+
+/// The number with the other sign.
+pub(super) fn negate(node: &mut Node) {
+    if let Value::Scalar(scalar) = &mut node.value {
+        // Zero stays as it is, so that it still is seen to be none.
+        if scalar.text.parse() == Ok(0.0) {
+            return;
+        }
+        scalar.negate();
+    }
+}
+
+impl Placement {
+    /// The axis of the mirror.
+    pub(super) fn mirror(&self) -> Option<usize> {
+        self.mirror
+    }
+}

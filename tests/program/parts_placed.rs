@@ -1,0 +1,224 @@
+//! Instances that are placed and mirrored, against mechanisms that are written by hand, and against their images.
+
+use mbint::inner::model::{self, Description};
+use mbint::inner::results::Bounds;
+use mbint::inner::study::{self, Options};
+
+#[track_caller]
+fn bounds(text: &str) -> Bounds {
+    let reading = model::read_str("test.yaml", text, &[]);
+    let model: Description = reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics));
+    study::run(&model, Options::default()).unwrap().0
+}
+
+/// The output's nominal course and its bounds.
+fn courses(bounds: &Bounds, output: &str) -> [Vec<f64>; 3] {
+    let found = bounds.outputs.iter().find(|found| found.name == output).unwrap();
+    [found.nominal.clone(), found.bands[0].lower.clone(), found.bands[0].upper.clone()]
+}
+
+/// Compares two outputs, the second with a sign.
+#[track_caller]
+fn same(bounds: &Bounds, first: &str, (other, second): (&Bounds, &str), sign: f64) {
+    let [nominal, lower, upper] = courses(bounds, first);
+    let [images, low, high] = courses(other, second);
+    let (low, high) = if sign > 0.0 { (low, high) } else { (high, low) };
+    let size = nominal.iter().fold(1e-3, |size: f64, value| size.max(value.abs()));
+    for (value, image) in [(nominal, images), (lower, low), (upper, high)] {
+        for (value, image) in value.iter().zip(image) {
+            assert!((value - sign * image).abs() < 1e-9 * size, "{first}: {value} and {image}");
+        }
+    }
+}
+
+/// A crank with a motor's image, a spring, a stop and a slider in a slanted guide.
+const ARM: &str = "
+assemblies:
+  arm:
+    shared: all
+    parameters: { l: 0.3 m ± 1%, m: 2 kg ± 2% }
+    bodies:
+      ground: { points: { A: [0.1, 0.2] } }
+      bar: { mass: m, inertia: m*l^2/12, center_of_mass: [0.01, 0.02], points: { A: [-l/2, 0.01], B: [l/2, 0.03] } }
+      slide: { mass: 1, inertia: 0.01 }
+      hand: { mass: 0.2, inertia: 1e-3, points: { B: [0, 0.02] } }
+    joints:
+      pin: { revolute: [ground.A, bar.A] }
+      guide: { prismatic: { between: [ground, slide], axis: [1, 0.4], angle: 0.2 } }
+      wrist: { revolute: [bar.B, hand.B] }
+      drive: { motor: { on: wrist, position: 0.3*sin(5*t) } }
+    effects:
+      pull: { spring_damper: { between: [bar.B, slide], stiffness: 200, free_length: 0.2, force: \"2*pull.rate\" } }
+      coil: { torsional_spring_damper: { on: pin, stiffness: 3, free_angle: 0.5 } }
+      push: { force: { on: bar.B, value: [1, 3] } }
+      twist: { torque: { on: bar, value: 0.4*cos(3*t) } }
+      turn: { torque: { on: pin, value: 0.2 - 0.1*pin.angular_velocity } }
+      end: { stop: { on: pin, lower: -0.05, impact: { stiffness: 200 } } }
+      wind: { drag: { on: slide, linear: 0.5, wind: [1, 2] } }
+    initial: { pin.angle: 0.4, pin.angular_velocity: -1, slide.x: 0.4, slide.vx: 0 }
+    guess: { slide.y: 0.1, bar.angle: 0.4 }
+    ports: { tip: { on: bar, position: [l/2, 0.05] } }
+";
+
+const ASKED: &str = "
+simulation: { duration: 0.5, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 3 } }
+";
+
+#[test]
+fn a_mirrored_instance_is_the_mechanism_that_is_mirrored_by_hand() {
+    let instance = format!(
+        "{ARM}instances: {{ one: {{ of: arm, mirror: y }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [1, -9.81] }} }} }}
+outputs: {{ x: one.bar.x, y: one.bar.y, tip: one.tip.y, a: one.pin.angle, s: one.guide.displacement, f: one.pin.force, q: one.slide.y, w: one.hand.angle }}
+{ASKED}"
+    );
+    let by_hand = format!(
+        "
+parameters: {{ l: 0.3 m ± 1%, m: 2 kg ± 2% }}
+bodies:
+  ground: {{ points: {{ A: [0.1, -0.2] }} }}
+  bar: {{ mass: m, inertia: m*l^2/12, center_of_mass: [0.01, -0.02], points: {{ A: [-l/2, -0.01], B: [l/2, -0.03], tip: [l/2, -0.05] }} }}
+  slide: {{ mass: 1, inertia: 0.01 }}
+  hand: {{ mass: 0.2, inertia: 1e-3, points: {{ B: [0, -0.02] }} }}
+joints:
+  pin: {{ revolute: [ground.A, bar.A] }}
+  guide: {{ prismatic: {{ between: [ground, slide], axis: [1, -0.4], angle: -0.2 }} }}
+  wrist: {{ revolute: [bar.B, hand.B] }}
+  drive: {{ motor: {{ on: wrist, position: -0.3*sin(5*t) }} }}
+effects:
+  weight: {{ gravity: {{ acceleration: [1, -9.81] }} }}
+  pull: {{ spring_damper: {{ between: [bar.B, slide], stiffness: 200, free_length: 0.2, force: \"2*pull.rate\" }} }}
+  coil: {{ torsional_spring_damper: {{ on: pin, stiffness: 3, free_angle: -0.5 }} }}
+  push: {{ force: {{ on: bar.B, value: [1, -3] }} }}
+  twist: {{ torque: {{ on: bar, value: -0.4*cos(3*t) }} }}
+  turn: {{ torque: {{ on: pin, value: -0.2 - 0.1*pin.angular_velocity }} }}
+  end: {{ stop: {{ on: pin, upper: 0.05, impact: {{ stiffness: 200 }} }} }}
+  wind: {{ drag: {{ on: slide, linear: 0.5, wind: [1, -2] }} }}
+initial: {{ pin.angle: -0.4, pin.angular_velocity: 1, slide.x: 0.4, slide.vx: 0 }}
+guess: {{ slide.y: -0.1, bar.angle: -0.4 }}
+outputs: {{ x: bar.x, y: bar.y, tip: bar.tip.y, a: pin.angle, s: guide.displacement, f: pin.force, q: slide.y, w: hand.angle }}
+{ASKED}"
+    );
+    let (instance, by_hand) = (bounds(&instance), bounds(&by_hand));
+    for output in ["x", "y", "tip", "a", "s", "f", "q", "w"] {
+        same(&instance, output, (&by_hand, output), 1.0);
+    }
+}
+
+#[test]
+fn an_image_moves_as_the_mirror_shows() {
+    let both = format!(
+        "{ARM}instances: {{ one: {{ of: arm }}, two: {{ of: arm, mirror: y }}, three: {{ of: arm, mirror: x }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: [3, 0] }} }} }}
+outputs: {{ x1: one.bar.x, x2: two.bar.x, y1: one.bar.y, y2: two.bar.y, a1: one.pin.angle, a2: two.pin.angle, a3: three.pin.angle, f1: one.pin.force, f2: two.pin.force }}
+{ASKED}"
+    );
+    let both = bounds(&both);
+    same(&both, "x1", (&both, "x2"), 1.0);
+    same(&both, "y1", (&both, "y2"), -1.0);
+    same(&both, "a1", (&both, "a2"), -1.0);
+    same(&both, "f1", (&both, "f2"), 1.0);
+    // Gravity along x is another in this mirror: the image is a different motion.
+    assert_ne!(courses(&both, "a1")[0], courses(&both, "a3")[0].iter().map(|a| -a).collect::<Vec<_>>());
+}
+
+/// An arm in space with skew axes, products of inertia and frames that are turned.
+const SPATIAL: &str = "
+assemblies:
+  arm:
+    shared: all
+    parameters: { l: 0.3 m ± 1% }
+    bodies:
+      base: { mass: 2, inertia: { xx: 0.02, yy: 0.03, zz: 0.04, xy: 0.002, yz: -0.003, xz: 0.001 }, center_of_mass: [0.02, 0.03, 0.01],
+              points: { A: [-0.1, 0.02, 0.03], B: { position: [l, 0.05, -0.02], rotation: { rpy: [0.3, -0.4, 0.5] } } } }
+      fore: { mass: 1, inertia: [0.01, 0.02, 0.015], points: { B: { position: [-0.1, 0, 0.02], rotation: { axis: [1, 2, -1], angle: 0.7 } } } }
+    joints:
+      shoulder: { revolute: { between: [ground, base.A], axis: [0.3, 1, 0.5] } }
+      elbow: { revolute: [base.B, fore.B] }
+    effects:
+      drive: { servo: { on: elbow, target: 0.5*sin(4*t), proportional: 3, derivative: 0.2 } }
+      brake: { torque: { on: fore, value: [0.1, 0.2, -0.3] } }
+    initial: { shoulder.angle: 0.2, shoulder.angular_velocity: 1, elbow.angle: -0.3, elbow.angular_velocity: 0 }
+";
+
+#[test]
+fn an_image_in_space_moves_as_the_mirror_shows() {
+    for (axis, gravity, letter) in [("x", "[0, 2, -9]", "x"), ("y", "[2, 0, -9]", "y"), ("z", "[2, -9, 0]", "z")] {
+        let text = format!(
+            "{SPATIAL}instances: {{ one: {{ of: arm }}, two: {{ of: arm, mirror: {axis} }} }}
+effects: {{ weight: {{ gravity: {{ acceleration: {gravity} }} }} }}
+outputs: {{ x1: one.fore.x, x2: two.fore.x, y1: one.fore.y, y2: two.fore.y, z1: one.fore.z, z2: two.fore.z, a1: one.elbow.angle, a2: two.elbow.angle, f1: one.elbow.force, f2: two.elbow.force }}
+{ASKED}"
+        );
+        let found = bounds(&text);
+        for coordinate in ["x", "y", "z"] {
+            let sign = if coordinate == letter { -1.0 } else { 1.0 };
+            same(&found, &format!("{coordinate}1"), (&found, &format!("{coordinate}2")), sign);
+        }
+        same(&found, "a1", (&found, "a2"), -1.0);
+        same(&found, "f1", (&found, "f2"), 1.0);
+    }
+}
+
+/// A motion without weight does not know where it is.
+#[test]
+fn a_placed_instance_moves_in_its_frame() {
+    let arm = ARM
+        .replace("      push: { force: { on: bar.B, value: [1, 3] } }\n", "")
+        .replace("      wind: { drag: { on: slide, linear: 0.5, wind: [1, 2] } }\n", "")
+        .replace("slide.vx: 0 }", "slide.y: 0.16 m, slide.vx: 0.1, slide.vy: 0.04 }")
+        .replace("guess: { slide.y: 0.1, bar.angle: 0.4 }", "guess: { bar.angle: 0.4, bar.x: 0.2, bar.y: 0.2 }");
+    for mirror in ["", ", mirror: y"] {
+        let text = format!(
+            "{arm}instances: {{ one: {{ of: arm {mirror} }}, two: {{ of: arm, at: {{ position: [0.5 m, -0.2], angle: 30 deg }} {mirror} }}, three: {{ of: arm, at: [-1, 2] {mirror} }} }}
+outputs:
+  x1: 0.5 + cos(30 deg)*one.bar.x - sin(30 deg)*one.bar.y
+  y1: -0.2 + sin(30 deg)*one.slide.x + cos(30 deg)*one.slide.y
+  x2: two.bar.x
+  y2: two.slide.y
+  a1: one.bar.angle + 30 deg
+  a2: two.bar.angle
+  p1: one.pin.angle
+  p2: two.pin.angle
+  p3: three.pin.angle
+  x3: three.bar.x + 1
+  x4: one.bar.x
+{ASKED}"
+        );
+        let found = bounds(&text);
+        for (first, second) in [("x1", "x2"), ("y1", "y2"), ("a1", "a2"), ("p1", "p2"), ("p1", "p3"), ("x4", "x3")] {
+            same(&found, first, (&found, second), 1.0);
+        }
+    }
+}
+
+#[test]
+fn a_place_in_space_has_a_frame() {
+    let text = format!(
+        "{SPATIAL}instances: {{ one: {{ of: arm }}, two: {{ of: arm, at: {{ position: [1, 2 m, 3], rotation: {{ axis: x, angle: 90 deg }} }} }} }}
+outputs: {{ x1: one.fore.x + 1, y1: 2 - one.fore.z, z1: 3 + one.fore.y, x2: two.fore.x, y2: two.fore.y, z2: two.fore.z, a1: one.elbow.angle, a2: two.elbow.angle }}
+{ASKED}"
+    )
+    .replace("      brake: { torque: { on: fore, value: [0.1, 0.2, -0.3] } }\n", "");
+    let found = bounds(&text);
+    for output in ["x", "y", "z", "a"] {
+        same(&found, &format!("{output}1"), (&found, &format!("{output}2")), 1.0);
+    }
+}
+
+/// Where an instance is may be uncertain, each for itself.
+#[test]
+fn a_place_has_tolerances() {
+    let text = format!(
+        "{ARM}instances: {{ one: {{ of: arm, at: [0.1 m ± 1 mm, 0] }}, two: {{ of: arm, at: [0.1 m, 0] }} }}
+outputs: {{ x: one.bar.x, y: two.bar.y }}
+{ASKED}"
+    );
+    let model = model::load_str("test", &text, &[]).unwrap();
+    let names: Vec<&str> = model.uncertain().map(|(_, parameter)| parameter.name.as_str()).collect();
+    assert_eq!(names, ["arm.l", "arm.m", "one.at.x"]);
+    let set = [model::Override::parse("two.at.x=0.2±0.01").unwrap()];
+    let model = model::load_str("test", &text, &set).unwrap();
+    assert_eq!(model.uncertain().count(), 4);
+}
