@@ -1,11 +1,11 @@
 //! Numbers and formulas behind keys: parsed, their names resolved, their dimensions and values checked.
 
-use symdiff::formula::indices::Index;
 use symdiff::formula::{Names, Vocabulary};
 use symdiff::{Builder, Formula, Spline, Unary};
 
 use super::dimension::{self, Kind};
 use super::names::{self, Context, NameError};
+use super::own_names::OwnNames;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
@@ -395,35 +395,6 @@ fn part_of_name(name: &str, written: &Span, part: Span) -> Span {
         return written.clone();
     }
     written.start + part.start - before..(written.start + part.end - before).min(written.end)
-}
-
-/// The names of a scalar in a copy of a piece of the file.
-pub(super) struct OwnNames<'s> {
-    scope: &'s Scope,
-    /// A name that the formula has for itself.
-    variable: Option<&'static str>,
-}
-
-impl<'s> OwnNames<'s> {
-    pub(super) fn of(scalar: &'s Scalar, variable: Option<(&'static str, Dimension)>) -> Option<Self> {
-        let scope = scalar.scope.as_deref()?;
-        Some(Self { scope, variable: variable.map(|(name, _)| name) })
-    }
-}
-
-impl Names for OwnNames<'_> {
-    fn index(&self, name: &str) -> Option<Index> {
-        self.scope.index(name)
-    }
-
-    fn count(&self, name: &str) -> Option<i64> {
-        self.scope.count(name)
-    }
-
-    fn full(&self, name: &str) -> String {
-        let is_own = names::is_reserved(name) || self.variable == Some(name);
-        if is_own { name.to_owned() } else { self.scope.full(name) }
-    }
 }
 
 /// The formula's value, each name's given by `name`.

@@ -10,6 +10,7 @@ mod kinds;
 pub(crate) mod mapping;
 pub(crate) mod motions;
 pub(crate) mod names;
+mod own_names;
 mod places;
 pub(crate) mod plane;
 pub(crate) mod quantity;

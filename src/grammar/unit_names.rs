@@ -1,7 +1,7 @@
 //! Units that are called like a name of the model.
 
-use super::formulas::OwnNames;
 use super::names;
+use super::own_names::OwnNames;
 use super::reader::Reader;
 use super::symbols::SymbolTable;
 use super::unit::number_and_unit;

@@ -5,7 +5,6 @@
 //! so their angles count the other way, in the plane and in space.
 
 use super::Writer;
-use super::placement::Placement;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
@@ -71,6 +70,12 @@ impl Writer<'_, '_> {
             self.reader.error(kind.key_span.clone(), message, help);
             return entry;
         };
+        if let Value::Sequence(_) = kind.value.value {
+            // The short form, of which the axis may need to be said.
+            let between =
+                Entry { key: "between".to_owned(), key_span: kind.key_span.clone(), value: kind.value.clone() };
+            kind.value.value = Value::Mapping(vec![between]);
+        }
         let Value::Mapping(keys) = &mut kind.value.value else { return entry };
         for (_, key) in REFUSED.iter().filter(|(keyword, _)| *keyword == kind.key) {
             if let Some(found) = keys.iter().find(|known| known.key == *key) {
@@ -237,12 +242,5 @@ pub(super) fn negate(node: &mut Node) {
             return;
         }
         scalar.negate();
-    }
-}
-
-impl Placement {
-    /// The axis of the mirror.
-    pub(super) fn mirror(&self) -> Option<usize> {
-        self.mirror
     }
 }

@@ -40,6 +40,11 @@ impl Placement {
         self.mirror.is_some() || !self.position.is_empty() || self.turns()
     }
 
+    /// The axis of the mirror.
+    pub fn mirror(&self) -> Option<usize> {
+        self.mirror
+    }
+
     /// Whether directions of the ground are others.
     pub fn turns(&self) -> bool {
         self.angle.is_some() || self.rotation.is_some()
