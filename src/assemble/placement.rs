@@ -10,7 +10,8 @@
 //!   body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that of the
 //!   triangle with both bodies' lengths as sides, its corner on top; or 0.
 //!
-//! Bodies that nothing joins to the ground stay at 0.
+//! Angles, sides and the top are those of the ground of the body's instance, in its mirror. Bodies that nothing joins to the ground
+//! stay where that is, else at 0.
 
 use std::collections::VecDeque;
 
@@ -18,7 +19,7 @@ use symdiff::{Scalar, math};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Orientation, Separation};
-use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef};
+use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef, Standing};
 use crate::multibody::{self, BuildError, Context};
 
 /// x, y, θ.
@@ -65,11 +66,39 @@ pub struct PlanarPoses {
     links: Vec<Vec<Link>>,
     given: Vec<[Option<f64>; DEGREES_OF_FREEDOM]>,
     poses: Vec<Option<[f64; DEGREES_OF_FREEDOM]>>,
+    /// In which the bodies are looked for.
+    frames: Vec<Frame>,
+}
+
+/// The ground of an instance, in numbers.
+#[derive(Clone, Copy, Default)]
+struct Frame {
+    pose: [f64; DEGREES_OF_FREEDOM],
+    /// The axis across which the instance is mirrored.
+    mirror: Option<usize>,
+}
+
+impl Frame {
+    /// A vector along the instance's x.
+    fn along(self, length: f64) -> [f64; 2] {
+        let length = if self.mirror == Some(0) { -length } else { length };
+        at([0.0, 0.0, self.pose[ANGLE]], [length, 0.0])
+    }
+
+    /// How high a direction points.
+    fn height(self, direction: f64) -> f64 {
+        let height = math::sin(direction - self.pose[ANGLE]);
+        if self.mirror == Some(1) { -height } else { height }
+    }
 }
 
 impl PlanarPoses {
-    /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Self, BuildError> {
+    /// Places all bodies; `known` are the coordinates with a value at the start, `standing` says in which frames.
+    pub fn of<'g>(
+        m: &Mechanism<'g, '_>,
+        known: &[Option<Scalar<'g>>],
+        standing: &[Option<Standing>],
+    ) -> Result<Self, BuildError> {
         let mut given = vec![[None; DEGREES_OF_FREEDOM]; m.bodies.len()];
         for (body, given) in m.bodies.iter().zip(&mut given) {
             for (dof, given) in [0, 1, multibody::ANGLE].into_iter().zip(given) {
@@ -80,8 +109,13 @@ impl PlanarPoses {
                 *given = value.map(|value| m.nominal([value])[0]);
             }
         }
-        let poses = given.iter().map(|given| Some([given[0]?, given[1]?, given[ANGLE]?])).collect();
-        let mut placement = Self { links: links(m)?, given, poses };
+        let poses: Vec<_> = given.iter().map(|given| Some([given[0]?, given[1]?, given[ANGLE]?])).collect();
+        let frame = |standing: &Option<Standing>| {
+            let found = standing.and_then(|found| Some(Frame { pose: poses[found.ground]?, mirror: found.mirror }));
+            found.unwrap_or_default()
+        };
+        let frames = standing.iter().map(frame).collect();
+        let mut placement = Self { links: links(m)?, given, poses, frames };
         placement.walk();
         Ok(placement)
     }
@@ -115,7 +149,8 @@ impl PlanarPoses {
 
     /// x, y, θ of a body.
     pub fn pose(&self, body: usize) -> [f64; DEGREES_OF_FREEDOM] {
-        self.poses[body].unwrap_or_else(|| self.given[body].map(|value| value.unwrap_or(0.0)))
+        let frame = self.frames[body].pose;
+        self.poses[body].unwrap_or_else(|| [0, 1, ANGLE].map(|dof| self.given[body][dof].unwrap_or(frame[dof])))
     }
 
     fn walk(&mut self) {
@@ -148,11 +183,13 @@ impl PlanarPoses {
     /// Places `link.other` onto its joint with `body`, which is placed.
     fn place(&mut self, body: usize, link: Link) {
         let mut anchor = at(self.pose(body), link.here);
+        let frame = self.frames[link.other];
         if let LinkKind::Loose(distance) = link.kind {
-            anchor[0] += distance;
+            let [x, y] = frame.along(distance);
+            anchor = [anchor[0] + x, anchor[1] + y];
         }
         let given = self.given[link.other];
-        let angle = given[ANGLE].or_else(|| self.angle(body, link, anchor)).unwrap_or(0.0);
+        let angle = given[ANGLE].or_else(|| self.angle(body, link, anchor)).unwrap_or(frame.pose[ANGLE]);
         let arm = at([0.0, 0.0, angle], link.there);
         let origin = |axis: usize| given[axis].unwrap_or(anchor[axis] - arm[axis]);
         self.poses[link.other] = Some([origin(0), origin(1), angle]);
@@ -194,7 +231,9 @@ impl PlanarPoses {
         let cosine = (near_side * near_side + base * base - far_side * far_side) / (2.0 * near_side * base);
         let opening = math::acos(cosine.clamp(-1.0, 1.0));
         let towards = direction(anchor, goal)?;
-        let higher = if math::sin(towards + opening) >= math::sin(towards - opening) { opening } else { -opening };
+        let frame = self.frames[link.other];
+        let is_higher = frame.height(towards + opening) >= frame.height(towards - opening);
+        let higher = if is_higher { opening } else { -opening };
         Some(towards + higher - direction(link.there, next.here)?)
     }
 }

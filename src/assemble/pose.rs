@@ -9,7 +9,8 @@
 //!   else along the ground's axes;
 //! - at what holds less, last: a distance away along x.
 //!
-//! What is known of a body's own coordinates is kept. Bodies that nothing joins to the ground stay at 0.
+//! What is known of a body's own coordinates is kept. Axes are those of the ground of the body's instance, in its mirror. Bodies that
+//! nothing joins to the ground stay where that is, else at 0.
 
 use std::collections::VecDeque;
 
@@ -19,10 +20,11 @@ use symdiff::{Formula, Scalar};
 use super::mechanism::{Mechanism, Owner, dof};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
+use crate::model::Standing;
 use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, RotationCoordinates};
 
 /// A frame against another, in numbers.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Pose {
     position: Vector3<f64>,
     orientation: UnitQuaternion<f64>,
@@ -78,19 +80,31 @@ pub struct Poses<'m, 'g, 'd> {
     values: Vec<Option<f64>>,
     links: Vec<Vec<Link>>,
     poses: Vec<Option<Pose>>,
+    /// In which the bodies are looked for: the grounds of their instances.
+    frames: Vec<Pose>,
+    /// The axes across which the instances are mirrored.
+    mirrors: Vec<Option<usize>>,
 }
 
 impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
-    /// Places all bodies; `known` are the coordinates with a value at the start.
-    pub fn of(m: &'m Mechanism<'g, 'd>, known: &[Option<Scalar<'g>>]) -> Result<Self, BuildError> {
+    /// Places all bodies; `known` are the coordinates with a value at the start, `standing` says in which frames.
+    pub fn of(
+        m: &'m Mechanism<'g, 'd>,
+        known: &[Option<Scalar<'g>>],
+        standing: &[Option<Standing>],
+    ) -> Result<Self, BuildError> {
         let values: Vec<Option<f64>> = known.iter().map(|known| known.map(|value| m.nominal([value])[0])).collect();
         let known: Vec<Known> = m.bodies.iter().map(|body| known_of(m, body, &values)).collect();
         let complete = |known: &Known| {
             let [x, y, z] = known.position;
             Some(Pose::at(Vector3::new(x?, y?, z?), known.orientation?))
         };
-        let poses = known.iter().map(complete).collect();
-        let mut placed = Self { mechanism: m, known, values, links: vec![Vec::new(); m.bodies.len()], poses };
+        let poses: Vec<Option<Pose>> = known.iter().map(complete).collect();
+        let frame = |standing: &Option<Standing>| standing.and_then(|found| poses[found.ground]).unwrap_or_default();
+        let frames = standing.iter().map(frame).collect();
+        let mirrors = standing.iter().map(|standing| standing.and_then(|found| found.mirror)).collect();
+        let links = vec![Vec::new(); m.bodies.len()];
+        let mut placed = Self { mechanism: m, known, values, links, poses, frames, mirrors };
         placed.find_links()?;
         placed.walk();
         Ok(placed)
@@ -136,7 +150,8 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
     }
 
     fn pose(&self, body: usize) -> Pose {
-        self.poses[body].unwrap_or_else(|| self.known[body].or(Vector3::zeros(), UnitQuaternion::identity()))
+        let frame = self.frames[body];
+        self.poses[body].unwrap_or_else(|| self.known[body].or(frame.position, frame.orientation))
     }
 
     fn find_links(&mut self) -> Result<(), BuildError> {
@@ -221,15 +236,19 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
     /// The pose of `link.other` on its joint with `body`, which is placed.
     fn placed(&self, body: usize, link: Link) -> Pose {
         let here = self.pose(body).then(&link.here);
+        let frame = self.frames[link.other].orientation;
         let wanted = match link.kind {
             LinkKind::Axis(across) => here.then(&across).then(&link.there.inverse()).orientation,
-            LinkKind::Ball => self.aimed(link, here.position).unwrap_or_else(UnitQuaternion::identity),
-            LinkKind::Loose(_) => UnitQuaternion::identity(),
+            LinkKind::Ball => self.aimed(link, here.position).unwrap_or(frame),
+            LinkKind::Loose(_) => frame,
         };
         let anchor = match link.kind {
             LinkKind::Axis(across) => here.then(&across).position,
             LinkKind::Ball => here.position,
-            LinkKind::Loose(distance) => here.position + distance * Vector3::x(),
+            LinkKind::Loose(distance) => {
+                let distance = if self.mirrors[link.other] == Some(0) { -distance } else { distance };
+                here.position + frame * (distance * Vector3::x())
+            }
         };
         let known = self.known[link.other];
         let orientation = known.orientation.unwrap_or(wanted);
@@ -242,7 +261,9 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             let goal = self.poses[next.other]?.then(&next.there).position;
             let (own, wanted) = (next.here.position - link.there.position, goal - anchor);
             let other_end = matches!(next.kind, LinkKind::Ball) && own.norm() > 0.0;
-            other_end.then(|| UnitQuaternion::rotation_between(&own, &wanted)).flatten()
+            let frame = self.frames[link.other].orientation;
+            let turned = || UnitQuaternion::rotation_between(&own, &(frame.inverse() * wanted));
+            other_end.then(turned).flatten().map(|turned| frame * turned)
         })
     }
 }

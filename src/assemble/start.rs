@@ -29,7 +29,7 @@ impl<'g> Mechanism<'g, '_> {
         let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
         let guessed = self.guessed(description)?;
         let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
-        let placed = self.placed(&known)?;
+        let placed = self.placed(description, &known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
         let guess = guess.map(Scalar::expr).collect();
         let mut conditions = self.start_of_beams(description)?;
@@ -51,11 +51,12 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// Where the joints put the coordinates.
-    fn placed(&self, known: &[Option<Scalar<'g>>]) -> Result<Vec<f64>, BuildError> {
+    fn placed(&self, description: &Description, known: &[Option<Scalar<'g>>]) -> Result<Vec<f64>, BuildError> {
+        let standing: Vec<_> = description.bodies.iter().map(|body| body.standing).collect();
         if self.is_spatial {
-            return Poses::of(self, known)?.coordinates();
+            return Poses::of(self, known, &standing)?.coordinates();
         }
-        let placement = PlanarPoses::of(self, known)?;
+        let placement = PlanarPoses::of(self, known, &standing)?;
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(self, joint, coordinate),

@@ -9,12 +9,12 @@ use super::own_names::OwnNames;
 use super::quantity::Dimension;
 use super::reader::{Fields, Reader};
 use super::requirement::{Quantity, Requirement};
-use super::symbols::{JointCoordinate, ReactionComponent, Sensor, Symbol, SymbolTable};
+use super::symbols::{ReactionComponent, Symbol, SymbolTable};
 use super::tolerance::is_toleranced;
 use super::unit::{Unit, number_and_unit, per_minute};
 use super::unknown;
 use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::scope::{Scope, Stands};
+use crate::syntax::scope::Stands;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
@@ -109,16 +109,6 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// A formula of a mirrored instance, in which angles of joints count the other way.
-    fn in_mirror(&self, formula: &Formula) -> Formula {
-        formula.with_names(|name| match self.symbol(name)? {
-            Symbol::JointCoordinate { coordinate: JointCoordinate::Angle, .. } => {
-                Some(Formula::name(name).applied(Unary::Neg))
-            }
-            _ => None,
-        })
-    }
-
     /// Whether a word is a name that formulas may use, and so no unit where both may stand.
     pub(super) fn is_name(&self, word: &str, own: Option<&OwnNames>) -> bool {
         if let Some(own) = own {
@@ -163,17 +153,6 @@ impl<S: SymbolTable> Reader<'_, S> {
             }
         }
         all_known
-    }
-
-    /// Whether a name is of a number that is another in the frame of the instance that the formula is in.
-    fn is_of_frame(&self, node: &Node, symbol: Symbol) -> bool {
-        let scope = node.scalar().and_then(|scalar| scalar.scope.as_deref());
-        match (scope.map_or(Stands::AsWritten, Scope::stands), symbol) {
-            (Stands::AsWritten, _) => false,
-            (_, Symbol::Coordinate { .. } | Symbol::Point { .. } | Symbol::AngularMotion { .. }) => true,
-            (Stands::Mirrored, Symbol::Sensor { measure, .. }) => measure == Sensor::ANGLE,
-            _ => false,
-        }
     }
 
     /// What a name stands for; effects that are not in the model are numbered after those that are.

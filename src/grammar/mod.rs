@@ -17,6 +17,7 @@ pub(crate) mod quantity;
 pub(crate) mod reader;
 pub mod reference;
 mod requirement;
+mod standing;
 mod suspicious;
 mod symbols;
 pub(crate) mod tolerance;

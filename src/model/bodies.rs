@@ -38,6 +38,7 @@ pub fn declare(reader: &mut Reader, entries: &[Entry]) {
         prescribed: Vec::new(),
         prescribed_orientation: None,
         points: Vec::new(),
+        standing: None,
     };
     reader.model.bodies.push(empty(GROUND));
     for entry in entries {

@@ -20,7 +20,7 @@ use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
 pub use analysis::{Analysis, LinearisedAt, ModesRequest, ResponseRequest};
-pub use body::{Body, FlexibleBeam, Inertia, Point};
+pub use body::{Body, FlexibleBeam, Inertia, Point, Standing};
 use index::NameIndex;
 pub use instance::{Instance, InstanceKind};
 pub use reduced::{Limit, ReducedKind, ReducedOutput, Requirement};

@@ -251,7 +251,10 @@ fn describe(
     let parameter_entries = with_robot.as_deref().unwrap_or(parameter_entries);
 
     bodies::declare(&mut reader, body_entries);
-    parts.into_iter().for_each(|parts| parts.declare_ports(&mut reader));
+    parts.into_iter().for_each(|parts| {
+        parts.declare_ports(&mut reader);
+        parts.stand(&mut reader);
+    });
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);

@@ -1,7 +1,7 @@
 //! Extraction of a subsystem as a model of its own.
 
 use super::couplings::{Couplings, Dependencies, Part};
-use crate::model::{Description, ParameterValue, PointRef, Reference, StartValue};
+use crate::model::{Description, ParameterValue, PointRef, Reference, Standing, StartValue};
 
 /// The parts of a description that are kept, by index.
 struct Kept {
@@ -54,6 +54,10 @@ pub fn extract(
         retain(&mut body.points, points);
     }
     retain(&mut part.bodies, &kept.bodies);
+    for body in &mut part.bodies {
+        body.standing =
+            body.standing.and_then(|standing| Some(Standing { ground: bodies[standing.ground]?, ..standing }));
+    }
     retain(&mut part.joints, &kept.joints);
     retain(&mut part.effects, &kept.effects);
     retain(&mut part.parameters, &kept.parameters);

@@ -222,3 +222,56 @@ outputs: {{ x: one.bar.x, y: two.bar.y }}
     let model = model::load_str("test", &text, &set).unwrap();
     assert_eq!(model.uncertain().count(), 4);
 }
+
+/// Without guesses, a loop is assembled on the branch on which the assembly itself is.
+#[test]
+fn a_placed_loop_keeps_its_branch() {
+    let text = format!(
+        "
+assemblies:
+  four_bar:
+    shared: all
+    parameters: {{ l: 0.3 m ± 1% }}
+    bodies:
+      ground: {{ points: {{ A: [0, 0], D: [0.4, 0.02] }} }}
+      crank: {{ mass: 0.4, inertia: 1e-3, points: {{ A: [-0.05, 0], B: [0.05, 0] }} }}
+      coupler: {{ mass: 1, inertia: 0.01, points: {{ B: [-0.17, 0], C: [0.17, 0] }} }}
+      rocker: {{ mass: 0.8, inertia: 0.01, points: {{ D: [-l/2, 0], C: [l/2, 0] }} }}
+      puck: {{ mass: 0.1, inertia: 1e-4, points: {{ P: [0, 0] }} }}
+    joints:
+      a: {{ revolute: [ground.A, crank.A] }}
+      b: {{ revolute: [crank.B, coupler.B] }}
+      c: {{ revolute: [coupler.C, rocker.C] }}
+      d: {{ revolute: [ground.D, rocker.D] }}
+    effects:
+      band: {{ spring_damper: {{ between: [ground.D, puck.P], stiffness: 20, free_length: 0.1 }} }}
+    initial: {{ a.angle: 0.8, a.angular_velocity: 2 }}
+instances:
+  one: {{ of: four_bar }}
+  two: {{ of: four_bar, at: {{ position: [1 m, -2], angle: 200 deg }} }}
+  three: {{ of: four_bar, mirror: y }}
+  four: {{ of: four_bar, mirror: x, at: {{ position: [3, 1], angle: 100 deg }} }}
+outputs:
+  d1: one.d.angle
+  d2: two.d.angle
+  d3: three.d.angle
+  d4: four.d.angle
+  p1: one.puck.x
+  p2: cos(200 deg)*(two.puck.x - 1) + sin(200 deg)*(two.puck.y + 2)
+  p3: three.puck.x
+  p4: -cos(100 deg)*(four.puck.x - 3) - sin(100 deg)*(four.puck.y - 1)
+{ASKED}"
+    );
+    let found = bounds(&text);
+    for (other, sign) in [("d2", 1.0), ("d3", -1.0), ("d4", -1.0)] {
+        // The joint's angle is counted from −π to π at the start: compare what it turns by.
+        let (first, second) = (courses(&found, "d1"), courses(&found, other));
+        for (value, image) in first[0].iter().zip(&second[0]) {
+            let [turned, image] = [value - first[0][0], sign * (image - second[0][0])];
+            assert!((turned - image).abs() < 1e-9, "{other}: {turned} and {image}");
+        }
+    }
+    for other in ["p2", "p3", "p4"] {
+        same(&found, "p1", (&found, other), 1.0);
+    }
+}

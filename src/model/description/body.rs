@@ -49,6 +49,17 @@ pub struct Body {
     pub prescribed_orientation: Option<Rotation>,
     /// Named points in the body's frame, m.
     pub points: Vec<Point>,
+    /// Where its instance stands, if that has a ground of its own.
+    pub standing: Option<Standing>,
+}
+
+/// How an instance stands: the frame in which assembly begins to look for its bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct Standing {
+    /// The body that its ground is.
+    pub ground: usize,
+    /// The axis across which it is mirrored, before it is placed.
+    pub mirror: Option<usize>,
 }
 
 impl Body {

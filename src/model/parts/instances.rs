@@ -196,6 +196,7 @@ impl Writer<'_, '_> {
         if scope.ground().is_some_and(|ground| ground.strip_prefix(prefix) == Some(GROUND)) {
             let points = ground.first().and_then(|ground| ground.value.get("points")).cloned();
             self.ground(prefix, placement, points, scope);
+            self.parts.grounds.insert(prefix.to_owned(), placement.mirror());
         } else if let Some(ground) = ground.first() {
             let message = "the ground of an instance within a placed one has no points of its own";
             self.reader.error(ground.key_span.clone(), message, "give them to the assembly that is placed".to_owned());
@@ -206,11 +207,8 @@ impl Writer<'_, '_> {
             .map(|joint| joint.key.clone())
             .collect();
         let names: Vec<String> = bodies.iter().map(|body| body.key.clone()).collect();
-        let given: Vec<String> = initial.iter().chain(&guess).map(|entry| entry.key.clone()).collect();
-        let more = self.guess(placement, &bodies, &given, scope);
         let initial = self.start(placement, initial, &names, scope);
-        let mut guess = self.start(placement, guess, &names, scope);
-        guess.extend(more);
+        let guess = self.start(placement, guess, &names, scope);
         if let Some(axis) = placement.mirror() {
             bodies = bodies.into_iter().map(|body| self.image_of_body(body, axis)).collect();
             for entries in [&mut joints, &mut effects] {

@@ -17,7 +17,7 @@ mod repeat;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-use super::description::Instance;
+use super::description::{Instance, Standing};
 use super::overrides::Override;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
@@ -40,6 +40,8 @@ pub struct Parts {
     /// Parameters that say how often something is repeated.
     counts: BTreeSet<String>,
     ports: Vec<Port>,
+    /// Instances with a ground of their own by the prefix of their names, with the axes across which they are mirrored.
+    grounds: HashMap<String, Option<usize>>,
 }
 
 /// A tree that is written out.
@@ -169,6 +171,24 @@ impl Parts {
             }
         };
         overrides.into_iter().flat_map(follow).collect()
+    }
+
+    /// Says of the bodies, which are declared, how their instances stand.
+    pub fn stand(&self, reader: &mut Reader) {
+        if self.grounds.is_empty() {
+            return;
+        }
+        let numbers: HashMap<String, usize> =
+            reader.model.bodies.iter().enumerate().map(|(index, body)| (body.name.clone(), index)).collect();
+        for body in &mut reader.model.bodies {
+            let mut ends = body.name.match_indices('.').map(|(end, _)| &body.name[..=end]);
+            let found = ends.find_map(|prefix| {
+                let mirror = *self.grounds.get(prefix)?;
+                let ground = *numbers.get(&format!("{prefix}{}", placement::GROUND))?;
+                Some(Standing { ground, mirror })
+            });
+            body.standing = found;
+        }
     }
 
     /// Whether a parameter says how often something is repeated.

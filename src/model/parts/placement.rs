@@ -228,42 +228,6 @@ impl Writer<'_, '_> {
             entry.value = scalar(&value, &scope, &entry.value.span);
         }
     }
-
-    /// Where assembly begins to look for bodies of which the assembly says nothing: at the instance's place.
-    pub(super) fn guess(
-        &mut self,
-        placement: &Placement,
-        bodies: &[Entry],
-        given: &[String],
-        scope: &Arc<Scope>,
-    ) -> Vec<Entry> {
-        let mut found = Vec::new();
-        for body in bodies {
-            let listed = body.value.get("coordinates").map(|node| match &node.value {
-                Value::Sequence(items) => items.iter().filter_map(|item| Some(item.scalar()?.text.clone())).collect(),
-                _ => Vec::new(),
-            });
-            let has = |coordinate: &str| {
-                listed.as_ref().is_none_or(|known: &Vec<String>| known.iter().any(|k| k == coordinate))
-            };
-            let mut guess = |coordinate: &str, value: Node| {
-                let key = format!("{}.{coordinate}", body.key);
-                if has(coordinate) && !given.contains(&key) {
-                    found.push(Entry { key, key_span: placement.span.clone(), value });
-                }
-            };
-            for axis in PLACE.into_iter().take(placement.position.len()) {
-                guess(axis, scalar(&format!("at.{axis}"), scope, &placement.span));
-            }
-            if placement.angle.is_some() {
-                guess("angle", scalar("at.angle", scope, &placement.span));
-            }
-            if let Some(rotation) = &placement.rotation {
-                guess("orientation", rotation.clone());
-            }
-        }
-        found
-    }
 }
 
 fn other_of(coordinate: &str) -> &'static str {

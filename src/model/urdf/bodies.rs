@@ -74,6 +74,7 @@ pub fn body(reader: &mut Reader, source: &Source, group: &Group, of_link: &[(usi
         prescribed: Vec::new(),
         prescribed_orientation: None,
         points: Vec::new(),
+        standing: None,
     }
 }
 
