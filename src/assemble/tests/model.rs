@@ -75,6 +75,7 @@ impl Model {
             prescribed: Vec::new(),
             prescribed_orientation: None,
             points,
+            standing: None,
         });
     }
 
