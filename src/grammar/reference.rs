@@ -67,7 +67,13 @@ pub fn functions() -> Vec<FunctionDocs> {
         domain: known.domain,
         value: known.value,
     };
-    FUNCTIONS.iter().map(function).collect()
+    // Of the parser: it is written out before there are functions.
+    let sum = FunctionDocs {
+        function: "sum(i, a..b, term)".to_owned(),
+        domain: "whole a ≤ b",
+        value: "the term for each i from a to b, added; i may be in names, `leg_{i}.force`",
+    };
+    FUNCTIONS.iter().map(function).chain([sum]).collect()
 }
 
 /// All outputs of bodies, points, joints and of the whole mechanism; effects list their own.

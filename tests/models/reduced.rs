@@ -198,6 +198,27 @@ fn an_undecided_requirement_raises_the_order() {
     assert!(summary.methods.iter().any(|method| method.method.contains("earlier")), "{:?}", summary.methods);
 }
 
+/// A slider that drifts either way is farthest from the middle at one end of the time or the other: its margin has a kink where it
+/// stands still, and its bounds in the rows have none.
+#[test]
+fn a_margin_that_changes_place_in_time_is_decided_by_rows() {
+    let model = "
+parameters: { a: 0 m ± 0.1 m, v: 0 m/s ± 1 m/s, b: 0 m ± 0.03 m }
+bodies: { slider: { mass: 1, coordinates: [x] } }
+initial: { slider.x: a + b, slider.vx: v }
+outputs: { x: slider.x }
+requirements: { stays: abs(x) <= 1.2 m }
+simulation: { duration: 1, step: 0.01, output_step: 0.05 }
+bounds: { tolerance: 1e-4 }
+";
+    let found = summary(&read(model));
+    let stays = requirement(&found, "stays");
+    assert_eq!(stays.verdict, Verdict::Holds, "{stays:?}");
+    assert!((stays.margin - 0.07).abs() <= stays.error && stays.error < 1e-3, "{stays:?}");
+    let found = summary(&read(&model.replace("1.2 m", "1.1 m")));
+    assert_eq!(requirement(&found, "stays").verdict, Verdict::Violated);
+}
+
 #[test]
 fn what_is_not_asked_for_is_not_there() {
     let begin = PENDULUM.find("  stroke:").unwrap();

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use mbint::inner::model::{self, Description, Override, ParameterValue, Reading};
-use mbint::inner::results::{Bounds, Summary};
+use mbint::inner::results::{Bounds, Summary, Verdict};
 use mbint::inner::study::{self, Options};
 
 use super::place::Place;
@@ -303,4 +303,23 @@ fn the_platform_is_short() {
     let text = fs::read_to_string(root().join("models/stewart.yaml")).unwrap();
     let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
     assert!(lines.count() < 35);
+}
+
+/// The pads move without turning, so the gap is that of the offsets, lengths and thicknesses of two fingers.
+#[test]
+fn a_gripper_of_a_finger_and_its_image_has_its_gap() {
+    let (bounds, summary) = run(&model::load(&root().join("models/gripper.yaml"), &[]).unwrap());
+    let [gap, middle] = ["gap", "middle"].map(|name| bounds.outputs.iter().find(|output| output.name == name).unwrap());
+    for (row, t) in bounds.times.iter().enumerate() {
+        let u = (t / 0.4).min(1.0);
+        let cos = (70.0 + 30.0 * u * u * (3.0 - 2.0 * u)).to_radians().cos();
+        let nominal = 2.0 * (0.03 + 0.08 * cos - 0.012);
+        let deviation = 2.0 * (0.05e-3 + 0.1e-3 * cos.abs() + 0.02e-3);
+        assert!((gap.nominal[row] - nominal).abs() < 1e-9 && middle.nominal[row].abs() < 1e-9);
+        let band = &gap.bands[0];
+        assert!((band.lower[row] - (nominal - deviation)).abs() < 1e-9, "{} {nominal} {deviation}", band.lower[row]);
+        assert!((band.upper[row] - (nominal + deviation)).abs() < 1e-9);
+        assert!((middle.bands[0].upper[row] - deviation / 2.0).abs() < 1e-9);
+    }
+    assert!(summary.requirements.iter().all(|found| found.verdict == Verdict::Holds), "{:?}", summary.requirements);
 }

@@ -20,6 +20,7 @@ pub fn constrain(schema: &mut Schema) {
     }
     of_parameter(&mut definitions["Parameter"]);
     of_body(&mut definitions["Body"]);
+    with_ground(&mut definitions["Assembly"]["properties"]["bodies"]);
     of_table(&mut definitions["Table"]);
     of_bounds(definitions);
     exactly_one(&mut definitions["Rotation"], &["rpy", "axis", "quaternion"]);
@@ -62,20 +63,18 @@ fn of_model(root: &mut Map<String, Value>) {
     );
     insert(&mut properties["outputs"], "examples", json!([{ "height": "ball.y", "angle": "deg(crank.angle)" }]));
     insert(&mut properties["parameters"], "examples", json!([{ "length": "0.5 m ± 1%", "mass": "250 kg/m * length" }]));
-    let bodies = properties["bodies"].take();
-    properties["bodies"] = with_ground(bodies);
+    with_ground(&mut properties["bodies"]);
 }
 
 /// The ground has points and nothing else.
-fn with_ground(mut bodies: Value) -> Value {
+fn with_ground(bodies: &mut Value) {
     let points = json!({
         "description": "What does not move.",
         "type": ["object", "null"],
         "properties": { "points": { "$ref": "#/$defs/Body/properties/points" } },
         "additionalProperties": false
     });
-    insert(&mut bodies, "properties", json!({ "ground": points }));
-    bodies
+    insert(bodies, "properties", json!({ "ground": points }));
 }
 
 fn example() -> Value {

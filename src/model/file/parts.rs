@@ -17,7 +17,7 @@ grammar! {
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Parameters that are one for all instances, as are their deviations; or `all`.
         shared: Option<SharedFile>,
-        /// Its bodies. `ground` is that of the model.
+        /// Its bodies. `ground` is the model's, or where the instance is placed; it may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What constrains its bodies.
         joints: Option<IndexMap<String, JointKind>>,

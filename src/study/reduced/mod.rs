@@ -1,9 +1,10 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements (`found` has all of it); `keeping` and `kept` evaluate
+//! what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it); `keeping` and `kept` evaluate
 //! them after the run; `refine` runs a model until all are decided.
 
+mod by_rows;
 mod ensemble;
 mod expand;
 mod found;

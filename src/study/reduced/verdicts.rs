@@ -19,13 +19,20 @@ const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
 
 /// Bounds of a part of a margin.
-struct Part {
-    lower: f64,
-    error: f64,
-    surrogate: f64,
-    time: f64,
-    is_reliable: bool,
-    method: &'static str,
+pub(super) struct Part {
+    pub(super) lower: f64,
+    pub(super) error: f64,
+    pub(super) surrogate: f64,
+    pub(super) time: f64,
+    pub(super) is_reliable: bool,
+    pub(super) method: &'static str,
+}
+
+impl Part {
+    /// What the margin may be with the error.
+    pub(super) fn reached(&self) -> f64 {
+        self.lower - self.error
+    }
 }
 
 /// NaN is passed on.
@@ -55,12 +62,22 @@ impl Study<'_> {
         rows: &Results,
         ensembles: [&ReducedEnsemble; 2],
     ) -> Result<RequirementSummary, SimulationError> {
-        let parts: Vec<Part> = ensembles[0].plan().parts(number).map(|place| self.part(values, place)).collect();
+        let mut parts: Vec<Part> = ensembles[0].plan().parts(number).map(|place| self.part(values, place)).collect();
+        let decided = |parts: &[Part]| parts.iter().all(|part| part.is_reliable && part.reached() >= 0.0);
+        if !decided(&parts) && !values.unreliable {
+            let margin = |(_, all): &(Sample, Vec<f64>)| ensembles[0].plan().margin(number, |place| all[place]);
+            // NaN stays, and contradicts.
+            let simulated = values.samples.iter().map(margin).fold(f64::INFINITY, smaller);
+            parts = match self.by_rows(own, rows, simulated) {
+                Some(part) if part.reached() >= 0.0 => vec![part],
+                _ => parts,
+            };
+        }
         let lower = parts.iter().map(|part| part.lower).fold(f64::INFINITY, smaller);
-        let least = parts.iter().map(|part| part.lower - part.error).fold(f64::INFINITY, smaller);
+        let least = parts.iter().map(Part::reached).fold(f64::INFINITY, smaller);
         let error = lower - least;
         // The part that decides.
-        let part = parts.iter().min_by(|a, b| (a.lower - a.error).total_cmp(&(b.lower - b.error)));
+        let part = parts.iter().min_by(|a, b| a.reached().total_cmp(&b.reached()));
         let is_reliable = parts.iter().all(|part| part.is_reliable) && !values.unreliable;
         let holds = is_reliable && least >= 0.0;
         let nearest = self.nearest((number, own), values, holds, ensembles)?;

@@ -1,0 +1,50 @@
+//! A requirement over the time by the bounds of its slacks in the rows.
+//!
+//! The least slack over the time and the box is the same whichever comes first. Over the time first, it is one number a motion, with a kink
+//! over the box wherever it changes its place in time. Over the box first, it is the least of the lower bounds in the rows, which know
+//! no such kink; only what lies between rows is estimated.
+
+use super::super::conclude::bands;
+use super::super::outcome::Results;
+use super::super::single::Study;
+use super::verdicts::Part;
+use crate::model::Requirement;
+use crate::results::Band;
+
+/// What the estimate of a dip between rows may be wrong by.
+const SAFETY: f64 = 2.0;
+
+impl Study<'_> {
+    /// Bounds of a requirement's margin from the rows; `None` where they do not say, or where a simulated sample with a margin of
+    /// `simulated` contradicts them.
+    pub(super) fn by_rows(&self, own: &Requirement, rows: &Results, simulated: f64) -> Option<Part> {
+        let (from, to) = own.times.filter(|(from, to)| from < to)?;
+        let schedule = &rows.schedule;
+        let span: Vec<usize> = (0..schedule.rows).filter(|&row| (from..=to).contains(&schedule.time(row))).collect();
+        // The span begins and ends where there are rows, and a dip takes three.
+        let [first, .., last] = *span.as_slice() else { return None };
+        let end = to.min(schedule.time(schedule.rows - 1));
+        let is_whole = schedule.time(first) == from && schedule.time(last) == end && span.len() > 2;
+        let of_slack = |&place: &usize| {
+            let bands = bands(self, rows, place, schedule.rows);
+            let relied_on = |band: &&Band| span.iter().all(|&row| !band.error.unresolved[row]);
+            let band = bands.iter().find(relied_on)?;
+            let lower = &band.lower[first..=last];
+            let dip = lower.windows(3).map(|l| SAFETY / 8.0 * (l[0] - 2.0 * l[1] + l[2]).abs()).fold(0.0, f64::max);
+            let reached = |row: usize| lower[row] - band.error.total[first + row];
+            let least = (0..lower.len()).map(reached).fold(f64::INFINITY, f64::min) - dip;
+            let lower = lower.iter().copied().fold(f64::INFINITY, f64::min);
+            Some(Part {
+                lower,
+                error: lower - least,
+                surrogate: band.error.surrogate,
+                time: band.error.time,
+                is_reliable: true,
+                method: band.method.name(),
+            })
+        };
+        let parts: Vec<Part> = own.places.iter().map(of_slack).collect::<Option<_>>()?;
+        let part = parts.into_iter().min_by(|a, b| a.reached().total_cmp(&b.reached()))?;
+        (is_whole && part.reached() <= simulated).then_some(part)
+    }
+}
