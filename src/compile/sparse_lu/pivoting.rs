@@ -211,7 +211,8 @@ impl<'m> PivotSearch<'m> {
     /// The diagonal entries in the sparsest columns and rows.
     fn diagonals(&self, active: &Active, searched: usize) -> Diagonals {
         let columns = active.sparsest_columns.iter().take(searched);
-        let mut places: Vec<usize> = columns.chain(active.sparsest_rows.iter().take(searched)).map(|key| key.2).collect();
+        let mut places: Vec<usize> =
+            columns.chain(active.sparsest_rows.iter().take(searched)).map(|key| key.2).collect();
         places.sort_unstable();
         places.dedup();
         places.retain(|place| active.rows[*place].contains_key(place));

@@ -247,3 +247,30 @@ impl Graph {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Derivatives of what stands on other derivatives cost what is new, however deep they stand.
+    #[test]
+    fn only_what_is_new_is_looked_at() {
+        let mut g = Graph::new();
+        let angles: Vec<Expr> = (0..60).map(|link| g.symbol(&format!("q{link}"))).collect();
+        let mut tip = g.constant(0.0);
+        let mut tips = Vec::new();
+        for &angle in &angles {
+            let sum = g.add(tip, angle);
+            tip = g.sin(sum);
+            tips.push(tip);
+        }
+        g.jacobian(&tips[..59], &angles);
+        let mut visits = Visits::default();
+        for &angle in &angles[..59] {
+            assert!(g.not_yet_derived(tips[59], angle, &mut visits).len() <= 3);
+        }
+        let chain = (0..60).map(|link| g.cos(tips[link])).collect::<Vec<Expr>>();
+        let value = g.derivative(chain[59], angles[59]);
+        assert_eq!(value, g.jacobian(&chain, &angles).rows[59][59].1);
+    }
+}

@@ -63,13 +63,8 @@ pub fn lower_where(
 ) -> Lowered {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
-    let mut lowering = Lowering {
-        graph,
-        stages,
-        register_of: NodeTable::new(graph.len()),
-        constants: Vec::new(),
-        next: reserved,
-    };
+    let mut lowering =
+        Lowering { graph, stages, register_of: NodeTable::new(graph.len()), constants: Vec::new(), next: reserved };
     inputs.iter().for_each(|input| lowering.register_of.insert(input.symbol, input.register));
     // From the last stage down: what a stage needs of the ones below is pinned there.
     let mut pinned: Vec<FxHashSet<Expr>> = vec![FxHashSet::default(); shared];

@@ -10,12 +10,7 @@ use crate::expr::Expr;
 /// Registers by linear scan: a scratch register is free again after its value's last use. A target is written at once
 /// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values stand that are
 /// there before or stay; scratch registers begin at `first`.
-pub(crate) fn allocate(
-    steps: &[Step],
-    targets: &[(Expr, u32)],
-    register_of: &NodeTable,
-    first: u32,
-) -> Tape {
+pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &NodeTable, first: u32) -> Tape {
     let nodes = register_of.nodes();
     let Uses { last_use, mut read_registers, computed } = Uses::of(steps, register_of);
     read_registers.extend(targets.iter().filter_map(|&(expr, _)| register_of.get(expr)));
@@ -208,7 +203,8 @@ impl Shared {
                     // The choice overwrites the value, which nobody may look for afterwards.
                     if may_share(value)
                         && last_use.get(value).is_some_and(|last| (last as usize) < place)
-                        && !shared.next.contains_key(&value) {
+                        && !shared.next.contains_key(&value)
+                    {
                         shared.next.insert(value, chosen);
                         shared.needless.insert(copied_at);
                     }
