@@ -30,7 +30,7 @@ use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower};
 use super::equations::Equation;
 use super::layout::Layout;
 use super::nearest::{LeastSquares, OpenStart};
-use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
+use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, named, residuals};
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, StartProgram, VELOCITY};
 use crate::assemble::System;
@@ -77,7 +77,7 @@ pub fn compile_nearest_start(
         _ => system.graph.clone(),
     };
     let equations = Equations::new(system, &mut graph);
-    let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample };
+    let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample, factorised: Vec::new() };
     let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let graph = builder.graph;
 
@@ -146,6 +146,23 @@ struct Builder<'s> {
     inputs: &'s [Input],
     redundant: &'s [usize],
     sample: &'s [f64],
+    factorised: Vec<Factorised>,
+}
+
+/// A matrix with its factors: corrections of positions and velocities often have one matrix, those of accelerations and impulses too.
+struct Factorised {
+    matrix: SparseMatrix,
+    /// Coordinates and the rows of the constraints that define them.
+    pairs: Vec<(usize, usize)>,
+    /// The first row that is searched last.
+    late: usize,
+    factors: Factors,
+}
+
+impl Factorised {
+    fn is_of(&self, matrix: &SparseMatrix, pairs: &[(usize, usize)], late: usize) -> bool {
+        self.late == late && self.pairs == pairs && self.matrix == *matrix
+    }
 }
 
 impl Builder<'_> {
@@ -240,17 +257,25 @@ impl Builder<'_> {
                 scale[row] = numbers[place][0].abs().sqrt().recip();
             }
         }
-        let stages = Stages::new(self.inputs);
         let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
         // Where the metric couples coordinates along a chain, all of them before the first constraint would couple every pair of
         // constraints. Few may be.
         let late = if is_coupled && n > MANY { n + m } else { n };
-        let pivoting = Pivoting::Diagonal { constraints: late, pairs: &pairs };
-        let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, pivoting)?;
+        let known = self.factorised.iter().position(|known| known.is_of(&matrix, &pairs, late));
+        let known = match known {
+            Some(known) => known,
+            None => {
+                let pivoting = Pivoting::Diagonal { constraints: late, pairs: &pairs };
+                let stages = Stages::new(self.inputs);
+                let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, pivoting)?;
+                self.factorised.push(Factorised { matrix, pairs, late, factors });
+                self.factorised.len() - 1
+            }
+        };
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);
         given.iter().zip(&mut right).filter(|(given, _)| **given).for_each(|(_, value)| *value = zero);
-        Ok(factors.solve(&mut self.graph, &right))
+        Ok(self.factorised[known].factors.solve(&mut self.graph, &right))
     }
 
     /// The diagonal of M at the sample.

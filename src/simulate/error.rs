@@ -147,6 +147,26 @@ pub enum SimulationError {
         /// What keeps the steps short.
         cause: String,
     },
+    /// A force or a prescribed position changes too fast with the time.
+    #[error(
+        "{function} has a period near {period:.1e} s at t = {time:.3e} s: a run that follows it takes some {steps:.0e} steps of {step:.1e} s, \
+         and {}; simulate a shorter time, or put what it does on average in its place",
+        if *most > 0 { format!("{most} are the most") } else { "finding them takes too long".to_owned() }
+    )]
+    TooFast {
+        /// The function and what it is part of.
+        function: String,
+        /// About its period, or the time between its jumps, s.
+        period: f64,
+        /// s
+        step: f64,
+        /// s
+        time: f64,
+        /// Steps that the run would have.
+        steps: f64,
+        /// Most steps of a run; 0 where the search for steps ended it.
+        most: usize,
+    },
 }
 
 fn parameter_list(parameters: &[(String, f64)]) -> String {

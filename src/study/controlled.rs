@@ -61,17 +61,17 @@ impl Study<'_> {
         tolerance: f64,
         samples: &[Sample],
     ) -> Result<(ToleranceSchedule, Controller), SimulationError> {
-        let (duration, output_step) = (self.description.simulation.duration, self.description.simulation.output_step);
+        let times = (self.description.simulation.duration, self.description.simulation.output_step);
         let integration = self.integration();
         // Plain steps for an error of e are as long as the root of e, extrapolated ones as long as a higher root.
         let of_plain = |error: f64| match integration.order() {
             2 => error,
             order => math::pow(error, 2.0 / order as f64),
         };
-        let mut controller = Controller { tolerance: of_plain(tolerance), duration };
+        let mut controller = Controller { tolerance: of_plain(tolerance), duration: times.0 };
         let schedule = |controller: Controller| -> Result<ToleranceSchedule, SimulationError> {
             let controlled =
-                schedule_for_tolerance(&self.simulator, samples, duration, output_step, controller.tolerance)?;
+                schedule_for_tolerance(&self.simulator, samples, times, controller.tolerance, self.interrupted)?;
             Ok(ToleranceSchedule { schedule: controlled.schedule.taken(integration), ..controlled })
         };
         let mut controlled = schedule(controller)?;

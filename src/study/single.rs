@@ -135,7 +135,13 @@ impl<'a> Study<'a> {
             Stepping::Tolerance(tolerance) => {
                 (self.stage)("choosing the steps");
                 let samples = self.controlling_samples();
-                let controlled = schedule_for_tolerance(&self.simulator, &samples, duration, output_step, tolerance)?;
+                let controlled = schedule_for_tolerance(
+                    &self.simulator,
+                    &samples,
+                    (duration, output_step),
+                    tolerance,
+                    self.interrupted,
+                )?;
                 // The nominal sample may be of another part of the box.
                 let inside = |sample: &Sample| samples[0] != *sample || self.domain.contains(sample);
                 let going = (0..samples.len()).filter(|sample| !controlled.dropped.contains(sample));

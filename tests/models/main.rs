@@ -22,6 +22,7 @@ mod drawing_linkages;
 mod explicit;
 mod extrapolation;
 mod far;
+mod fast_functions;
 mod formulas;
 mod formulations;
 mod hard_cases;

@@ -182,7 +182,8 @@ fn the_error_falls_with_the_tolerance_in_every_scheme() {
             let simulator = compiled(&description, scheme, 2e-4);
             let sample = nominal_sample(&simulator);
             let piloted =
-                schedule_for_tolerance(&simulator, std::slice::from_ref(&sample), 1.0, 0.02, tolerance).unwrap();
+                schedule_for_tolerance(&simulator, std::slice::from_ref(&sample), (1.0, 0.02), tolerance, &|| false)
+                    .unwrap();
             assert_eq!(piloted.failure, None);
             distance(&courses(&simulator, &piloted.schedule, sample)[0], &exact)
         });

@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use mbint::Model;
 use mbint::inner::results::{Bounds, Method};
 
 use crate::common::{Vary, band, curve, largest, nominal, output, read, run, run_methods};
@@ -71,6 +72,32 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
         assert!(highest < full * (1.0 + 10.0 * tolerance), "{tolerance:e}: {highest} of {full}");
         assert!(off < 20.0 * tolerance, "{tolerance:e}: off by {off:e} m");
     }
+}
+
+/// A brake that holds one sample of the scan, and none of those that decide the steps: at rest its force jumps in every step,
+/// so that the tolerance takes more steps than a sample may have. What is true there is known; what is stated is flagged.
+#[test]
+fn a_sample_beyond_the_tolerance_flags_what_follows() {
+    let text = "
+parameters: { p: { interval: [0.9, 1.16] } }
+bodies: { sledge: { mass: 1, coordinates: [x] } }
+effects: { brake: { force: { on: sledge, value: [\"-390*exp(-((p - 1)/0.009)^2)*sign(sledge.vx)\", 0] } } }
+initial: { sledge.x: 0, sledge.vx: 97.5 }
+outputs: { v: sledge.vx }
+simulation: { duration: 0.6, tolerance: 1e-5, output_step: 0.1, scheme: hht }
+bounds: { scan: { points: 14 } }
+";
+    let result = Model::from_yaml_str("brake", text).unwrap().study().run().unwrap();
+    let held = result.outputs().next().unwrap();
+    let band = held.bands().next().unwrap();
+    // It comes to rest after 0.25 s.
+    for (row, &time) in result.times().iter().enumerate() {
+        let (lower, truth) = (band.lower()[row], 97.5 - 390.0 * time);
+        assert!(!band.is_reliable(row) || (lower - truth.max(0.0)).abs() <= band.errors()[row], "{lower} at {time} s");
+        assert!(!band.is_reliable(row) || truth > 0.0, "{time} s");
+    }
+    let failure = result.failure().unwrap_or_default();
+    assert!(failure.contains("times the tolerance"), "{failure}");
 }
 
 /// At rows that are not flagged both ends of the true band lie within the stated error.

@@ -148,11 +148,19 @@ impl<'m> PivotSearch<'m> {
     /// The search that widens to no more than so many columns and rows before it lowers the threshold.
     fn search(&self, active: &Active, widest: usize) -> Option<(usize, usize)> {
         let singular = self.pivoting.smallest();
+        let is_diagonal = matches!(self.pivoting, Pivoting::Diagonal { .. });
+        let mut diagonals: Vec<Diagonals> = Vec::new();
         let mut threshold = self.pivoting.threshold();
         while threshold > singular {
             let mut searched = SEARCHED;
-            loop {
-                let best = self.best_of(active, searched, threshold);
+            for widening in 0.. {
+                if is_diagonal && diagonals.len() == widening {
+                    diagonals.push(self.diagonals(active, searched));
+                }
+                let best = match diagonals.get_mut(widening) {
+                    Some(diagonals) => diagonals.first_of(active, threshold, singular),
+                    None => self.best_of(active, searched, threshold),
+                };
                 if best.is_some() {
                     return best;
                 }
@@ -198,6 +206,20 @@ impl<'m> PivotSearch<'m> {
                 }
             }
         }
+    }
+
+    /// The diagonal entries in the sparsest columns and rows.
+    fn diagonals(&self, active: &Active, searched: usize) -> Diagonals {
+        let columns = active.sparsest_columns.iter().take(searched);
+        let mut places: Vec<usize> =
+            columns.chain(active.sparsest_rows.iter().take(searched)).map(|key| key.2).collect();
+        places.sort_unstable();
+        places.dedup();
+        places.retain(|place| active.rows[*place].contains_key(place));
+        let mut by_cost: Vec<(usize, usize, Option<f64>)> =
+            places.into_iter().map(|place| (self.cost(active, place, place), place, None)).collect();
+        by_cost.sort_unstable_by_key(|&(cost, place, _)| (cost, place));
+        Diagonals { by_cost }
     }
 
     fn best_of(&self, active: &Active, searched: usize, threshold: f64) -> Option<(usize, usize)> {
@@ -268,18 +290,32 @@ impl<'m> PivotSearch<'m> {
     fn cost(&self, active: &Active, row: usize, column: usize) -> usize {
         let pivot = self.is_costly(active.rows[row][&column].value);
         let others = active.columns[column].iter().filter(|&&other| other != row);
-        let right: Vec<bool> = active.rows[row]
-            .iter()
-            .filter(|&(&other, _)| other != column)
-            .map(|(_, entry)| self.is_costly(entry.value))
-            .collect();
-        let costly_right = right.iter().filter(|&&is_costly| is_costly).count();
+        let right = active.rows[row].iter().filter(|&(&other, _)| other != column);
+        let costly_right = right.filter(|(_, entry)| self.is_costly(entry.value)).count();
+        let right = active.rows[row].len() - 1;
         let mut cost = 4 * usize::from(pivot);
         for &other in others {
             let multiplier = pivot || self.is_costly(active.rows[other][&column].value);
-            cost += usize::from(multiplier) + if multiplier { right.len() } else { costly_right };
+            cost += usize::from(multiplier) + if multiplier { right } else { costly_right };
         }
         cost
+    }
+}
+
+/// Diagonal entries by cost and place, with their sizes against their columns where those have been looked at.
+struct Diagonals {
+    by_cost: Vec<(usize, usize, Option<f64>)>,
+}
+
+impl Diagonals {
+    /// The cheapest that is large enough.
+    fn first_of(&mut self, active: &Active, threshold: f64, singular: f64) -> Option<(usize, usize)> {
+        for (_, place, size) in &mut self.by_cost {
+            if *size.get_or_insert_with(|| size_against_column(active, *place, *place, singular)) >= threshold {
+                return Some((*place, *place));
+            }
+        }
+        None
     }
 }
 

@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use symdiff::Interval;
-
 use super::schedule::Schedule;
-use crate::simulate::time_functions::{RESOLVED, TOO_FAST, TimeFunctions};
+use crate::simulate::time_functions::{MOST_ENCLOSURES, RESOLVED, TOO_FAST, TimeFunctions, Work};
 
-/// Most steps that a schedule may come to, for each that it has, and besides.
+/// Most steps that a schedule may come to, for each that it has, and besides; and in any case beyond those that it has.
 const MOST_FOR_EACH: usize = 128;
 const MOST_BESIDES: usize = 20_000;
+const MOST_MORE: usize = 4_000_000;
 
 /// A schedule with its steps divided.
 #[derive(Clone, Debug)]
@@ -24,18 +23,21 @@ impl TimeFunctions {
     /// The same rows, with those steps divided that do not resolve a function of the time. A schedule that resolves all is
     /// returned as it is.
     pub fn divided(&self, schedule: &Schedule) -> Divided {
-        let mut division = Division { functions: self, schedule, work: Vec::new(), unresolved_from: None };
+        let mut division = Division { functions: self, schedule, work: Work::default(), unresolved_from: None };
         let mut rows = Vec::new();
         division.find_rows(1..schedule.rows, &mut rows);
         if rows.is_empty() {
             return Divided { schedule: schedule.clone(), unresolved_from: None };
         }
         let steps = schedule.steps_before(schedule.rows.saturating_sub(1));
-        let mut left = MOST_FOR_EACH.saturating_mul(steps).saturating_add(MOST_BESIDES);
+        let mut left = MOST_FOR_EACH.saturating_mul(steps).saturating_add(MOST_BESIDES).min(steps + MOST_MORE);
         let mut rows = rows.into_iter().peekable();
         let mut ends = Vec::with_capacity(schedule.rows - 1);
         for row in 1..schedule.rows {
             let mut list = Vec::new();
+            if division.work.enclosures() > MOST_ENCLOSURES {
+                left = 0;
+            }
             if rows.next_if_eq(&row).is_some() && left > 0 {
                 division.divide_row(row, left, &mut list);
                 left = left.saturating_sub(list.len());
@@ -60,7 +62,7 @@ impl TimeFunctions {
 struct Division<'a> {
     functions: &'a TimeFunctions,
     schedule: &'a Schedule,
-    work: Vec<Interval>,
+    work: Work,
     unresolved_from: Option<usize>,
 }
 

@@ -9,13 +9,16 @@ use crate::numerics::Sample;
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{LocalError, Stepper};
-use crate::simulate::time_functions::TimeFunctions;
+use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
 
 /// The first step, as a share of the output step.
 const FIRST_STEP: f64 = 1e-2;
 
 /// Where a run ends, its constraints are examined this share of an output step later: a residual needs time to grow.
 const LOOK_AHEAD: f64 = 0.5;
+
+/// Steps that are tried between two looks at whether to end.
+const BETWEEN_LOOKS: usize = 256;
 
 /// Most steps of a schedule: where it needs more, no step resolves the motion.
 const MOST_STEPS: usize = 2_000_000;
@@ -38,34 +41,43 @@ pub struct ToleranceSchedule {
 /// sample does not converge.
 ///
 /// A sample for which no step is small enough is dropped, and the others continue. Where there are too many steps, the
-/// schedule ends.
+/// schedule ends; so does it where it is interrupted.
 ///
 /// # Errors
-/// Where a controlling sample cannot be assembled.
+/// Where a controlling sample cannot be assembled, and where functions of the time take far too many steps.
 pub fn schedule_for_tolerance(
     simulator: &Simulator,
     samples: &[Sample],
-    duration: f64,
-    output_step: f64,
+    (duration, output_step): (f64, f64),
     tolerance: f64,
+    interrupted: &dyn Fn() -> bool,
 ) -> Result<ToleranceSchedule, SimulationError> {
     let controller = Controller { tolerance, duration };
     let mut control = Control::start(simulator, samples, controller, output_step)?;
     let rows = Schedule::rows_of(duration, output_step);
     let mut ends = Vec::with_capacity(rows - 1);
     let (mut complete_rows, mut failure) = (rows, None);
-    for row in 1..rows {
+    'rows: for row in 1..rows {
         let (begin, goal) = ((row - 1) as f64 * output_step, Schedule::time_of(duration, output_step, row));
         let mut time = begin;
         let mut list = Vec::new();
         let at_row = control.steps.clone();
         while time < goal {
+            if control.tries.is_multiple_of(BETWEEN_LOOKS) && interrupted() {
+                complete_rows = complete_rows.min(row);
+                break 'rows;
+            }
             match control.step(time, goal) {
                 Outcome::Accepted(end) => {
                     time = end;
                     list.push(end);
                 }
                 Outcome::Rejected => {}
+                Outcome::Ended(error) => {
+                    complete_rows = complete_rows.min(row);
+                    failure.get_or_insert(error);
+                    break 'rows;
+                }
                 Outcome::Dropped(error) => {
                     complete_rows = complete_rows.min(row);
                     failure.get_or_insert(error);
@@ -73,8 +85,7 @@ pub fn schedule_for_tolerance(
                     control.restore(at_row.clone());
                     (time, list) = (begin, Vec::new());
                     if control.is_over() {
-                        let schedule = Schedule::listed(output_step, ends);
-                        return Ok(ToleranceSchedule { schedule, complete_rows, dropped: control.dropped, failure });
+                        break 'rows;
                     }
                 }
             }
@@ -91,9 +102,10 @@ struct Control<'s> {
     samples: &'s [Sample],
     output_step: f64,
     steps: Adaptive<'s>,
-    functions: Option<TimeFunctions>,
-    /// Accepted steps.
+    functions: Option<ResolvingSteps>,
+    /// Accepted steps, and those tried.
     count: usize,
+    tries: usize,
     dropped: Vec<usize>,
 }
 
@@ -103,6 +115,8 @@ enum Outcome {
     Accepted(f64),
     /// The step is to be repeated with a smaller size.
     Rejected,
+    /// No sample goes on.
+    Ended(SimulationError),
     /// No step is small enough for some samples, which no longer run.
     Dropped(SimulationError),
 }
@@ -119,7 +133,9 @@ impl<'s> Control<'s> {
         let start = simulator.assemble(width, h, |lane| samples[lane.min(samples.len() - 1)].clone())?;
         let steps = Adaptive::new(simulator, Stepper::new(&simulator.program, &start), controller, h);
         let functions = TimeFunctions::of(simulator, controller.duration);
-        Ok(Self { simulator, samples, output_step, steps, functions, count: 0, dropped: Vec::new() })
+        let functions =
+            functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, MOST_STEPS)).transpose()?;
+        Ok(Self { simulator, samples, output_step, steps, functions, count: 0, tries: 0, dropped: Vec::new() })
     }
 
     /// Goes back to an earlier state, without the samples that were dropped since.
@@ -138,9 +154,12 @@ impl<'s> Control<'s> {
 
     /// Tries a step from `time` towards the row at `goal`.
     fn step(&mut self, time: f64, goal: f64) -> Outcome {
+        self.tries += 1;
         let step = self.steps.h.min(goal - time);
-        let goal_of_step = match self.functions.as_ref().map(|functions| functions.longest_step(time, step)) {
-            Some(shorter) if shorter < step && time + shorter > time => time + shorter,
+        let longest = self.functions.as_mut().map(|functions| functions.longest(time, step, &self.simulator.system));
+        let goal_of_step = match longest {
+            Some(Err(error)) => return Outcome::Ended(error),
+            Some(Ok(shorter)) if shorter < step && time + shorter > time => time + shorter,
             _ => goal,
         };
         let attempt = self.steps.attempt(time, goal_of_step);

@@ -8,7 +8,7 @@ mod singular;
 mod undetermined;
 
 pub use cannot_close::OpenConstraint;
-pub use not_finite::not_finite;
+pub use not_finite::{not_finite, written};
 pub use over_constrained::over_constrained;
 pub use singular::{SingularPass, SingularWatch};
 pub use undetermined::undetermined_outputs;

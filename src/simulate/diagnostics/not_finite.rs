@@ -41,16 +41,20 @@ pub fn not_finite(system: &System, layout: &Layout, state: &[f64], time: f64) ->
     while let Some(part) = graph.node(term).children().find(|&part| !value(part).is_finite()) {
         term = part;
     }
-    Some(format!("`{}` in {place}", written(graph, term, DEEPEST)))
+    Some(format!("`{}` in {place}", written(graph, term)))
 }
 
 /// A term as a formula.
-fn written(graph: &Graph, expr: Expr, depth: usize) -> String {
+pub fn written(graph: &Graph, expr: Expr) -> String {
+    written_to(graph, expr, DEEPEST)
+}
+
+fn written_to(graph: &Graph, expr: Expr, depth: usize) -> String {
     let part = |expr: Expr| match graph.node(expr) {
-        Node::Constant(_) | Node::Symbol(_) => written(graph, expr, depth),
+        Node::Constant(_) | Node::Symbol(_) => written_to(graph, expr, depth),
         _ if depth == 0 => "…".to_owned(),
         node => {
-            let text = written(graph, expr, depth - 1);
+            let text = written_to(graph, expr, depth - 1);
             if matches!(node, Node::Binary(..)) && !text.ends_with(')') { format!("({text})") } else { text }
         }
     };
@@ -62,10 +66,10 @@ fn written(graph: &Graph, expr: Expr, depth: usize) -> String {
             name.split_once(':').map_or(name, |(_, name)| name).to_owned()
         }
         Node::Unary(Unary::Neg, a) => format!("-{}", part(a)),
-        Node::Unary(Unary::Spline(..), a) => format!("table({})", written(graph, a, depth.saturating_sub(1))),
+        Node::Unary(Unary::Spline(..), a) => format!("table({})", written_to(graph, a, depth.saturating_sub(1))),
         Node::Unary(function, a) => {
             let name = format!("{function:?}").to_lowercase();
-            format!("{name}({})", if depth == 0 { "…".to_owned() } else { written(graph, a, depth - 1) })
+            format!("{name}({})", if depth == 0 { "…".to_owned() } else { written_to(graph, a, depth - 1) })
         }
         Node::Binary(function, a, b) => {
             let (a, b) = (part(a), part(b));

@@ -7,7 +7,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
-use crate::simulate::time_functions::TimeFunctions;
+use crate::simulate::time_functions::{ResolvingSteps, TimeFunctions};
 
 /// The first step, as a share of the output step.
 const FIRST_STEP: f64 = 1e-2;
@@ -65,18 +65,25 @@ pub fn explicit_schedule(
     most: usize,
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
     let mut tiles = Tiles::start(simulator, samples)?;
+    let too_many = Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
     let functions = TimeFunctions::of(simulator, duration);
+    let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
+    let Ok(mut functions) = functions else { return too_many };
     let mut sizes = sizes(simulator, duration);
     let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
     let (mut stiff, mut others) = (0, 0);
     while time < duration {
         if ends.len() == most {
-            return Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
+            return too_many;
         }
         if h < SMALLEST * duration {
             return Ok(Err(ExplicitObstacle::StepTooSmall { time }));
         }
-        let step = functions.as_ref().map_or(h, |functions| functions.longest_step(time, h.min(duration - time)));
+        let resolved = match &mut functions {
+            Some(functions) => functions.longest(time, h.min(duration - time), &simulator.system),
+            None => Ok(h),
+        };
+        let Ok(step) = resolved else { return too_many };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
         let worst = tiles.attempt(end, &sizes, tolerance);
         let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);

@@ -5,10 +5,12 @@
 //! whole step and the whole box of parameters, in interval arithmetic: where a function may change by more than its own size within a
 //! step, or be switched twice, the step is divided.
 //!
-//! `terms` finds the functions, `resolution` examines them over an interval of time.
+//! `terms` finds the functions, `resolution` examines them over an interval of time, `resolving_steps` steps along with them.
 
 mod resolution;
+mod resolving_steps;
 mod terms;
 
 pub use resolution::TimeFunctions;
-pub(in crate::simulate) use resolution::{RESOLVED, TOO_FAST};
+pub(in crate::simulate) use resolution::{RESOLVED, TOO_FAST, Work};
+pub(in crate::simulate) use resolving_steps::{MOST_ENCLOSURES, ResolvingSteps};

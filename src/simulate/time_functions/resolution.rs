@@ -1,8 +1,11 @@
 //! Whether steps resolve the functions of the time: bounds of their rates of change, and of the number of times that they jump.
 
+use std::f64::consts::TAU;
+
 use symdiff::{Expr, Graph, Interval, Ranges};
 
 use super::terms::{Condition, functions};
+use crate::simulate::diagnostics::written;
 use crate::simulate::simulator::Simulator;
 
 /// A step is divided where a function may change by more than this, as a share of its own size.
@@ -13,6 +16,9 @@ pub(in crate::simulate) const RESOLVED: f64 = 0.5;
 
 /// Jumps are this many steps apart.
 const APART: f64 = 4.0;
+
+/// Steps are not divided further than to this share of the duration for jumps that coincide for some parameters only.
+const COINCIDING: f64 = 1e-6;
 
 /// Halvings of a step. A mechanism's constraints are divided by the square of the step, and so is their rounding.
 const MOST_HALVINGS: u32 = 24;
@@ -44,9 +50,33 @@ pub struct TimeFunctions {
     halvings: u32,
 }
 
+/// What enclosures are made in, and how many there were.
+#[derive(Clone, Debug, Default)]
+pub(in crate::simulate) struct Work {
+    intervals: Vec<Interval>,
+    enclosures: usize,
+}
+
+impl Work {
+    /// Functions that were enclosed over a box.
+    pub(in crate::simulate) fn enclosures(&self) -> usize {
+        self.enclosures
+    }
+}
+
+/// A function that steps do not resolve.
+pub(super) struct Unresolved<'f> {
+    pub formula: &'f str,
+    pub of: Expr,
+    /// s
+    pub period: f64,
+}
+
 /// A function of the time.
 #[derive(Clone, Debug)]
 struct Term {
+    of: Expr,
+    formula: String,
     /// Value and rate.
     ranges: Ranges,
     /// Half the width of its range.
@@ -58,6 +88,8 @@ struct Term {
 /// What a jump depends on.
 #[derive(Clone, Debug)]
 struct Switch {
+    of: Expr,
+    formula: String,
     /// Value and rate.
     ranges: Ranges,
     /// Places of switches at which the value jumps itself.
@@ -85,20 +117,22 @@ impl TimeFunctions {
         let graph = &mut functions.graph;
         let mut with_rate = |of: Expr| {
             let rate = graph.derivative(of, system.time);
-            ranges_of(graph, &symbols, [of, rate])
+            (ranges_of(graph, &symbols, [of, rate]), written(graph, of))
         };
         let parameters: Vec<Interval> =
             system.parameters.iter().map(|parameter| Interval::new(parameter.lower, parameter.upper)).collect();
         let nominal: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let mut terms = Vec::new();
         for (expr, frozen) in functions.terms {
-            let ranges = with_rate(expr);
+            let (ranges, formula) = with_rate(expr);
             if let Some(size) = size(&ranges, &parameters, &nominal, duration) {
-                terms.push(Term { ranges, size, frozen });
+                terms.push(Term { of: expr, formula, ranges, size, frozen });
             }
         }
-        let switch =
-            |condition: Condition| Switch { ranges: with_rate(condition.of), jumps_with: condition.jumps_with };
+        let switch = |Condition { of, jumps_with }: Condition| {
+            let (ranges, formula) = with_rate(of);
+            Switch { of, formula, ranges, jumps_with }
+        };
         let switches: Vec<Switch> = functions.conditions.into_iter().map(switch).collect();
         let halvings = if system.constraint.is_empty() { MOST_HALVINGS } else { MOST_HALVINGS_WITH_CONSTRAINTS };
         let found = Self { duration, parameters, terms, switches, halvings };
@@ -111,38 +145,38 @@ impl TimeFunctions {
     }
 
     /// Whether steps of length h resolve every function from a to b, which may change by `share` of its size within a step.
-    pub(in crate::simulate) fn are_resolved(
-        &self,
-        (a, b): (f64, f64),
-        h: f64,
-        share: f64,
-        work: &mut Vec<Interval>,
-    ) -> bool {
+    pub(in crate::simulate) fn are_resolved(&self, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
         self.terms.iter().all(|term| term.is_slow(self, (a, b), h, share, work))
             && self.jumps_are_apart((a, b), h, work)
     }
 
-    /// The longest step from a time, of `step` halved and halved again, that resolves all functions of the time.
-    pub fn longest_step(&self, from: f64, step: f64) -> f64 {
-        let mut work = Vec::new();
-        let mut h = step;
-        for _ in 0..self.halvings {
-            let share = if h < step { RESOLVED } else { TOO_FAST };
-            if self.are_resolved((from, from + h), h, share, &mut work) {
-                break;
-            }
-            h *= 0.5;
+    /// The functions that steps of length h do not resolve from a time on: the first of them as a formula, its expression,
+    /// and its period, s, as far as its rate or its jumps tell.
+    pub(super) fn first_unresolved(&self, from: f64, h: f64, work: &mut Work) -> Option<Unresolved<'_>> {
+        let symbols = self.over(from, from + h);
+        let term = self.terms.iter().find(|term| !term.is_slow(self, (from, from + h), h, RESOLVED, work));
+        if let Some(term) = term {
+            let (_, rate) = term.over(&symbols, work);
+            let period = if rate.magnitude().is_finite() { TAU * term.size / rate.magnitude() } else { h };
+            return Some(Unresolved { formula: &term.formula, of: term.of, period });
         }
-        h
+        // Two jumps lie in what surrounds the step.
+        let near = self.switches.iter().find(|switch| switch.over(&symbols, work) != Switches::Never);
+        let switch = near.or(self.switches.first())?;
+        Some(Unresolved { formula: &switch.formula, of: switch.of, period: (1.0 + 2.0 * APART) * h })
     }
 
+    /// s
+    pub(super) fn duration(&self) -> f64 {
+        self.duration
+    }
     /// The symbols' intervals for a span of time.
     fn over(&self, a: f64, b: f64) -> Vec<Interval> {
         std::iter::once(Interval::new(a, b)).chain(self.parameters.iter().copied()).collect()
     }
 
     /// Whether no more than one jump lies in a step and those beside it, for all parameters.
-    fn jumps_are_apart(&self, (a, b): (f64, f64), h: f64, work: &mut Vec<Interval>) -> bool {
+    fn jumps_are_apart(&self, (a, b): (f64, f64), h: f64, work: &mut Work) -> bool {
         if self.switches.is_empty() {
             return true;
         }
@@ -170,6 +204,10 @@ impl TimeFunctions {
             if !unknown && possible <= 1 {
                 continue;
             }
+            // Jumps that some parameters bring together make a pulse of no more than a step, which no one sees.
+            if !unknown && sure < 2 && h <= COINCIDING * self.duration {
+                continue;
+            }
             seen += 1;
             let widest = (1..symbols.len()).max_by(|&i, &j| {
                 let share =
@@ -193,11 +231,11 @@ impl TimeFunctions {
 
 impl Term {
     /// Value and rate over a box.
-    fn over(&self, symbols: &[Interval], work: &mut Vec<Interval>) -> (Interval, Interval) {
+    fn over(&self, symbols: &[Interval], work: &mut Work) -> (Interval, Interval) {
         pair(&self.ranges, symbols, work)
     }
 
-    fn is_slow(&self, all: &TimeFunctions, (a, b): (f64, f64), h: f64, share: f64, work: &mut Vec<Interval>) -> bool {
+    fn is_slow(&self, all: &TimeFunctions, (a, b): (f64, f64), h: f64, share: f64, work: &mut Work) -> bool {
         let (_, rate) = self.over(&all.over(a, b), work);
         if rate.magnitude().is_finite() {
             return rate.magnitude() * h <= share * self.size;
@@ -221,7 +259,7 @@ impl Term {
 
 impl Switch {
     /// What switches beside the jump that another one brings about, which counts by itself: before it and after it.
-    fn beside(&self, other: &Self, symbols: &[Interval], work: &mut Vec<Interval>) -> Switches {
+    fn beside(&self, other: &Self, symbols: &[Interval], work: &mut Work) -> Switches {
         let during = |a: f64, b: f64| [&[Interval::new(a, b)], &symbols[1..]].concat();
         let (first, last) = (symbols[0].lower(), symbols[0].upper());
         let (mut low, mut high) = (first, last);
@@ -246,7 +284,7 @@ impl Switch {
         }
     }
 
-    fn over(&self, symbols: &[Interval], work: &mut Vec<Interval>) -> Switches {
+    fn over(&self, symbols: &[Interval], work: &mut Work) -> Switches {
         let (value, rate) = pair(&self.ranges, symbols, work);
         if value.lower() > 0.0 || value.upper() < 0.0 {
             return Switches::Never;
@@ -269,20 +307,21 @@ fn ranges_of(graph: &Graph, symbols: &[Expr], roots: [Expr; 2]) -> Ranges {
     Ranges::new(graph, symbols, &roots)
 }
 
-fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Vec<Interval>) -> (Interval, Interval) {
-    let mut found = ranges.enclose(symbols, work);
+fn pair(ranges: &Ranges, symbols: &[Interval], work: &mut Work) -> (Interval, Interval) {
+    work.enclosures += 1;
+    let mut found = ranges.enclose(symbols, &mut work.intervals);
     let mut next = || found.next().unwrap_or(Interval::ENTIRE);
     (next(), next())
 }
 
 /// Half the width of the range of a function over the duration, to a factor of two; `None` where it is constant, or has no bound.
 fn size(ranges: &Ranges, parameters: &[Interval], nominal: &[f64], duration: f64) -> Option<f64> {
-    let mut work = Vec::new();
+    let mut work = Work::default();
     let mut over = |a: f64, b: f64| {
         let symbols: Vec<Interval> = std::iter::once(Interval::new(a, b)).chain(parameters.iter().copied()).collect();
         pair(ranges, &symbols, &mut work).0
     };
-    let mut at_work = Vec::new();
+    let mut at_work = Work::default();
     let mut at = |t: f64| {
         let point: Vec<Interval> = std::iter::once(t).chain(nominal.iter().copied()).map(Interval::point).collect();
         pair(ranges, &point, &mut at_work).0.middle()

@@ -65,8 +65,13 @@ impl Course {
             Stepping::Fixed(step) => (Schedule::fixed(simulation.duration, step, simulation.output_step), None),
             Stepping::Tolerance(tolerance) => {
                 let samples = std::slice::from_ref(&nominal);
-                let controlled =
-                    schedule_for_tolerance(simulator, samples, simulation.duration, simulation.output_step, tolerance)?;
+                let controlled = schedule_for_tolerance(
+                    simulator,
+                    samples,
+                    (simulation.duration, simulation.output_step),
+                    tolerance,
+                    &|| false,
+                )?;
                 (controlled.schedule, controlled.failure.map(|failure| failure.to_string()))
             }
         };

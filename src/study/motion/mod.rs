@@ -313,7 +313,10 @@ impl Posed {
             }
             Stepping::Tolerance(tolerance) => {
                 let controlling = &samples[..samples.len().min(1 + CONTROLLING)];
-                let found = schedule_for_tolerance(&self.simulator, controlling, duration, output_step, tolerance)?;
+                let found =
+                    schedule_for_tolerance(&self.simulator, controlling, (duration, output_step), tolerance, &|| {
+                        false
+                    })?;
                 (found.schedule, Some(Controller { tolerance, duration }))
             }
         };

@@ -1,6 +1,6 @@
 //! Symbolic derivatives, memoised, with their sparsity.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::graph::Graph;
 use super::node::{Binary, Expr, Node, Unary};
@@ -51,26 +51,53 @@ impl SparseMatrix {
     }
 }
 
+/// The nodes that one derivative has to look at, in memory that serves many.
+#[derive(Debug, Default)]
+struct Visits {
+    /// For each node, the last derivative that looked at it.
+    seen_by: Vec<u32>,
+    derivative: u32,
+    stack: Vec<Expr>,
+    found: Vec<Expr>,
+}
+
+impl Visits {
+    /// Of another derivative in a graph of so many nodes.
+    fn begin(&mut self, nodes: usize) {
+        if self.derivative == u32::MAX {
+            self.seen_by.fill(0);
+            self.derivative = 0;
+        }
+        self.seen_by.resize(nodes, 0);
+        self.derivative += 1;
+        self.found.clear();
+    }
+
+    fn is_first(&mut self, expr: Expr) -> bool {
+        std::mem::replace(&mut self.seen_by[expr.index()], self.derivative) != self.derivative
+    }
+}
+
 impl Graph {
     /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of `sign`,
     /// `floor`) have no derivative;
     /// a guarded value is taken to be continuous where its condition changes sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
-        let order = self.reachable(&[of]);
-        self.derivative_along(&order, of, by)
+        self.derivative_along(of, by, &mut Visits::default())
     }
 
     /// `∂rows/∂by` with its sparsity: only what a row depends on is looked at, so the work grows with the nonzeros.
     pub fn jacobian(&mut self, rows: &[Expr], by: &[Expr]) -> SparseMatrix {
         let column_of: FxHashMap<Expr, usize> =
             by.iter().enumerate().map(|(column, &symbol)| (symbol, column)).collect();
+        let mut visits = Visits::default();
         let mut matrix = SparseMatrix::zero(rows.len(), by.len());
         for (row, &of) in rows.iter().enumerate() {
             let order = self.reachable(&[of]);
             let mut columns: Vec<usize> = order.iter().filter_map(|symbol| column_of.get(symbol).copied()).collect();
             columns.sort_unstable();
             for column in columns {
-                let value = self.derivative_along(&order, of, by[column]);
+                let value = self.derivative_along(of, by[column], &mut visits);
                 if !self.is_zero(value) {
                     matrix.rows[row].push((column, value));
                 }
@@ -79,23 +106,36 @@ impl Graph {
         matrix
     }
 
-    /// `order` holds all that `of` needs, children first.
-    fn derivative_along(&mut self, order: &[Expr], of: Expr, by: Expr) -> Expr {
+    /// What depends on `by` has its derivative noted, so that only what is above those already noted is looked at.
+    fn derivative_along(&mut self, of: Expr, by: Expr, visits: &mut Visits) -> Expr {
         let zero = self.constant(0.0);
         let one = self.constant(1.0);
-        let mut dependent = FxHashSet::default();
-        for &expr in order {
+        for &expr in self.not_yet_derived(of, by, visits) {
             let node = self.node(expr);
-            if expr != by && !node.children().any(|child| dependent.contains(&child)) {
-                continue;
-            }
-            dependent.insert(expr);
-            if !self.derivatives.contains_key(&(expr, by)) {
-                let derivative = if expr == by { one } else { self.apply_rule(expr, node, by, zero) };
+            if expr == by {
+                self.derivatives.insert((expr, by), one);
+            } else if node.children().any(|child| self.derivatives.contains_key(&(child, by))) {
+                let derivative = self.apply_rule(expr, node, by, zero);
                 self.derivatives.insert((expr, by), derivative);
             }
         }
         self.derivatives.get(&(of, by)).copied().unwrap_or(zero)
+    }
+
+    /// All that `of` needs and that may depend on `by`, children first, but for what is below nodes with a known derivative.
+    fn not_yet_derived<'v>(&self, of: Expr, by: Expr, visits: &'v mut Visits) -> &'v [Expr] {
+        visits.begin(self.len());
+        visits.stack.push(of);
+        while let Some(expr) = visits.stack.pop() {
+            // A node is made after all that it depends on.
+            if expr < by || !visits.is_first(expr) || self.derivatives.contains_key(&(expr, by)) {
+                continue;
+            }
+            visits.found.push(expr);
+            visits.stack.extend(self.node(expr).children());
+        }
+        visits.found.sort_unstable();
+        &visits.found
     }
 
     /// The chain rule at one node; the children's derivatives are known, and zero where none is.
@@ -205,5 +245,32 @@ impl Graph {
                 self.scale(0.5, doubled)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Derivatives of what stands on other derivatives cost what is new, however deep they stand.
+    #[test]
+    fn only_what_is_new_is_looked_at() {
+        let mut g = Graph::new();
+        let angles: Vec<Expr> = (0..60).map(|link| g.symbol(&format!("q{link}"))).collect();
+        let mut tip = g.constant(0.0);
+        let mut tips = Vec::new();
+        for &angle in &angles {
+            let sum = g.add(tip, angle);
+            tip = g.sin(sum);
+            tips.push(tip);
+        }
+        g.jacobian(&tips[..59], &angles);
+        let mut visits = Visits::default();
+        for &angle in &angles[..59] {
+            assert!(g.not_yet_derived(tips[59], angle, &mut visits).len() <= 3);
+        }
+        let chain = (0..60).map(|link| g.cos(tips[link])).collect::<Vec<Expr>>();
+        let value = g.derivative(chain[59], angles[59]);
+        assert_eq!(value, g.jacobian(&chain, &angles).rows[59][59].1);
     }
 }

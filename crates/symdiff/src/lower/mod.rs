@@ -4,6 +4,7 @@
 //! depends on. The caller asks for kernels, each with outputs; whatever a kernel needs of a lower stage is computed by
 //! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
 
+mod node_table;
 mod regions;
 mod registers;
 mod schedule;
@@ -15,6 +16,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub use self::stages::{Input, Stages};
 pub use self::tape::{Guard, Op, Operands, Tape};
 
+use self::node_table::{NodeSet, NodeTable};
 use self::regions::Regions;
 use self::registers::allocate;
 use self::schedule::{Pending, in_regions};
@@ -61,13 +63,9 @@ pub fn lower_where(
 ) -> Lowered {
     let mut stages = Stages::new(inputs);
     stages.update(graph);
-    let mut lowering = Lowering {
-        graph,
-        stages,
-        register_of: inputs.iter().map(|input| (input.symbol, input.register)).collect(),
-        constants: Vec::new(),
-        next: reserved,
-    };
+    let mut lowering =
+        Lowering { graph, stages, register_of: NodeTable::new(graph.len()), constants: Vec::new(), next: reserved };
+    inputs.iter().for_each(|input| lowering.register_of.insert(input.symbol, input.register));
     // From the last stage down: what a stage needs of the ones below is pinned there.
     let mut pinned: Vec<FxHashSet<Expr>> = vec![FxHashSet::default(); shared];
     let mut bodies = Vec::with_capacity(kernels.len());
@@ -115,25 +113,25 @@ struct Lowering<'g> {
     graph: &'g Graph,
     stages: Stages,
     /// Symbols, constants and values that outlive their tape.
-    register_of: FxHashMap<Expr, u32>,
+    register_of: NodeTable,
     constants: Vec<(u32, f64)>,
     next: u32,
 }
 
 impl Lowering<'_> {
     fn pin(&mut self, expr: Expr) -> u32 {
-        let next = &mut self.next;
-        *self.register_of.entry(expr).or_insert_with(|| {
-            *next += 1;
-            *next - 1
+        self.register_of.get(expr).unwrap_or_else(|| {
+            self.register_of.insert(expr, self.next);
+            self.next += 1;
+            self.next - 1
         })
     }
 
     /// A register in which a kernel's output outlives it: its own where it has one that the kernel does not replace, else a
     /// new one.
     fn keep(&mut self, expr: Expr, replaced: &FxHashSet<u32>) -> u32 {
-        match self.register_of.get(&expr) {
-            Some(&register) if !replaced.contains(&register) => register,
+        match self.register_of.get(expr) {
+            Some(register) if !replaced.contains(&register) => register,
             _ => {
                 self.next += 1;
                 self.next - 1
@@ -145,7 +143,7 @@ impl Lowering<'_> {
     /// stands together). What belongs to a lower stage is noted in `pinned`, constants get their registers.
     fn body(&mut self, stage: usize, wanted: &[Expr], pinned: &mut [FxHashSet<Expr>]) -> Vec<Expr> {
         let mut order = Vec::new();
-        let mut done = FxHashSet::default();
+        let mut done = NodeSet::new(self.graph.len());
         let mut stack: Vec<(Expr, bool)> = wanted.iter().rev().map(|&expr| (expr, false)).collect();
         while let Some((expr, children_done)) = stack.pop() {
             if children_done {
@@ -165,7 +163,7 @@ impl Lowering<'_> {
                     );
                 }
                 (_, Node::Constant(bits)) => {
-                    if !self.register_of.contains_key(&expr) {
+                    if !self.register_of.contains(expr) {
                         let register = self.pin(expr);
                         self.constants.push((register, f64::from_bits(bits)));
                     }
@@ -175,8 +173,9 @@ impl Lowering<'_> {
                 }
                 (_, node) => {
                     stack.push((expr, true));
-                    let children: Vec<Expr> = node.children().collect();
-                    stack.extend(children.into_iter().rev().map(|child| (child, false)));
+                    let above = stack.len();
+                    stack.extend(node.children().map(|child| (child, false)));
+                    stack[above..].reverse();
                 }
             }
         }
@@ -191,20 +190,25 @@ impl Lowering<'_> {
         targets: &[(Expr, u32)],
     ) -> Tape {
         let regions = Regions::new(self.graph, body, wanted);
-        let wanted: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
+        let wanted = NodeSet::of(self.graph.len(), targets.iter().map(|&(expr, _)| expr));
         let pending = self.fuse(body, &wanted, &regions);
-        allocate(&in_regions(pending, &regions), targets, &self.register_of, self.next)
+        allocate(&in_regions(self.graph.len(), pending, &regions), targets, &self.register_of, self.next)
     }
 
     /// Nodes → operations: a product that a single sum needs becomes part of it, and sine and cosine of one argument
     /// are found together.
-    fn fuse(&self, body: &[Expr], wanted: &FxHashSet<Expr>, regions: &Regions) -> Vec<Pending> {
-        let inside: FxHashSet<Expr> = body.iter().copied().collect();
-        let mut uses: FxHashMap<Expr, usize> = FxHashMap::default();
+    fn fuse(&self, body: &[Expr], wanted: &NodeSet, regions: &Regions) -> Vec<Pending> {
+        let nodes = self.graph.len();
+        let inside = NodeSet::of(nodes, body.iter().copied());
+        let [mut used, mut used_again] = [NodeSet::new(nodes), NodeSet::new(nodes)];
         let mut circular: FxHashMap<Expr, [Option<Expr>; 2]> = FxHashMap::default();
         for &expr in body {
             let node = self.graph.node(expr);
-            node.children().for_each(|child| *uses.entry(child).or_default() += 1);
+            for child in node.children() {
+                if !used.insert(child) {
+                    used_again.insert(child);
+                }
+            }
             match node {
                 Node::Unary(Unary::Sin, a) => circular.entry(a).or_default()[0] = Some(expr),
                 Node::Unary(Unary::Cos, a) => circular.entry(a).or_default()[1] = Some(expr),
@@ -212,16 +216,16 @@ impl Lowering<'_> {
             }
         }
         let only_here = |expr: Expr| {
-            inside.contains(&expr)
-                && uses[&expr] == 1
-                && !wanted.contains(&expr)
-                && !self.register_of.contains_key(&expr)
+            inside.contains(expr)
+                && !used_again.contains(expr)
+                && !wanted.contains(expr)
+                && !self.register_of.contains(expr)
         };
         let product = |expr: Expr| match self.graph.node(expr) {
             Node::Binary(Binary::Mul, a, b) if only_here(expr) => Some((a, b)),
             _ => None,
         };
-        let mut absorbed = FxHashSet::default();
+        let mut absorbed = NodeSet::new(nodes);
         let mut pending: Vec<Pending> = Vec::with_capacity(body.len());
         for &expr in body {
             let region = regions.of(expr);
@@ -232,14 +236,15 @@ impl Lowering<'_> {
                 match regions.inner(region, Guard { condition, elsewhere: false }) {
                     // What holds elsewhere is put down first; the region, where it is not skipped, chooses.
                     Some(inner) if only_here(wanted) && only_here(elsewhere) => {
-                        absorbed.extend([wanted, elsewhere]);
+                        [wanted, elsewhere].into_iter().for_each(|half| _ = absorbed.insert(half));
                         pending.push(Pending::new(Op::Copy, [b; 3], 1, elsewhere).within(region));
                         pending.push(Pending::new(Op::Select, [condition, a, elsewhere], 3, expr).within(inner));
                     }
                     _ => {
                         // A half may be needed as such, or have been computed at an earlier stage.
                         let [a, b] = choice.halves.map(|(half, value)| if only_here(half) { value } else { half });
-                        absorbed.extend([wanted, elsewhere].into_iter().filter(|&half| only_here(half)));
+                        let halves = [wanted, elsewhere].into_iter().filter(|&half| only_here(half));
+                        halves.for_each(|half| _ = absorbed.insert(half));
                         pending.push(Pending::new(Op::Select, [condition, a, b], 3, expr).within(region));
                     }
                 }
@@ -248,7 +253,7 @@ impl Lowering<'_> {
             let Some(instruction) = self.instruction(expr, product, &mut absorbed, &mut circular) else { continue };
             pending.push(instruction.within(region));
         }
-        pending.retain(|pending| pending.op == Op::Copy || !pending.written().any(|expr| absorbed.contains(&expr)));
+        pending.retain(|pending| pending.op == Op::Copy || !pending.written().any(|expr| absorbed.contains(expr)));
         pending
     }
 
@@ -258,7 +263,7 @@ impl Lowering<'_> {
         &self,
         expr: Expr,
         product: impl Fn(Expr) -> Option<(Expr, Expr)>,
-        absorbed: &mut FxHashSet<Expr>,
+        absorbed: &mut NodeSet,
         circular: &mut FxHashMap<Expr, [Option<Expr>; 2]>,
     ) -> Option<Pending> {
         Some(match self.graph.node(expr) {

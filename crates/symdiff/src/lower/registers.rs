@@ -2,6 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::node_table::{NodeSet, NodeTable};
 use super::schedule::Step;
 use super::tape::{Item, Op, Operands, Tape};
 use crate::expr::Expr;
@@ -9,26 +10,21 @@ use crate::expr::Expr;
 /// Registers by linear scan: a scratch register is free again after its value's last use. A target is written at once
 /// unless this tape still reads what stands there; then it is copied at the end. `register_of` tells where values stand that are
 /// there before or stay; scratch registers begin at `first`.
-pub(crate) fn allocate(
-    steps: &[Step],
-    targets: &[(Expr, u32)],
-    register_of: &FxHashMap<Expr, u32>,
-    first: u32,
-) -> Tape {
+pub(crate) fn allocate(steps: &[Step], targets: &[(Expr, u32)], register_of: &NodeTable, first: u32) -> Tape {
+    let nodes = register_of.nodes();
     let Uses { last_use, mut read_registers, computed } = Uses::of(steps, register_of);
-    read_registers.extend(targets.iter().filter_map(|(expr, _)| register_of.get(expr)));
-    let placed: FxHashSet<Expr> = targets.iter().map(|&(expr, _)| expr).collect();
-    let may_share = |expr: &Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains_key(expr);
+    read_registers.extend(targets.iter().filter_map(|&(expr, _)| register_of.get(expr)));
+    let placed = NodeSet::of(nodes, targets.iter().map(|&(expr, _)| expr));
+    let may_share = |expr: Expr| computed.contains(expr) && !placed.contains(expr) && !register_of.contains(expr);
     let shared = Shared::new(steps, &last_use, may_share);
-    let mut last_use_of: FxHashMap<Expr, usize> = FxHashMap::default();
-    for (&expr, &place) in &last_use {
-        let last = last_use_of.entry(shared.root(expr)).or_default();
-        *last = place.max(*last);
+    let mut last_use_of = NodeTable::new(nodes);
+    for (place, step) in steps.iter().enumerate() {
+        step.read().for_each(|read| last_use_of.insert(shared.root(read), place as u32));
     }
     let mut registers = Registers {
         register_of,
         shared: &shared,
-        place_of: FxHashMap::default(),
+        place_of: NodeTable::new(nodes),
         free: Vec::new(),
         first,
         next: first,
@@ -36,11 +32,11 @@ pub(crate) fn allocate(
     let mut copies = Vec::new();
     for &(expr, register) in targets {
         let is_free = !read_registers.contains(&register);
-        if computed.contains(&expr) && is_free && !registers.place_of.contains_key(&expr) {
+        if computed.contains(expr) && is_free && !registers.place_of.contains(expr) {
             registers.place_of.insert(expr, register);
-        } else if register_of.get(&expr) != Some(&register) {
+        } else if register_of.get(expr) != Some(register) {
             copies.push((expr, register));
-            last_use_of.insert(expr, steps.len());
+            last_use_of.insert(expr, steps.len() as u32);
         }
     }
     let mut items = Vec::with_capacity(steps.len() + copies.len());
@@ -59,7 +55,7 @@ pub(crate) fn allocate(
         };
         let [a, b, c] = instruction.reads.map(|read| registers.of(read));
         let read = instruction.read().map(|read| shared.root(read));
-        registers.release(read.filter(|read| last_use_of[read] == place));
+        registers.release(read.filter(|&read| last_use_of.get(read) == Some(place as u32)));
         let [sine, cosine] = instruction.writes;
         if instruction.op == Op::SinCos {
             // The one that is not wanted takes a register for this operation alone.
@@ -81,10 +77,10 @@ pub(crate) fn allocate(
 /// Where values stand, and which scratch registers are free.
 struct Registers<'a> {
     /// Of values that are there before or stay.
-    register_of: &'a FxHashMap<Expr, u32>,
+    register_of: &'a NodeTable,
     shared: &'a Shared,
     /// Of values that were computed, by the first of those that share a register.
-    place_of: FxHashMap<Expr, u32>,
+    place_of: NodeTable,
     free: Vec<u32>,
     /// The first scratch register, and the first that was never taken.
     first: u32,
@@ -94,7 +90,7 @@ struct Registers<'a> {
 impl Registers<'_> {
     fn find(&self, expr: Expr) -> Option<u32> {
         let root = self.shared.root(expr);
-        self.register_of.get(&root).or_else(|| self.place_of.get(&root)).copied()
+        self.register_of.get(root).or_else(|| self.place_of.get(root))
     }
 
     /// The register of a value.
@@ -123,7 +119,7 @@ impl Registers<'_> {
         let already_free = self.free.len();
         for value in values {
             // An operand may stand there twice.
-            if let Some(&old) = self.place_of.get(&value)
+            if let Some(old) = self.place_of.get(value)
                 && old >= self.first
                 && !self.free[already_free..].contains(&old)
             {
@@ -134,26 +130,31 @@ impl Registers<'_> {
 }
 
 /// What a list of steps reads and writes.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Uses {
     /// The last step that reads a value.
-    last_use: FxHashMap<Expr, usize>,
+    last_use: NodeTable,
     /// Registers of values that are there before.
     read_registers: FxHashSet<u32>,
     /// Values that are written.
-    computed: FxHashSet<Expr>,
+    computed: NodeSet,
 }
 
 impl Uses {
-    fn of(steps: &[Step], register_of: &FxHashMap<Expr, u32>) -> Self {
-        let mut uses = Self::default();
+    fn of(steps: &[Step], register_of: &NodeTable) -> Self {
+        let nodes = register_of.nodes();
+        let mut uses = Self {
+            last_use: NodeTable::new(nodes),
+            read_registers: FxHashSet::default(),
+            computed: NodeSet::new(nodes),
+        };
         for (place, step) in steps.iter().enumerate() {
             for read in step.read() {
-                uses.last_use.insert(read, place);
-                uses.read_registers.extend(register_of.get(&read));
+                uses.last_use.insert(read, place as u32);
+                uses.read_registers.extend(register_of.get(read));
             }
             if let Step::Do(instruction) = step {
-                uses.computed.extend(instruction.written());
+                instruction.written().for_each(|expr| _ = uses.computed.insert(expr));
             }
         }
         uses
@@ -186,7 +187,7 @@ struct Shared {
 }
 
 impl Shared {
-    fn new(steps: &[Step], last_use: &FxHashMap<Expr, usize>, may_share: impl Fn(&Expr) -> bool) -> Self {
+    fn new(steps: &[Step], last_use: &NodeTable, may_share: impl Fn(Expr) -> bool) -> Self {
         let mut shared = Self::default();
         let mut put_down: FxHashMap<Expr, (Expr, usize)> = FxHashMap::default();
         for (place, step) in steps.iter().enumerate() {
@@ -200,7 +201,10 @@ impl Shared {
                     let Some(&(value, copied_at)) = put_down.get(&last) else { continue };
                     shared.next.insert(last, chosen);
                     // The choice overwrites the value, which nobody may look for afterwards.
-                    if may_share(&value) && last_use[&value] < place && !shared.next.contains_key(&value) {
+                    if may_share(value)
+                        && last_use.get(value).is_some_and(|last| (last as usize) < place)
+                        && !shared.next.contains_key(&value)
+                    {
                         shared.next.insert(value, chosen);
                         shared.needless.insert(copied_at);
                     }

@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::node_table::NodeTable;
 use super::regions::{OUTSIDE, RegionId, Regions, order};
 use super::tape::{Guard, Op};
 use crate::expr::Expr;
@@ -59,9 +60,10 @@ impl Step {
 }
 
 /// Brings together what belongs to one region, and equal operations within it.
-pub(crate) fn in_regions(pending: Vec<Pending>, regions: &Regions) -> Vec<Step> {
+pub(crate) fn in_regions(nodes: usize, pending: Vec<Pending>, regions: &Regions) -> Vec<Step> {
+    let mut grouping = Grouping { writer: NodeTable::new(nodes) };
     if regions.is_empty() {
-        return group(pending).into_iter().map(Step::Do).collect();
+        return grouping.group(pending).into_iter().map(Step::Do).collect();
     }
     let writers = pending.iter().enumerate();
     let writer: FxHashMap<Expr, usize> =
@@ -82,50 +84,61 @@ pub(crate) fn in_regions(pending: Vec<Pending>, regions: &Regions) -> Vec<Step> 
     };
     for together in order.chunk_by(|&a, &b| pending[a].region == pending[b].region) {
         go_to(&mut steps, pending[together[0]].region);
-        steps.extend(group(together.iter().map(|&place| pending[place].clone()).collect()).into_iter().map(Step::Do));
+        let together = together.iter().map(|&place| pending[place].clone()).collect();
+        steps.extend(grouping.group(together).into_iter().map(Step::Do));
     }
     go_to(&mut steps, OUTSIDE);
     steps
 }
 
-/// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always all of
-/// the operation that has most.
-fn group(pending: Vec<Pending>) -> Vec<Pending> {
-    let mut grouped = Vec::with_capacity(pending.len());
-    for window in pending.chunks(WINDOW) {
-        let writer: FxHashMap<Expr, usize> =
-            window.iter().enumerate().flat_map(|(place, one)| one.written().map(move |expr| (expr, place))).collect();
-        let mut missing = vec![0_usize; window.len()];
-        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
-        for (place, instruction) in window.iter().enumerate() {
-            for producer in instruction.read().filter_map(|read| writer.get(&read)) {
-                missing[place] += 1;
-                readers[*producer].push(place);
+/// Brings equal operations together.
+struct Grouping {
+    /// Where in the current window a value is written.
+    writer: NodeTable,
+}
+
+impl Grouping {
+    /// Within stretches of [`WINDOW`] instructions, brings equal operations together: of those that are ready, always all of
+    /// the operation that has most.
+    fn group(&mut self, pending: Vec<Pending>) -> Vec<Pending> {
+        let mut grouped = Vec::with_capacity(pending.len());
+        for window in pending.chunks(WINDOW) {
+            for (place, one) in window.iter().enumerate() {
+                one.written().for_each(|expr| self.writer.insert(expr, place as u32));
             }
-        }
-        let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
-        let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, place: usize| {
-            let op = window[place].op;
-            match ready.iter_mut().find(|(known, _)| *known == op) {
-                Some((_, places)) => places.push(place),
-                None => ready.push((op, vec![place])),
+            let mut missing = vec![0_usize; window.len()];
+            let mut readers: Vec<Vec<usize>> = vec![Vec::new(); window.len()];
+            for (place, instruction) in window.iter().enumerate() {
+                for producer in instruction.read().filter_map(|read| self.writer.get(read)) {
+                    missing[place] += 1;
+                    readers[producer as usize].push(place);
+                }
             }
-        };
-        (0..window.len()).filter(|&place| missing[place] == 0).for_each(|place| enqueue(&mut ready, place));
-        while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
-            if ready[most].1.is_empty() {
-                break;
-            }
-            for place in std::mem::take(&mut ready[most].1) {
-                grouped.push(window[place].clone());
-                for &reader in &readers[place] {
-                    missing[reader] -= 1;
-                    if missing[reader] == 0 {
-                        enqueue(&mut ready, reader);
+            window.iter().flat_map(Pending::written).for_each(|expr| self.writer.remove(expr));
+            let mut ready: Vec<(Op, Vec<usize>)> = Vec::new();
+            let enqueue = |ready: &mut Vec<(Op, Vec<usize>)>, place: usize| {
+                let op = window[place].op;
+                match ready.iter_mut().find(|(known, _)| *known == op) {
+                    Some((_, places)) => places.push(place),
+                    None => ready.push((op, vec![place])),
+                }
+            };
+            (0..window.len()).filter(|&place| missing[place] == 0).for_each(|place| enqueue(&mut ready, place));
+            while let Some(most) = (0..ready.len()).max_by_key(|&queue| (ready[queue].1.len(), usize::MAX - queue)) {
+                if ready[most].1.is_empty() {
+                    break;
+                }
+                for place in std::mem::take(&mut ready[most].1) {
+                    grouped.push(window[place].clone());
+                    for &reader in &readers[place] {
+                        missing[reader] -= 1;
+                        if missing[reader] == 0 {
+                            enqueue(&mut ready, reader);
+                        }
                     }
                 }
             }
         }
+        grouped
     }
-    grouped
 }

@@ -1,0 +1,133 @@
+//! One step after another that resolves the functions of the time, within a number of enclosures: functions with very short
+//! periods are refused in words, before hours go by.
+
+use super::resolution::{RESOLVED, TOO_FAST, TimeFunctions, Work};
+use crate::assemble::System;
+use crate::simulate::error::SimulationError;
+
+/// Functions enclosed over a box before a search is given up: a minute or two.
+pub(in crate::simulate) const MOST_ENCLOSURES: usize = 100_000_000;
+
+/// Times at which the steps of a whole run are counted, of which the densest are left out: a pulse says nothing of the rest.
+const PLACES: usize = 61;
+const LEFT_OUT: usize = 4;
+
+/// Halvings of the share of a run that belongs to a place.
+const HALVINGS: u32 = 40;
+
+/// A count of steps may be this many times too large: steps are halved, and functions are looked at over halved ones.
+const UNCERTAIN: f64 = 8.0;
+
+/// A step may be so many times the one before.
+const GROWTH: f64 = 2.0;
+
+/// The steps of a run.
+pub(in crate::simulate) struct ResolvingSteps {
+    functions: TimeFunctions,
+    work: Work,
+    /// The last step that was shortened.
+    last: Option<f64>,
+}
+
+impl ResolvingSteps {
+    /// Of a run of at most so many steps.
+    ///
+    /// # Errors
+    /// Where functions of the time take many more steps than that.
+    pub(in crate::simulate) fn new(
+        functions: TimeFunctions,
+        system: &System,
+        most: usize,
+    ) -> Result<Self, SimulationError> {
+        let mut found = Self { functions, work: Work::default(), last: None };
+        found.refuse_too_many(system, most)?;
+        Ok(found)
+    }
+
+    fn refuse_too_many(&mut self, system: &System, most: usize) -> Result<(), SimulationError> {
+        let duration = self.functions.duration();
+        let share = duration / PLACES as f64;
+        // Times that no period of a function is a multiple of.
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let mut steps: Vec<(f64, f64)> = (1..=PLACES)
+            .map(|place| (1.0 - share / duration) * duration * (golden * place as f64).fract())
+            .map(|from| (from, self.resolved_step(from, share, HALVINGS)))
+            .collect();
+        steps.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
+        steps.truncate(PLACES - LEFT_OUT);
+        let expected: f64 = steps.iter().map(|(_, step)| share / step).sum();
+        match steps.last() {
+            Some(&(from, step)) if expected > UNCERTAIN * most as f64 => Err(self.too_fast(system, (from, step), most)),
+            _ => Ok(()),
+        }
+    }
+
+    /// A step halved until it resolves all functions, or so many times.
+    fn resolved_step(&mut self, from: f64, step: f64, halvings: u32) -> f64 {
+        let mut h = step;
+        for _ in 0..halvings {
+            let share = if h < step { RESOLVED } else { TOO_FAST };
+            if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
+                break;
+            }
+            h *= 0.5;
+        }
+        h
+    }
+
+    /// The longest step from a time, of `step` halved and halved again and at most twice as long as one before that was
+    /// shortened, that resolves all functions of the time; of those that are not too short for the equations.
+    ///
+    /// # Errors
+    /// Where the search takes too long.
+    pub(in crate::simulate) fn longest(
+        &mut self,
+        from: f64,
+        step: f64,
+        system: &System,
+    ) -> Result<f64, SimulationError> {
+        if self.work.enclosures() > MOST_ENCLOSURES {
+            let short = self.last.unwrap_or(step);
+            return Err(self.too_fast(system, (from, short), 0));
+        }
+        let (mut h, mut halvings) = (step, self.functions.halvings());
+        let most = self.last.map_or(f64::INFINITY, |last| GROWTH * last * (1.0 + 1e-9));
+        while h > most && halvings > 0 {
+            h *= 0.5;
+            halvings -= 1;
+        }
+        while halvings > 0 {
+            let share = if h < step { RESOLVED } else { TOO_FAST };
+            if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
+                break;
+            }
+            h *= 0.5;
+            halvings -= 1;
+        }
+        self.last = Some(h).filter(|&h| h < step);
+        Ok(h)
+    }
+
+    /// Of a step that is as long as the functions allow, in place of which twice as long a one was asked for.
+    fn too_fast(&mut self, system: &System, (time, step): (f64, f64), most: usize) -> SimulationError {
+        let h = 2.0 * step;
+        let unresolved = self.functions.first_unresolved(time, h, &mut self.work);
+        let (function, period) = match unresolved {
+            Some(found) => (place_of(system, found.of, found.formula), found.period),
+            None => ("a function of the time".to_owned(), h),
+        };
+        SimulationError::TooFast { function, period, step, time, steps: self.functions.duration() / step, most }
+    }
+}
+
+/// A formula, and the motion or the joint that it is part of.
+fn place_of(system: &System, of: symdiff::Expr, formula: &str) -> String {
+    let motion = system.force.iter().chain(&system.inertia).zip(system.coordinates.iter().cycle());
+    let named = motion.map(|(&root, coordinate)| (root, format!("the motion of `{}`", coordinate.name)));
+    let closure = system.constraint.iter().zip(&system.constraints);
+    let mut named = named.chain(closure.map(|(&root, info)| (root, format!("`{}`", info.name))));
+    match named.find(|&(root, _)| system.graph.reachable(&[root]).contains(&of)) {
+        Some((_, place)) => format!("`{formula}` in {place}"),
+        None => format!("`{formula}`"),
+    }
+}

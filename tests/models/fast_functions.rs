@@ -1,0 +1,88 @@
+//! Forces that change very fast with the time, under a tolerance: they are resolved where that is possible, and otherwise
+//! refused in words and at once.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use mbint::Model;
+
+use crate::common::{curve, distance_from, nominal, read};
+
+/// A block of 3 kg on a spring of 48 N/m, released 0.02 m from its equilibrium, under a force.
+fn pushed(force: &str, duration: f64) -> String {
+    format!(
+        "
+parameters: {{ m: {{ value: 3, unit: kg, tolerance: 2% }}, p: {{ interval: [0.3, 0.31] }} }}
+bodies: {{ block: {{ mass: m, coordinates: [x] }} }}
+effects: {{ drive: {{ force: {{ on: block, value: [\"-48*block.x + {force}\", 0] }} }} }}
+initial: {{ block.x: 0.02, block.vx: 0 }}
+outputs: {{ x: block.x }}
+simulation: {{ duration: {duration}, output_step: 0.5, tolerance: 1e-4 }}
+bounds: {{ scan: {{ points: 3 }} }}
+"
+    )
+}
+
+/// Why a model is not simulated.
+fn refusal(text: &str) -> String {
+    Model::from_yaml_str("pushed", text).unwrap().study().run().unwrap_err().to_string()
+}
+
+#[test]
+fn a_force_of_very_short_periods_is_refused_at_once() {
+    for (force, formula) in [
+        ("90*cos(2.3e7*t + p)", "`cos(p + (23000000*t))` in the motion of `block.x` has a period near "),
+        ("90*sign(sin(2.3e7*t + p))", "`sin(p + (23000000*t))` in the motion of `block.x` has a period near "),
+        ("90*(3.66e6*t + p - floor(3.66e6*t + p))", " has a period near "),
+    ] {
+        let message = refusal(&pushed(force, 5.0));
+        let (_, rest) = message.split_once(formula).unwrap_or_else(|| panic!("{message}"));
+        let period: f64 = rest.split_once(' ').unwrap().0.parse().unwrap();
+        assert!((0.3..3.0).contains(&(period / 2.73e-7)), "{message}");
+        assert!(message.contains("2000000 are the most"), "{message}");
+    }
+}
+
+/// Ten thousand oscillations within a millisecond of five seconds, which move nothing.
+#[test]
+fn a_burst_is_resolved() {
+    let text = pushed("90*cos(2e6*t)*exp(-((t - 2.2)/5e-4)^2)", 5.0);
+    let bounds = nominal(&read(&text));
+    let off = distance_from(&bounds.times, curve(&bounds, "x"), |t| 0.02 * (4.0 * t).cos());
+    assert!(off < 1e-4 * 0.04, "{off:e}");
+}
+
+/// Two square waves, of which some phases make jumps coincide: no step tells these apart, however short.
+#[test]
+fn jumps_that_may_coincide_are_no_reason_for_ever_shorter_steps() {
+    let text = pushed("9*sign(sin(20*t + p)) + 9*sign(sin(20*t + 1.01*p))", 2.0);
+    let bounds = nominal(&read(&text));
+    // Each half period has a constant force: amplitudes about its equilibrium.
+    let jumps: Vec<f64> = [0.305, 0.305 * 1.01]
+        .iter()
+        .flat_map(|phase| (1..14).map(move |k| (f64::from(k) * std::f64::consts::PI - phase) / 20.0))
+        .collect();
+    let exact = |t: f64| {
+        // A step of force F at t0 adds F/k (1 − cos ω(t − t0)).
+        let step = |force: f64, at: f64| if t > at { force / 48.0 * (1.0 - (4.0 * (t - at)).cos()) } else { 0.0 };
+        let later: f64 =
+            jumps.iter().enumerate().map(|(place, &at)| step(if place % 13 % 2 == 0 { -18.0 } else { 18.0 }, at)).sum();
+        0.02 * (4.0 * t).cos() + step(18.0, 0.0) + later
+    };
+    let off = distance_from(&bounds.times, curve(&bounds, "x"), exact);
+    assert!(off < 1e-4 * 0.5, "{off:e}");
+}
+
+#[test]
+fn a_search_for_steps_ends_when_it_is_asked_to() {
+    let asked = AtomicUsize::new(0);
+    let interrupted = || asked.fetch_add(1, Ordering::Relaxed) > 20;
+    // Some hundred thousand steps, which take seconds.
+    let model = Model::from_yaml_str("pushed", &pushed("90*cos(3e4*t + p)", 5.0)).unwrap();
+    let result = model.study().threads(1).interrupted(&interrupted).run();
+    let rows = result.as_ref().map_or(0, |result| result.times().len());
+    assert!(rows < 11, "{rows} rows");
+    assert!(asked.load(Ordering::Relaxed) < 1000, "{asked:?}");
+    if let Ok(result) = result {
+        assert!(result.failure().is_some());
+    }
+}
