@@ -2,6 +2,7 @@
 
 mod commas;
 pub(crate) mod diagnostic;
+mod habit;
 mod harmless;
 mod render;
 pub(crate) mod scope;

@@ -6,6 +6,7 @@ use std::ops::Range;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
+use super::habit::{Habit, owner};
 use super::harmless::{harmless, is_harmful};
 use super::source::{Place, Source};
 
@@ -38,8 +39,8 @@ impl Diagnostics {
         let mut text = String::new();
         let shown = self.distinct();
         for (diagnostic, repeated) in shown.iter().take(MOST_SHOWN) {
+            let note = self.note(diagnostic, repeated);
             let diagnostic = diagnostic.harmless();
-            let note = self.note(repeated);
             let (report, moved) = self.report(&diagnostic, note.as_deref());
             let mut rendered = renderer.render(&report);
             for (shown, meant) in moved {
@@ -63,13 +64,13 @@ impl Diagnostics {
     /// All, but of a message that comes many times the first only, with the others.
     fn distinct(&self) -> Vec<(&Diagnostic, Vec<&Diagnostic>)> {
         let mut distinct: Vec<(&Diagnostic, Vec<&Diagnostic>)> = Vec::new();
-        let mut first: HashMap<(&str, Severity), usize> = HashMap::new();
-        let mut counts: HashMap<(&str, Severity), usize> = HashMap::new();
+        let mut first: HashMap<Habit, usize> = HashMap::new();
+        let mut counts: HashMap<Habit, usize> = HashMap::new();
         for diagnostic in self.iter() {
-            *counts.entry((diagnostic.message.as_str(), diagnostic.severity)).or_default() += 1;
+            *counts.entry(Habit::of(diagnostic)).or_default() += 1;
         }
         for diagnostic in self.iter() {
-            let key = (diagnostic.message.as_str(), diagnostic.severity);
+            let key = Habit::of(diagnostic);
             match first.get(&key) {
                 Some(&place) if counts[&key] >= MANY => distinct[place].1.push(diagnostic),
                 _ => {
@@ -82,7 +83,7 @@ impl Diagnostics {
     }
 
     /// Where the same message comes again.
-    fn note(&self, repeated: &[&Diagnostic]) -> Option<String> {
+    fn note(&self, of: &Diagnostic, repeated: &[&Diagnostic]) -> Option<String> {
         if repeated.is_empty() {
             return None;
         }
@@ -99,7 +100,7 @@ impl Diagnostics {
         lines.truncate(MOST_LINES);
         let count = repeated.len();
         let lines = if lines.is_empty() { String::new() } else { format!(": line {}", lines.join(", ")) };
-        Some(format!("the same in {count} more places{lines}{}", if more { ", …" } else { "" }))
+        Some(format!("the same in {count} more places{owners}{lines}{}", if more { ", …" } else { "" }))
     }
 
     /// What to render, and the places in it to write anew: columns count from where a long line was cut.
@@ -233,6 +234,18 @@ impl<'d> Excerpt<'d> {
         });
         (snippet, moved)
     }
+}
+
+/// Of whom else the same is said.
+fn other_owners(of: &Diagnostic, repeated: &[&Diagnostic]) -> String {
+    let mut owners: Vec<&str> = repeated.iter().filter_map(|diagnostic| owner(&diagnostic.message)).collect();
+    owners.sort_unstable();
+    owners.dedup();
+    owners.retain(|&other| Some(other) != owner(&of.message));
+    let more = if owners.len() > MOST_LINES { ", …" } else { "" };
+    let named: Vec<String> =
+        owners.iter().take(MOST_LINES).map(|owner| harmless(&format!("`{owner}`"))).collect();
+    if named.is_empty() { String::new() } else { format!(" (also of {}{more})", named.join(", ")) }
 }
 
 /// The part of a span on its first line, without the space around it.

@@ -212,6 +212,19 @@ fn a_message_that_comes_often_is_shown_once() {
     assert_eq!(rendered.matches("error: ").count(), 2, "{rendered}");
 }
 
+/// A word that is wrong of several bodies is one habit.
+#[test]
+fn a_slip_of_several_bodies_is_shown_once() {
+    let text = "bodies:\n  rod: { mass: 1, inertia: 1 }\n  disc: { mass: 1, inertia: 1 }\n  cam: { mass: 1, inertia: 1 }\n\
+                initial: { rod.angel: 0, disc.angel: 0 }\noutputs: { x: cam.angel, y: cam.width }\n\
+                simulation: { duration: 1, step: 1e-3 }\n";
+    let diagnostics = model::load_str("x.yaml", text, &[]).unwrap_err();
+    assert_eq!(diagnostics.records().len(), 4);
+    let rendered = diagnostics.render(false);
+    assert_eq!(rendered.matches("error: ").count(), 2, "{rendered}");
+    assert!(rendered.contains("the same in 2 more places (also of `cam`, `disc`): line 5, 6"), "{rendered}");
+}
+
 #[test]
 fn overrides_are_reported_where_they_stand() {
     let load = |text: &str| {
