@@ -72,11 +72,14 @@ pub fn joint_elimination(description: &Description) -> usize {
 fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(Graph) -> System + use<>, BuildError> {
     let length = m.characteristic_length(description)?;
     let mut left_out = Vec::new();
-    let constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
+    let mut constraints = Constraints::of(&mut m, description, length, &mut left_out)?;
     let (applied, effects) = apply_effects(&mut m, description, &mut left_out)?;
     let balance = Balance::of(&mut m, applied, &constraints.closures)?;
     let outputs = m.outputs(description)?;
     let mut start = m.start(description)?;
+    if description.analysis != Analysis::Kinematics {
+        constraints.add_balances(&m, &balance.mass, &balance.force, &start)?;
+    }
     // The equations' graph stays what it is without the distances; coordinates of joints are in it.
     let of_equations = (!m.has_distances()).then(|| m.g.graph().clone());
     let distances = m.distances(description, length, &start)?;

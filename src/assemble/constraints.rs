@@ -98,7 +98,7 @@ impl<'g> Constraints<'g> {
         Ok(kept)
     }
 
-    fn add(&mut self, info: ConstraintInfo, value: Scalar<'g>) -> Scalar<'g> {
+    pub(super) fn add(&mut self, info: ConstraintInfo, value: Scalar<'g>) -> Scalar<'g> {
         let lambda = value.builder().variable(&format!("lambda:{}", info.name));
         self.infos.push(info);
         self.values.push(value);

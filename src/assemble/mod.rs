@@ -26,6 +26,7 @@ mod flexible;
 mod formulation;
 mod inventory;
 mod joints;
+mod massless;
 mod mechanism;
 mod merging;
 mod names;

@@ -106,11 +106,14 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
     let positive = |reader: &mut Reader, key: &str, dimension: Dimension, needed: bool| {
         let needed = needed && has_forces;
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) }?;
-        if needed {
-            reader.formula_that(node, Context::Constant, dimension, |value| value > 0.0, "must be positive")
+        let formula = reader.formula(node, Context::Constant, dimension)?;
+        // What is written as 0 has none: joints or springs have to tell where it is.
+        if needed && formula.as_number() != Some(0.0) {
+            reader.require(node, &formula, |value| value > 0.0, "must be positive");
         } else {
-            reader.formula_that(node, Context::Constant, dimension, |value| value >= 0.0, "must not be negative")
+            reader.require(node, &formula, |value| value >= 0.0, "must not be negative");
         }
+        Some(formula)
     };
     let mass = positive(reader, "mass", Dimension::MASS, translates || turns && off_center);
     let inertia = match fields.get("inertia") {

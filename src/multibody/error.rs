@@ -37,6 +37,14 @@ pub enum BuildError {
         /// What is in the way.
         why: String,
     },
+    /// A coordinate without inertia that forces do not place.
+    #[error("`{coordinate}` has no inertia, and {why}")]
+    Massless {
+        /// Name of the coordinate.
+        coordinate: String,
+        /// What is in the way, and what helps.
+        why: &'static str,
+    },
     /// A name means nothing, or cannot be known where it is used. The reader of model files lets neither through.
     #[error("`{name}` cannot stand in a formula of {allowed}")]
     Name {

@@ -11,7 +11,7 @@ use super::error::{SimulationError, assembly_error, equation_name, no_equilibriu
 use super::further::further_outputs;
 use super::modal::Vibrations;
 use super::start::{
-    Assembly, ConstraintResidual, Mobility, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
+    Assembly, ConstraintResidual, Mobility, Samples, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
 };
 use super::statics::Equilibrium;
 use crate::assemble::System;
@@ -54,7 +54,13 @@ impl Assembled {
     ///
     /// # Errors
     /// Where no consistent start exists, the equations are singular there, or the limit is exceeded.
-    pub fn within(
+    pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
+        Self::of_samples(Samples::Nominal, system, scheme, h, operations)
+    }
+
+    /// The same with a start for these samples.
+    fn of_samples(
+        samples: Samples,
         mut system: System,
         scheme: Scheme,
         h: f64,
@@ -102,7 +108,7 @@ impl Assembled {
             assembly.shift_accelerations(scheme.coefficients().shift() * h);
             nominal = assembly.tile().values()[..layout.registers()].to_vec();
         }
-        let open = open_start(&system, &start, &nominal);
+        let open = open_start(&system, &start, &nominal, samples);
         if open.is_any() {
             let nearest = compile_nearest_start(&system, &mobility.redundant, &guess, open)
                 .map_err(|none| no_factors(&system, &none))?;
@@ -182,7 +188,7 @@ impl Simulator {
     /// Also where the limit is exceeded.
     pub fn within(system: System, scheme: Scheme, h: f64, operations: Option<usize>) -> Result<Self, SimulationError> {
         let Assembled { mut system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations } =
-            Assembled::within(system, scheme, h, operations)?;
+            Assembled::of_samples(Samples::All, system, scheme, h, operations)?;
         let samples = pivot_samples(&system, &start.layout, &nominal, h);
         let program = compile(&system, scheme, &mobility.redundant, &samples);
         let program = program.map_err(|none| no_factors(&system, &none))?;

@@ -100,7 +100,8 @@ impl Diagnostics {
         lines.truncate(MOST_LINES);
         let count = repeated.len();
         let lines = if lines.is_empty() { String::new() } else { format!(": line {}", lines.join(", ")) };
-        Some(format!("the same in {count} more places{owners}{lines}{}", if more { ", …" } else { "" }))
+        let others = other_owners(of, repeated);
+        Some(format!("the same in {count} more places{others}{lines}{}", if more { ", …" } else { "" }))
     }
 
     /// What to render, and the places in it to write anew: columns count from where a long line was cut.

@@ -33,6 +33,7 @@ mod kept;
 mod kinematics;
 mod linkages;
 mod machines;
+mod massless;
 mod modes;
 mod pruning;
 mod random;

@@ -14,8 +14,17 @@ const AT_REST: f64 = 1e-12;
 /// Distances from rest above this, in their scales, show that several of them share what is left open.
 const APART: f64 = 1e-6;
 
-/// What is open and is not at rest in every sample, of a start that was assembled without looking for rest.
-pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64]) -> OpenStart {
+/// For which samples a start is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// The nominal one only.
+    Nominal,
+    /// All.
+    All,
+}
+
+/// What is open and is not at rest in every one of the samples, of a start that was assembled without looking for rest.
+pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64], samples: Samples) -> OpenStart {
     if system.start.nearest.is_none() {
         return OpenStart::default();
     }
@@ -25,7 +34,7 @@ pub fn open_start(system: &System, start: &StartProgram, nominal: &[f64]) -> Ope
             .any(|(distance, value)| !(value / distance.scale).abs().le(&AT_REST))
     };
     // With constraints, other parameters move what is at rest in the nominal start.
-    let follows = !system.parameters.is_empty() && !system.lambda.is_empty();
+    let follows = samples == Samples::All && !system.parameters.is_empty() && !system.lambda.is_empty();
     let mut rows = None;
     let mut is_free = |given: &[Option<Expr>], conditions: usize| {
         let rows = rows.get_or_insert_with(|| jacobian_rows(system, start, nominal));

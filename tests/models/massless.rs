@@ -1,0 +1,118 @@
+//! Bodies without mass: joints or springs tell where they are.
+
+use mbint::inner::model;
+use mbint::inner::study::{self, Options};
+
+use crate::common::closed_forms::assert_converges;
+use crate::common::{curve, distance_from, nominal, read};
+
+/// Two springs in series are one of stiffness k₁k₂/(k₁ + k₂), and the node between them divides what they stretch.
+#[test]
+fn a_node_between_two_springs_divides_their_stretch() {
+    let description = read(
+        "
+bodies:
+  node: { mass: 0, coordinates: [x] }
+  block: { mass: 2, coordinates: [x] }
+effects:
+  first: { spring_damper: { between: [ground, node], along: x, stiffness: 300, free_length: 0.2 } }
+  second: { spring_damper: { between: [node, block], along: x, stiffness: 150, free_length: 0.3 } }
+initial: { block.x: 0.56, block.vx: 0 }
+outputs: { block: block.x - 0.5, node: node.x - 0.2, speed: node.vx, force: first.force, energy: energy }
+simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
+",
+    );
+    let (m, stiffness, stretch, share): (f64, f64, f64, f64) = (2.0, 100.0, 0.06, 1.0 / 3.0);
+    let omega = (stiffness / m).sqrt();
+    // What is left is of fourth order: (ω h)⁴ ω t of the amplitude, and rounding.
+    assert_converges(&description, 1e-3, "block", 1e-9, |t| stretch * (omega * t).cos());
+    assert_converges(&description, 1e-3, "node", 1e-9, |t| share * stretch * (omega * t).cos());
+    assert_converges(&description, 1e-3, "speed", 1e-7, |t| -share * stretch * omega * (omega * t).sin());
+    let bounds = nominal(&description);
+    let kept = 0.5 * stiffness * stretch * stretch;
+    let error = distance_from(&bounds.times, curve(&bounds, "energy"), |_| kept);
+    assert!(error < 1e-3 * kept, "the energy is off by {error:e} J");
+}
+
+/// Springs without free length are a linear law in every direction: the weight moves on an ellipse.
+#[test]
+fn a_node_in_the_plane_balances_in_both_directions() {
+    let description = read(
+        "
+bodies:
+  ground: { points: { anchor: [0.1, 0.3] } }
+  node: { mass: 0, coordinates: [x, y] }
+  bob: { mass: 0.5, coordinates: [x, y] }
+effects:
+  first: { spring_damper: { between: [ground.anchor, node], stiffness: 60 } }
+  second: { spring_damper: { between: [node, bob], stiffness: 20 } }
+initial: { bob.x: 0.3, bob.y: 0.3, bob.vx: 0, bob.vy: 0.4 }
+outputs: { x: bob.x - 0.1, y: bob.y - 0.3, u: node.x - 0.1, w: node.y - 0.3 }
+simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
+",
+    );
+    let omega = (15.0_f64 / 0.5).sqrt();
+    assert_converges(&description, 1e-3, "x", 1e-9, |t| 0.2 * (omega * t).cos());
+    assert_converges(&description, 1e-3, "y", 1e-9, |t| 0.4 / omega * (omega * t).sin());
+    assert_converges(&description, 1e-3, "u", 1e-9, |t| 0.05 * (omega * t).cos());
+    assert_converges(&description, 1e-3, "w", 1e-9, |t| 0.1 / omega * (omega * t).sin());
+}
+
+/// A coupler without mass is a rod that keeps a distance.
+#[test]
+fn a_coupler_without_mass_is_a_rod() {
+    let four_bar = |coupler: &str, joints: &str| {
+        read(&format!(
+            "
+bodies:
+  ground: {{ points: {{ A: [0, 0], D: [0.35, 0] }} }}
+  crank: {{ mass: 0.6, inertia: 2e-3, points: {{ A: [-0.06, 0], B: [0.06, 0] }} }}
+  {coupler}
+  rocker: {{ mass: 0.9, inertia: 6e-3, points: {{ D: [-0.11, 0], C: [0.11, 0] }} }}
+joints:
+  A: {{ revolute: [ground.A, crank.A] }}
+  {joints}
+  D: {{ revolute: [ground.D, rocker.D] }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+guess: {{ rocker.angle: 100 deg }}
+initial: {{ crank.angle: 50 deg, crank.angular_velocity: 3 }}
+outputs: {{ crank: crank.angle, rocker: rocker.angle, push: A.force }}
+simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
+"
+        ))
+    };
+    let rod = nominal(&four_bar("", "rod: { distance: { between: [crank.B, rocker.C], length: 0.3 } }"));
+    let coupler = nominal(&four_bar(
+        "coupler: { mass: 0, inertia: 0, points: { B: [-0.15, 0], C: [0.15, 0] } }",
+        "B: { revolute: [crank.B, coupler.B] }\n  C: { revolute: [coupler.C, rocker.C] }",
+    ));
+    for (name, limit) in [("crank", 1e-9), ("rocker", 1e-9), ("push", 1e-6)] {
+        let pairs = curve(&rod, name).iter().zip(curve(&coupler, name));
+        let error = pairs.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
+        assert!(error < limit, "{name} is off by {error:e}");
+    }
+}
+
+#[test]
+fn what_nothing_places_is_refused_with_its_name() {
+    let told = |effects: &str| {
+        let text = format!(
+            "
+bodies: {{ node: {{ mass: 0, coordinates: [x] }}, block: {{ mass: 2, coordinates: [x] }} }}
+effects: {{ {effects} }}
+initial: {{ block.x: 0.5, block.vx: 0 }}
+outputs: {{ x: block.x, n: node.x }}
+simulation: {{ duration: 1, step: 1e-3 }}
+"
+        );
+        let description = model::load_str("x.yaml", &text, &[]).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        study::run(&description, Options::default()).unwrap_err().to_string()
+    };
+    let mount = "mount: { spring_damper: { between: [ground, block], along: x, stiffness: 10, free_length: 0.1 } }";
+    let loose = told(mount);
+    assert!(loose.contains("`node.x` has no inertia, and no spring and no joint tells where it is"), "{loose}");
+    let damped = told(&format!(
+        "{mount}, pad: {{ spring_damper: {{ between: [node, block], along: x, stiffness: 10, damping: 1 }} }}"
+    ));
+    assert!(damped.contains("`node.x` has no inertia, and its force depends on velocities"), "{damped}");
+}
