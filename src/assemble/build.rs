@@ -54,11 +54,12 @@ pub fn in_joint_coordinates(
     deepest: Option<usize>,
 ) -> Result<Result<System, String>, BuildError> {
     let builder = Builder::new();
-    let mechanism = Mechanism::new(&builder, description, true)?;
+    let mut mechanism = Mechanism::new(&builder, description, true)?;
     let too_involved = deepest.and_then(|deepest| mechanism.tree.too_involved(description, deepest));
     if let Some(why) = too_involved.or_else(|| mechanism.obstacle(description, deepest.is_some())) {
         return Ok(Err(why));
     }
+    mechanism.guess_children(description)?;
     let system = equations(mechanism, description)?;
     Ok(Ok(system(builder.finish())))
 }

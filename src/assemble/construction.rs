@@ -28,6 +28,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             line_masses: description.effects.iter().filter_map(|effect| effect.kind.inertia()).collect(),
             time,
             uncertain: Vec::new(),
+            child_guesses: Vec::new(),
             parameters: Vec::new(),
             q: Vec::new(),
             v: Vec::new(),

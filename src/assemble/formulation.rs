@@ -18,7 +18,7 @@ impl Mechanism<'_, '_> {
         if let Some(beam) = self.flexible() {
             return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
         }
-        let start = self.lost_start(description, is_chosen);
+        let start = if is_chosen { self.lost_start(description) } else { None };
         start.or_else(|| self.loaded_friction(description)).or_else(|| self.lost_reaction(description))
     }
 
@@ -35,10 +35,9 @@ impl Mechanism<'_, '_> {
         ))
     }
 
-    /// A guess of a coordinate that there is not; with `is_chosen`, a value at the start of one.
-    fn lost_start(&self, d: &Description, is_chosen: bool) -> Option<String> {
-        let initial = if is_chosen { d.initial.as_slice() } else { &[] };
-        initial.iter().chain(&d.guess).find_map(|value| {
+    /// A value at the start, or a guess, of a body that has no coordinates of its own.
+    fn lost_start(&self, d: &Description) -> Option<String> {
+        d.initial.iter().chain(&d.guess).find_map(|value| {
             let body = match value {
                 StartValue::Coordinate { body, coordinate, order, .. } => {
                     let known = self.angle_of_inboard_joint(d, *body, *coordinate, *order).is_some();

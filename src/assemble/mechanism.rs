@@ -71,6 +71,8 @@ pub struct Mechanism<'g, 'd> {
     pub time: Scalar<'g>,
     /// The parameters that are symbols.
     pub uncertain: Vec<UncertainParameter>,
+    /// Places in q of joints' coordinates, and where to look for them because `guess` names a child.
+    pub child_guesses: Vec<(usize, f64)>,
     /// All parameters: a symbol, or folded to a number or to an expression of symbols.
     pub parameters: Vec<Scalar<'g>>,
     /// Coordinates.

@@ -18,6 +18,7 @@ mod analysis;
 mod applied_forces;
 mod build;
 mod child;
+mod child_guesses;
 mod constraints;
 mod construction;
 mod coordinates;

@@ -24,7 +24,7 @@ impl<'g> Mechanism<'g, '_> {
         start: &Start,
     ) -> Result<Vec<Distance>, BuildError> {
         let tree = Tree::spanning(description, |mobilizer| self.is_time_independent(mobilizer));
-        let guessed = self.guessed(description)?;
+        let guessed = self.guessed_of_joints(description)?;
         let mut distances = Vec::new();
         let mut add = |owner: Owner, name: String, value: Scalar<'g>, place: Option<usize>| {
             let is_open = |kept: &[Option<_>]| place.is_none_or(|place| kept[place].is_none());
@@ -70,7 +70,7 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.
-    fn measured_coordinate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
+    pub(super) fn measured_coordinate(&self, on: OnJoint) -> Result<Scalar<'g>, BuildError> {
         let kind = &self.joints[on.joint].kind;
         let planar_angle = on.coordinate == JointCoordinate::Angle && !self.is_spatial;
         let is_own = planar_angle || self.joint_coordinates.contains_key(&(on.joint, on.coordinate));

@@ -27,7 +27,10 @@ impl<'g> Mechanism<'g, '_> {
     pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
         let position = self.values_at_start(description, &description.initial, TimeOrder::Position)?;
         let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
-        let guessed = self.guessed(description)?;
+        let mut guessed = self.values_at_start(description, &description.guess, TimeOrder::Position)?;
+        for &(place, value) in &self.child_guesses {
+            guessed[place].get_or_insert_with(|| self.g.number(value));
+        }
         let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
         let placed = self.placed(description, &known)?;
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
@@ -45,9 +48,11 @@ impl<'g> Mechanism<'g, '_> {
         })
     }
 
-    /// Positions that `guess` names.
-    pub fn guessed(&self, description: &Description) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
-        self.values_at_start(description, &description.guess, TimeOrder::Position)
+    /// Positions that `guess` names as a joint's. Those of bodies only tell where to look.
+    pub fn guessed_of_joints(&self, description: &Description) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
+        let of_joint = |value: &&StartValue| matches!(value, StartValue::Joint { .. });
+        let guess: Vec<StartValue> = description.guess.iter().filter(of_joint).cloned().collect();
+        self.values_at_start(description, &guess, TimeOrder::Position)
     }
 
     /// Where the joints put the coordinates.

@@ -82,7 +82,7 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// Whether a body's place follows from that of another.
-    fn is_child(&self, body: usize) -> bool {
+    pub(super) fn is_child(&self, body: usize) -> bool {
         self.bodies[body].relative_motion.is_some()
     }
 

@@ -285,3 +285,34 @@ simulation: {{ duration: 0.1, step: 1e-3 }}
     let bounds = nominal(&read(&spring("0")));
     assert!(curve(&bounds, "x").iter().all(|x| x.abs() < 1e-15));
 }
+
+/// A guess of a body chooses the branch in either formulation, whether the body has coordinates of its own or not.
+#[test]
+fn guesses_of_children_choose_the_branch() {
+    let angle = |formulation: &str, guess: f64| {
+        let description = read(&format!(
+            "
+bodies:
+  upper: {{ mass: 0.7, inertia: 4e-3, points: {{ p: [-0.13, 0], q: [0.13, 0] }} }}
+  lower: {{ mass: 0.4, inertia: 3e-3, points: {{ p: [-0.11, 0], q: [0.11, 0] }} }}
+joints:
+  shoulder: {{ revolute: [ground, upper.p] }}
+  elbow: {{ revolute: [upper.q, lower.p] }}
+effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
+initial: {{ shoulder.angle: -40 deg, shoulder.angular_velocity: 0, lower.x: 0.25 }}
+guess: {{ lower.angle: {guess} deg }}
+outputs: {{ angle: lower.angle }}
+simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01, formulation: {formulation} }}
+"
+        ));
+        curve(&nominal(&description), "angle")[0]
+    };
+    let (reach, left): (f64, f64) = (0.11, 0.25 - 0.26 * (40_f64).to_radians().cos());
+    let branch = (left / reach).acos();
+    for formulation in ["joint", "absolute"] {
+        for (guess, exact) in [(70.0, branch), (-70.0, -branch)] {
+            let found = angle(formulation, guess);
+            assert!((found - exact).abs() < 1e-9, "{formulation}, {guess}°: {found} for {exact}");
+        }
+    }
+}
