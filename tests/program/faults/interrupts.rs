@@ -63,6 +63,28 @@ fn a_study_of_costs_ends_at_a_ctrl_c() {
     assert_eq!(place.files("out"), Vec::<String>::new());
 }
 
+/// Compiling a long chain takes many seconds, and ends when it is asked to.
+#[test]
+fn compiling_ends_at_a_ctrl_c() {
+    let place = Place::new();
+    let mut text = "bodies:\n".to_owned();
+    for link in 0..12_000 {
+        text += &format!("  b{link}: {{ mass: 0.2, inertia: 1e-3, points: {{ a: [-0.1, 0], b: [0.1, 0] }} }}\n");
+    }
+    text += "joints:\n  j0: { revolute: [ground, b0.a] }\n";
+    for link in 1..12_000 {
+        text += &format!("  j{link}: {{ revolute: [b{}.b, b{link}.a] }}\n", link - 1);
+    }
+    text += "outputs: { x: b11999.x }\nsimulation: { duration: 0.1, step: 1e-3 }\n";
+    fs::write(place.path().join("chain.yaml"), text).unwrap();
+    let check = begin(&place, "check chain.yaml");
+    std::thread::sleep(Duration::from_millis(1500));
+    signal(&check, "-INT");
+    let ended = check.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(130), "{}", String::from_utf8_lossy(&ended.stdout));
+    assert!(ended.stdout.is_empty());
+}
+
 #[test]
 fn a_second_ctrl_c_does_not_wait() {
     let place = Place::new();
