@@ -38,7 +38,9 @@ impl Mechanism<'_, '_> {
             let place = absolute.q.iter().position(|q| q.expr() == symbol);
             place.map_or_else(|| nominal(symbol), |place| places[place])
         };
-        for joint in children.into_iter().filter_map(|body| self.tree.inboard[body].as_ref()).map(|inboard| inboard.joint) {
+        for joint in
+            children.into_iter().filter_map(|body| self.tree.inboard[body].as_ref()).map(|inboard| inboard.joint)
+        {
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
                 let Some(&place) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
                 let measured = absolute.measured_coordinate(OnJoint { joint, coordinate })?.expr();

@@ -82,7 +82,10 @@ impl<'g> Balance<'_, 'g, '_> {
         let parameters = &self.m.uncertain;
         self.m.g.with(|graph| {
             let nominal = |symbol: Expr| {
-                parameters.iter().find(|parameter| parameter.symbol == symbol).map_or(0.0, |parameter| parameter.nominal)
+                parameters
+                    .iter()
+                    .find(|parameter| parameter.symbol == symbol)
+                    .map_or(0.0, |parameter| parameter.nominal)
             };
             let places = graph.evaluate(&start.guess, nominal);
             let derivatives: Vec<Expr> =

@@ -11,7 +11,8 @@ use super::error::{SimulationError, assembly_error, equation_name, no_equilibriu
 use super::further::further_outputs;
 use super::modal::Vibrations;
 use super::start::{
-    Assembly, ConstraintResidual, Mobility, Samples, guess_state, mobility, open_start, pivot_samples, shared_coordinates,
+    Assembly, ConstraintResidual, Mobility, Samples, guess_state, mobility, open_start, pivot_samples,
+    shared_coordinates,
 };
 use super::statics::Equilibrium;
 use crate::assemble::System;

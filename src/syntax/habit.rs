@@ -16,9 +16,7 @@ impl<'d> Habit<'d> {
     pub fn of(diagnostic: &'d Diagnostic) -> Self {
         let severity = diagnostic.severity;
         match around_owner(&diagnostic.message) {
-            Some((before, _, after)) => {
-                Self { severity, message: (before, after), help: diagnostic.help.as_deref() }
-            }
+            Some((before, _, after)) => Self { severity, message: (before, after), help: diagnostic.help.as_deref() },
             None => Self { severity, message: (&diagnostic.message, ""), help: None },
         }
     }

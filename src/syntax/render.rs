@@ -244,8 +244,7 @@ fn other_owners(of: &Diagnostic, repeated: &[&Diagnostic]) -> String {
     owners.dedup();
     owners.retain(|&other| Some(other) != owner(&of.message));
     let more = if owners.len() > MOST_LINES { ", …" } else { "" };
-    let named: Vec<String> =
-        owners.iter().take(MOST_LINES).map(|owner| harmless(&format!("`{owner}`"))).collect();
+    let named: Vec<String> = owners.iter().take(MOST_LINES).map(|owner| harmless(&format!("`{owner}`"))).collect();
     if named.is_empty() { String::new() } else { format!(" (also of {}{more})", named.join(", ")) }
 }
 
