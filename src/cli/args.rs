@@ -20,7 +20,7 @@ pub(super) use allocate::AllocateArgs;
 pub(super) use explain::ExplainArgs;
 pub(super) use sample::{FileFormat, PointArgs, SampleArgs};
 pub(super) use shards::{MergeArgs, PlanArgs, ShardArgs, StatusArgs, SubmitArgs};
-pub(super) use shared::{AskedArgs, OneRunArgs, SetArgs, Threads};
+pub(super) use shared::{AskedArgs, OneRunArgs, SetArgs, Threads, overlaid};
 pub(super) use sweep::SweepArgs;
 
 /// Bounds of a mechanism's motion over time when its parameters are uncertain.
@@ -195,6 +195,9 @@ pub(super) struct SnapshotArgs {
     pub scene: Vec<String>,
 
     #[command(flatten)]
+    pub set: SetArgs,
+
+    #[command(flatten)]
     pub threads: Threads,
 
     /// Print nothing but errors.
@@ -236,9 +239,8 @@ pub(super) struct ShowArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 
-    /// Set a parameter, as `l1=0.16`, `l1=0.16±2%` or `l1=[0.15, 0.17]`; may be given several times.
-    #[arg(short, long, value_name = "NAME=VALUE", value_parser = parse_override)]
-    pub set: Vec<Override>,
+    #[command(flatten)]
+    pub set: SetArgs,
 
     /// Show this scene of the model.
     #[arg(long, value_name = "NAME")]

@@ -91,6 +91,9 @@ struct Counts {
     shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
+    /// What is done with it, where that is not a motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    analysis: Option<&'static str>,
     /// Parts that no output depends on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     not_simulated: Vec<String>,
@@ -206,6 +209,7 @@ impl Counts {
             shared_start: shared,
             undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+            analysis: model.analysis.in_words(),
             not_simulated: reduction.left_out,
             structure,
         })
@@ -261,7 +265,9 @@ impl Counts {
             count(self.constraints, "constraint", "constraints"),
             count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
-            super::assemblies::lines(&self.assemblies) + &structure::lines(&self.structure),
+            self.analysis.map_or_else(String::new, |analysis| format!("  {analysis}\n"))
+                + &super::assemblies::lines(&self.assemblies)
+                + &structure::lines(&self.structure),
         )
     }
 }
@@ -288,6 +294,7 @@ mod tests {
             shared_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
+            analysis: None,
             not_simulated: vec![],
             structure: Structure {
                 mobility: MobilityCount {

@@ -47,6 +47,7 @@ fn listed(args: &ExplainArgs) -> Result<String, Failure> {
 fn text(explanation: &Explanation) -> String {
     let e = explanation;
     let mut text = format!("{BOLD}{}{BOLD:#}\n{}\n{}\n", e.model, e.space, e.formulation);
+    e.analysis.iter().for_each(|analysis| text += &format!("{analysis}\n"));
     let mut section = |heading: String, body: String| text += &format!("\n{BOLD}{heading}{BOLD:#}\n{body}");
 
     section(count(e.coordinates.len(), "coordinate", "coordinates"), list(&e.coordinates));
@@ -175,6 +176,7 @@ mod tests {
         let explanation = Explanation {
             model: "slider_crank".into(),
             space: "planar: nothing leaves the plane".into(),
+            analysis: None,
             formulation: "absolute coordinates: no joint can give a body its position".into(),
             coordinates: names("crank.x crank.y crank.angle rod.x rod.y rod.angle slider.x"),
             constraints: names("pivot.x pivot.y pin.x pin.y wrist.x wrist.y"),

@@ -75,9 +75,16 @@ impl Progress {
 /// A line every ten seconds, until there is nobody to end it.
 fn write_lines(name: &str, bar: &ProgressBar, stage: &Mutex<String>, ended: &Receiver<()>) {
     let begun = Instant::now();
+    let mut known = None;
     while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
         let done = bar.position() as f64 / PARTS as f64;
-        let line = line(name, &stage.lock().unwrap_or_else(PoisonError::into_inner), done, begun.elapsed());
+        let stage = stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        // What has not gone on is not said again.
+        if known.as_ref().is_some_and(|known| *known == (stage.clone(), percent(done))) {
+            continue;
+        }
+        let line = line(name, &stage, done, begun.elapsed());
+        known = Some((stage, percent(done)));
         // If standard error is closed, nobody can be told.
         let _ = writeln!(std::io::stderr(), "{line}");
     }
@@ -91,8 +98,13 @@ fn line(name: &str, stage: &str, fraction: f64, elapsed: Duration) -> String {
         line += &format!(": {stage}");
     }
     // Writing to a text does not fail.
-    let _ = write!(line, "{separator}{:.0} % done{}", 100.0 * fraction, left(fraction, elapsed));
+    let _ = write!(line, "{separator}{} % done{}", percent(fraction), left(fraction, elapsed));
     line
+}
+
+/// Whole percent.
+fn percent(fraction: f64) -> u32 {
+    (100.0 * fraction).round() as u32
 }
 
 /// How long the rest takes if it goes on like that; empty where that is not known yet.

@@ -1,6 +1,6 @@
 //! `mbint sweep`: reduced outputs' bounds for values of one or two parameters.
 
-use super::args::SweepArgs;
+use super::args::{SweepArgs, overlaid};
 use super::console::{BOLD, Console, count, file_names};
 use super::job;
 use super::request::Settings;
@@ -69,6 +69,13 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         let message = "one parameter or two are swept: give `--set NAME=FROM..TO:VALUES` for each";
         return Err(Failure::Wrong(message.to_owned()));
     }
+    if let [first, second] = &axes[..]
+        && first.name == second.name
+    {
+        return Err(Failure::Wrong(format!("parameter `{}` is swept twice", first.name)));
+    }
+    let mut others = overlaid(&args.with, &others)?;
+    others.retain(|own| axes.iter().all(|axis| axis.name != own.name));
     let runs: usize = axes.iter().map(|axis| axis.values.len()).product();
     if runs > MOST_RUNS {
         return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));

@@ -11,7 +11,8 @@ use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, joints, parameters, requests, requirements, space, statistics, tables, teeth,
+    analysis, bodies, bounds, effects, joints, motion_times, parameters, requests, requirements, space, statistics,
+    tables, teeth,
 };
 use crate::grammar::Lengths;
 use crate::grammar::names::GROUND;
@@ -283,6 +284,7 @@ fn describe(
     }
     analysis::fit_time(&mut reader.model);
     requirements::read(&mut reader, requirement_entries);
+    motion_times::check(&mut reader, output_entries, requirement_entries);
     if variant.partial {
         reader.idle = parameters::idle(&reader);
     }

@@ -18,6 +18,7 @@ mod display;
 mod effects;
 mod joints;
 mod load;
+mod motion_times;
 mod overlay;
 mod overrides;
 mod parameters;

@@ -47,6 +47,34 @@ pub(super) struct Source {
     pub dimension: Option<Dimension>,
 }
 
+/// Reports an output that is of a reduced output.
+///
+/// # Returns
+/// Whether it is of none.
+pub fn is_of_motion(reader: &mut Reader, entry: &Entry, reduced: &[&str]) -> bool {
+    let mut scalars = Vec::new();
+    collect(&entry.value, &mut scalars);
+    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    for (node, text) in scalars {
+        let mut words = text.split(|c| !is_part(c));
+        let Some(name) = words.find(|word| reduced.contains(word) && reader.symbol(word).is_none()) else { continue };
+        let message = format!("`{name}` is one number a motion, but an output is taken from the motion itself");
+        let help = format!("requirements may have formulas of reduced outputs: `small: 2*{name} <= 1 m`");
+        reader.error(node.span.clone(), message, help);
+        return false;
+    }
+    true
+}
+
+/// All texts in a value.
+fn collect<'n>(node: &'n Node, into: &mut Vec<(&'n Node, &'n str)>) {
+    match &node.value {
+        Value::Sequence(items) => items.iter().for_each(|item| collect(item, into)),
+        Value::Mapping(entries) => entries.iter().for_each(|entry| collect(&entry.value, into)),
+        _ => into.extend(node.scalar().map(|scalar| (node, scalar.text.as_str()))),
+    }
+}
+
 /// Whether an entry of `outputs:` is a reduced output.
 pub fn is_one(entry: &Entry) -> bool {
     !display::is_formula(entry)
@@ -143,7 +171,14 @@ fn sources(
         Settling => {
             let own = source(reader, node)?;
             let [target, band] = ["target", "band"].map(|key| reader.required(fields, key));
-            let [target, band] = [target?, band?].map(|node| like(reader, node, own.dimension));
+            let (target, wide) = (target?, band?);
+            let [target, band] = [target, wide].map(|node| like(reader, node, own.dimension));
+            let width = band.as_ref().and_then(|band| reader.evaluate(band, 0));
+            if width.is_some_and(|width| width <= 0.0) {
+                let help = "it is how far from `target` the output may be, to either side".to_owned();
+                reader.error(wide.span.clone(), "a band is positive", help);
+                return None;
+            }
             let off = own.formula.combined(Binary::Sub, &target?).applied(Unary::Abs);
             Some((vec![off.combined(Binary::Sub, &band?)], Some(Dimension::TIME)))
         }

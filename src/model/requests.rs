@@ -135,10 +135,14 @@ const ONLY_POSITIONS: &str = "only positions are guessed: velocities follow from
 /// Reads `outputs:`.
 pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     let (mappings, formulas): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| reduced::is_one(entry));
+    let reduced: Vec<&str> = mappings.iter().map(|entry| entry.key.as_str()).collect();
     for (entry, unit) in formulas.into_iter().filter_map(|entry| display::formula(reader, entry)).collect::<Vec<_>>() {
         let entry = &entry;
         let known = reader.model.outputs.len();
         reader.name_of_output(entry);
+        if !reduced::is_of_motion(reader, entry, &reduced) {
+            continue;
+        }
         match parts(reader, entry) {
             Some(parts) => {
                 for output in parts {
@@ -159,7 +163,9 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
     // These may be of outputs that stand behind them.
     for entry in mappings {
         reader.name_of_output(entry);
-        reduced::read(reader, entry);
+        if reduced::is_of_motion(reader, entry, &reduced) {
+            reduced::read(reader, entry);
+        }
     }
 }
 

@@ -97,6 +97,17 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
         texts.push(format!("{of} {sign} {}", limit.scalar().map_or("", |scalar| scalar.text.trim())));
         limited.push(Limited { of: of.clone(), own, limit: found, is_upper });
     }
+    let bound = |is_upper: bool| {
+        let limit = &limited.iter().find(|limited| limited.is_upper == is_upper)?.limit.formula;
+        reader.evaluate(limit, 0).filter(|_| !reader.is_uncertain(limit))
+    };
+    if let (Some(max), Some(min)) = (bound(true), bound(false))
+        && max < min
+    {
+        let message = format!("nothing is between `min` and `max`: {min} is above {max}");
+        reader.error(fields.key_span("max"), message, "`min` is the smaller one".to_owned());
+        return None;
+    }
     let found = required(reader, entry, texts.join(" and "), limited, (of_reduced, times));
     timed(reader, &fields, found, times)
 }

@@ -12,6 +12,9 @@ pub struct Explanation {
     pub model: String,
     /// In how many dimensions it moves, and why: `planar: nothing leaves the plane`.
     pub space: String,
+    /// What is done with it, where that is not a motion: `statics: …`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub analysis: Option<String>,
     /// By which coordinates, and why: `joint coordinates: 148 instructions a step instead of 187`.
     pub formulation: String,
     /// Coordinates by name, e.g. `crank.angle`, in the order of the unknowns.

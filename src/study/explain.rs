@@ -26,6 +26,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let mut explanation = Explanation::of_subsystems(prepared.iter().map(of_subsystem).collect());
     let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
     explanation.outputs.sort_by_key(place);
+    explanation.analysis = description.analysis.in_words().map(str::to_owned);
     let uncertain = uncertain(description);
     let place = |name: &String| uncertain.iter().position(|known| known == name);
     explanation.parameters.sort_by_key(place);
@@ -53,6 +54,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
     Explanation {
         model: model.to_owned(),
         space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
+        analysis: None,
         formulation: format!("{} coordinates: {}", system.formulation.name(), system.formulation.why),
         coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),

@@ -38,6 +38,7 @@ mod modes;
 mod pruning;
 mod random;
 mod reduced;
+mod reductions;
 mod reproducibility;
 mod rotation;
 mod run_all;

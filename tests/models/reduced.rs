@@ -186,6 +186,23 @@ bounds: { chebyshev: { order: 5 } }
     assert_eq!(requirement(&summary, "occurs").verdict, Verdict::Violated);
 }
 
+/// Thrown up at 3 m/s under 9 m/s² it rises to 0.5 m, which is no more than 0.5 m, whatever rounding says.
+#[test]
+fn what_meets_its_limit_exactly_is_not_violated() {
+    let text = "
+bodies: { ball: { mass: 1, coordinates: [y] } }
+effects: { weight: { force: { on: ball, value: [0, -9] } } }
+initial: { ball.y: 0, ball.vy: 3 }
+outputs: { y: ball.y, top: { max: y } }
+requirements: { low: y <= 0.5 m, top: top <= 0.5 m, lower: y <= 0.4999999 m }
+simulation: { duration: 0.6, step: 10 ms, output_step: 10 ms }
+";
+    let summary = summary(&read(text));
+    assert_ne!(requirement(&summary, "low").verdict, Verdict::Violated);
+    assert_ne!(requirement(&summary, "top").verdict, Verdict::Violated);
+    assert_eq!(requirement(&summary, "lower").verdict, Verdict::Violated);
+}
+
 /// A study refines itself until its requirement is decided: order 1 does not know the curvature.
 #[test]
 fn an_undecided_requirement_raises_the_order() {

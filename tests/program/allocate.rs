@@ -64,6 +64,14 @@ fn worst_cases_and_yields_of_a_stack_are_lagranges() {
     let (printed, _) = place.run("run stack.yaml --with out/allocation.yaml -o again --no-report", 0);
     assert!(printed.contains("holds"), "{printed}");
     place.run("check stack.yaml --with out/allocation.yaml", 0);
+    place.run("show stack.yaml --with out/allocation.yaml -o shown", 0);
+    place.run("snapshot stack.yaml --with out/allocation.yaml -o shown -q", 0);
+    place.run("snapshot stack.yaml --with out/allocation.yaml -o shown --check -q", 0);
+    // Of a and b together, 0.39 mm are left of 0.5 mm.
+    place.run("sweep stack.yaml --set c=0.051..0.05102:2±1e-9 --with out/allocation.yaml -o swept -q", 0);
+    place.run("sweep stack.yaml --set c=0.051..0.05102:2±1e-9 -o swept -q", 4);
+    let (_, errors) = place.run("sweep stack.yaml --set c=1..2:2 --set c=1..2:2", 2);
+    assert!(errors.contains("`c` is swept twice"), "{errors}");
     let overlay = fs::read_to_string(place.path().join("out/allocation.yaml")).unwrap();
     let parameters = overlay.split_once("parameters:\n").unwrap().1.replace("  ", "      ");
     let model = fs::read_to_string(place.path().join("stack.yaml")).unwrap();

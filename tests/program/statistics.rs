@@ -76,3 +76,63 @@ bounds: { chebyshev: { order: 3 } }
         assert!(text.contains("quantiles, 0.135 % to 99.865 %"), "{file}");
     }
 }
+
+/// The yields of a reduced output by the surrogate and by direct simulation of random samples, in lockstep.
+#[test]
+fn yields_of_a_stroke_are_those_of_direct_simulations() {
+    const COUNT: usize = 3000;
+    let place = Place::new();
+    let text = "
+model: rod
+parameters:
+  m: 1.3 kg
+  l: 0.4 m ± 3%
+  start: { value: 0.25 rad, tolerance: 0.04 rad, distribution: triangular }
+bodies: { rod: { mass: m, inertia: m*l^2/12, points: { A: [-l/2, 0], B: [l/2, 0] } } }
+joints: { hinge: { revolute: [ground, rod.A] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { rod.angle: start - 1.5707963267948966 rad }
+outputs:
+  x: rod.B.x
+  stroke: { range: x }
+requirements:
+  most: stroke <= 0.21 m
+  few: stroke <= 0.18 m
+simulation: { duration: 0.6 s, step: 1 ms, output_step: 2 ms }
+";
+    fs::write(place.path().join("rod.yaml"), text).unwrap();
+    place.run("run rod.yaml -o out --no-report", 4);
+    let summary = fs::read_to_string(place.path().join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    // Random samples of a linear congruential generator; a triangular law is the mean of two uniform ones.
+    let mut state = 2007_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut points = String::from("l,start\n");
+    for _ in 0..COUNT {
+        let (l, start) = (0.4 * (0.97 + 0.06 * uniform()), 0.21 + 0.08 * 0.5 * (uniform() + uniform()));
+        points += &format!("{l:?},{start:?}\n");
+    }
+    fs::write(place.path().join("points.csv"), points).unwrap();
+    place.run("sample rod.yaml --points points.csv -o samples.csv", 0);
+    let table = fs::read_to_string(place.path().join("samples.csv")).unwrap();
+    let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    let (sample, x) = (column("sample"), column("x"));
+    let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); COUNT];
+    for line in table.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (own, value): (usize, f64) = (cells[sample].parse().unwrap(), cells[x].parse().unwrap());
+        ends[own] = (ends[own].0.min(value), ends[own].1.max(value));
+    }
+    for (number, limit) in [(0, 0.21), (1, 0.18)] {
+        let share = ends.iter().filter(|(least, most)| most - least <= limit).count() as f64 / COUNT as f64;
+        let found = summary["statistics"]["requirements"][number]["share"].as_f64().unwrap();
+        // Three standard errors of the direct count.
+        let most = 3.0 * (share * (1.0 - share) / COUNT as f64).sqrt();
+        println!("{found} {share} ± {most}");
+        assert!((found - share).abs() < most, "{found} {share} ± {most}");
+    }
+}

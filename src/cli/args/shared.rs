@@ -100,19 +100,26 @@ impl SetArgs {
     /// # Errors
     /// For the first that is set twice, and for what is wrong with a file.
     pub fn overrides(&self) -> Result<Vec<Override>, Failure> {
-        let mut laid: Vec<Override> = Vec::new();
-        for path in &self.with {
-            laid.extend(read_overlay(path).map_err(|wrong| Failure::Wrong(wrong.to_string()))?);
-        }
-        for all in [&laid, &self.set] {
-            let twice =
-                |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);
-            if let Some((_, setting)) = all.iter().enumerate().find(twice) {
-                return Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name)));
-            }
-        }
-        laid.retain(|own| self.set.iter().all(|setting| setting.name != own.name));
-        laid.extend(self.set.iter().cloned());
-        Ok(laid)
+        overlaid(&self.with, &self.set)
     }
+}
+
+/// What files and settings set; settings go before.
+///
+/// # Errors
+/// For the first parameter that is set twice, and for what is wrong with a file.
+pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec<Override>, Failure> {
+    let mut laid: Vec<Override> = Vec::new();
+    for path in with {
+        laid.extend(read_overlay(path).map_err(|wrong| Failure::Wrong(wrong.to_string()))?);
+    }
+    for all in [&laid[..], set] {
+        let twice = |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);
+        if let Some((_, setting)) = all.iter().enumerate().find(twice) {
+            return Err(Failure::Wrong(format!("parameter `{}` is set twice", setting.name)));
+        }
+    }
+    laid.retain(|own| set.iter().all(|setting| setting.name != own.name));
+    laid.extend(set.iter().cloned());
+    Ok(laid)
 }

@@ -22,6 +22,10 @@ pub(in crate::cli) struct SweepArgs {
     #[arg(short, long, value_name = "NAME=FROM..TO:VALUES", required = true)]
     pub set: Vec<String>,
 
+    /// Set the parameters of this YAML file, as `mbint allocate` writes it; what is swept or set goes before.
+    #[arg(long, value_name = "FILE")]
+    pub with: Vec<PathBuf>,
+
     #[command(flatten)]
     pub run: OneRunArgs,
 

@@ -37,6 +37,20 @@ impl Analysis {
         }
     }
 
+    /// What is done, for people; nothing of a motion.
+    pub fn in_words(self) -> Option<&'static str> {
+        match self {
+            Self::Motion => None,
+            Self::Statics => Some("statics: the equilibrium nearest to `guess`, no time steps"),
+            Self::Kinematics => Some("kinematics: positions by the motors, row by row, without forces"),
+            Self::Modes(LinearisedAt::Start) => Some("modes: vibrations about the start, no time steps"),
+            Self::Modes(LinearisedAt::Equilibrium) => {
+                Some("modes: vibrations about the equilibrium nearest to `guess`, no time steps")
+            }
+            Self::Modes(LinearisedAt::Motion) => Some("modes: vibrations about every row of the motion"),
+        }
+    }
+
     /// Whether there are no time steps.
     pub fn is_without_steps(self) -> bool {
         !matches!(self, Self::Motion | Self::Modes(LinearisedAt::Motion))

@@ -14,6 +14,9 @@ use crate::simulate::SimulationError;
 /// What the estimate of a sample's time error may be wrong by.
 const SAFETY: f64 = 1.25;
 
+/// Rounding of a sample's margin, as a share of its limit: a sample that meets the limit exactly does not pass it.
+const ROUNDING: f64 = 1e-12;
+
 /// Rounds of the search for a sample that fails, where bounds say that there may be one, and its first distance (of ξ).
 const ROUNDS: usize = 6;
 const REACH: f64 = 0.5;
@@ -153,7 +156,8 @@ impl Study<'_> {
             Ok::<_, SimulationError>((margin(&all), channels))
         };
         let ((least, channels), (finer, _)) = (of(direct)?, of(halved)?);
-        let error = SAFETY * step_error(&[least], &[finer]);
+        let rounding = own.limits.iter().map(|limit| ROUNDING * limit.value.abs()).fold(0.0, f64::max);
+        let error = SAFETY * step_error(&[least], &[finer]) + rounding;
         let xi = self.domain.xi(&best.0);
         let known = self.simulator.system.parameters.iter().zip(best.0.iter());
         Ok(Some(NearestCase {
