@@ -10,6 +10,7 @@
 //! - `diagnostics`: singular configurations, constraints that cannot be closed, undetermined reactions;
 //! - `closure`: the motion from independent coordinates, without integration;
 //! - `unmet_switch`: contacts and kinks that some parameter values meet and no sample does;
+//! - `features`: bumps, waves and tables in space that a step may pass over;
 //! - `modes`: fast modes that the start excites and the steps damp;
 //! - `enclosure`: certified motions over a box of parameters.
 
@@ -21,6 +22,7 @@ mod ensemble;
 mod error;
 mod excitations;
 mod explicit;
+mod features;
 mod further;
 mod modal;
 mod modes;

@@ -8,6 +8,7 @@ use symdiff::{Expr, Tile, WIDTHS};
 
 use super::diagnostics::{not_finite, over_constrained, undetermined_outputs};
 use super::error::{SimulationError, assembly_error, equation_name, no_equilibrium, no_factors, not_driven};
+use super::features::Features;
 use super::further::further_outputs;
 use super::modal::Vibrations;
 use super::start::{
@@ -170,6 +171,8 @@ pub struct Simulator {
     pub vibrations: Option<Arc<Vibrations>>,
     /// Compiled where steps are controlled.
     switches: OnceLock<Option<SwitchProgram>>,
+    /// Found where steps are controlled or watched.
+    features: OnceLock<Option<Features>>,
     /// Compiled where rows are closed.
     free_closure: OnceLock<Result<StartProgram, SimulationError>>,
 }
@@ -205,6 +208,7 @@ impl Simulator {
             equilibrium,
             vibrations,
             switches: OnceLock::new(),
+            features: OnceLock::new(),
             free_closure: OnceLock::new(),
         })
     }
@@ -347,6 +351,11 @@ impl Simulator {
     /// Where the equations switch, if they do.
     pub(super) fn switches(&self) -> Option<&SwitchProgram> {
         self.switches.get_or_init(|| compile_switches(&self.system)).as_ref()
+    }
+
+    /// Functions of the positions that a step may pass over, if forces have any.
+    pub(super) fn features(&self) -> Option<&Features> {
+        self.features.get_or_init(|| Features::of(&self.system)).as_ref()
     }
 
     /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.

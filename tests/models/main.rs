@@ -23,6 +23,7 @@ mod explicit;
 mod extrapolation;
 mod far;
 mod fast_functions;
+mod features;
 mod formulas;
 mod formulations;
 mod hard_cases;

@@ -2,11 +2,15 @@
 
 use super::controller::Controller;
 use super::switch_watch::{Crossing, SwitchWatch};
+use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::Stepper;
 
 /// A step longer than this share of the time left up to a goal is cut to half of that time, so that no sliver remains.
 const HALVE: f64 = 0.55;
+
+/// What functions of the positions may change by in a step, as a share of their range.
+pub(in crate::simulate) const MOST_CHANGE: f64 = 0.5;
 
 /// A step towards a switch ends this share beyond it, so that it is passed.
 const BEYOND: f64 = 1e-6;
@@ -23,6 +27,7 @@ pub struct Adaptive<'s> {
     /// The step size to try next, s.
     pub h: f64,
     watch: Option<SwitchWatch<'s>>,
+    features: Option<FeatureWatch<'s>>,
     /// Register of the time.
     time: usize,
     /// Lanes whose equations switched in the step before.
@@ -48,7 +53,8 @@ impl<'s> Adaptive<'s> {
         stepper.estimate_errors();
         let watch = simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile()));
         let switched = vec![false; stepper.alive().len()];
-        Self { controller, stepper, h, watch, time: simulator.program.layout.time, switched }
+        let features = simulator.features().map(FeatureWatch::new);
+        Self { controller, stepper, h, watch, features, time: simulator.program.layout.time, switched }
     }
 
     /// The equations have just switched in all lanes.
@@ -81,12 +87,16 @@ impl<'s> Adaptive<'s> {
         if let Some(watch) = &mut self.watch {
             watch.begin(&self.stepper);
         }
+        if let Some(features) = &mut self.features {
+            features.begin(&self.stepper);
+        }
         let converged = self.stepper.try_step(step, end);
         if let Some(watch) = &mut self.watch {
             watch.end(&self.stepper);
         }
+        let passes = self.passes(&converged, (step, end));
         let crossings: Vec<Option<Crossing>> = (0..converged.len()).map(|lane| self.crossing(lane, step)).collect();
-        let ratios = self.ratios(&converged, &crossings, step);
+        let ratios = self.ratios(&converged, &crossings, &passes, step);
         let largest = ratios.iter().copied().fold(0.0, f64::max);
         let accepted = largest <= 1.0;
         let factor = self.controller.factor(largest);
@@ -112,12 +122,24 @@ impl<'s> Adaptive<'s> {
         self.stepper.rewind(&attempt.before, attempt.step);
     }
 
+    /// Lanes that pass over a feature of the forces. Like switches, features are located to a shortest step.
+    fn passes(&mut self, converged: &[bool], (step, end): (f64, f64)) -> Vec<bool> {
+        let mut passes = vec![false; converged.len()];
+        if let Some(features) = self.features.as_mut().filter(|_| step > self.controller.event()) {
+            features.end(&self.stepper);
+            for lane in (0..passes.len()).filter(|&lane| converged[lane] && self.stepper.alive()[lane]) {
+                passes[lane] = features.change(&self.stepper, lane, (step, end), MOST_CHANGE);
+            }
+        }
+        passes
+    }
+
     fn crossing(&self, lane: usize, step: f64) -> Option<Crossing> {
         let running = self.stepper.alive()[lane];
         self.watch.as_ref().filter(|_| running)?.crossing(lane, step)
     }
 
-    fn ratios(&self, converged: &[bool], crossings: &[Option<Crossing>], step: f64) -> Vec<f64> {
+    fn ratios(&self, converged: &[bool], crossings: &[Option<Crossing>], passes: &[bool], step: f64) -> Vec<f64> {
         let ratio = |lane: usize| {
             let error = self.stepper.local_errors()[lane];
             let size = if self.switched[lane] || crossings[lane].is_some() { error.whole } else { error.size };
@@ -127,7 +149,7 @@ impl<'s> Adaptive<'s> {
             let early = event.is_some_and(|crossing| !crossing.is_at_the_end()) && step > self.controller.event();
             match () {
                 () if !self.stepper.alive()[lane] => 0.0,
-                () if converged[lane] && !ratio.is_nan() && !early => ratio,
+                () if converged[lane] && !ratio.is_nan() && !early && !passes[lane] => ratio,
                 () => f64::INFINITY,
             }
         };

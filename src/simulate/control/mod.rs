@@ -10,6 +10,7 @@ mod schedule;
 mod switch_watch;
 
 pub use adaptive::Adaptive;
+pub(in crate::simulate) use adaptive::MOST_CHANGE;
 pub use controller::Controller;
 pub use division::Divided;
 pub use integration::Integration;

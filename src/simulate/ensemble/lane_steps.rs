@@ -7,7 +7,8 @@
 use symdiff::Tile;
 
 use crate::compile::Tapes;
-use crate::simulate::control::{Adaptive, Controller, SwitchWatch};
+use crate::simulate::control::{Adaptive, Controller, MOST_CHANGE, SwitchWatch};
+use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{StepFailure, Stepper};
 
@@ -20,6 +21,7 @@ pub(super) struct LaneSteps<'s> {
     simulator: &'s Simulator,
     controller: Controller,
     watch: Option<SwitchWatch<'s>>,
+    features: Option<FeatureWatch<'s>>,
     /// Lanes that go on alone.
     alone: Vec<Option<Box<Adaptive<'s>>>>,
     /// Sum of each lane's local errors over the tolerance.
@@ -35,6 +37,7 @@ impl<'s> LaneSteps<'s> {
             simulator,
             controller,
             watch: simulator.switches().map(|program| SwitchWatch::new(program, stepper.tile())),
+            features: simulator.features().map(FeatureWatch::new),
             alone: (0..width).map(|_| None).collect(),
             error_ratios: vec![0.0; width],
         }
@@ -53,9 +56,15 @@ impl<'s> LaneSteps<'s> {
         if let Some(watch) = &mut self.watch {
             watch.begin(stepper);
         }
+        if let Some(features) = &mut self.features {
+            features.begin(stepper);
+        }
         let converged = stepper.try_step(h, end);
         if let Some(watch) = &mut self.watch {
             watch.end(stepper);
+        }
+        if let Some(features) = &mut self.features {
+            features.end(stepper);
         }
         let mut failures = Vec::new();
         for lane in (0..converged.len()).filter(|&lane| stepper.alive()[lane]).collect::<Vec<_>>() {
@@ -63,7 +72,10 @@ impl<'s> LaneSteps<'s> {
             let error = stepper.local_errors()[lane];
             let size = if crossing.is_some() { error.whole } else { error.size };
             let ratio = self.controller.error_ratio(size, h);
-            let within = converged[lane] && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
+            let features = self.features.as_mut().filter(|_| converged[lane] && h > self.controller.event());
+            let passes = features.is_some_and(|features| features.change(stepper, lane, (h, end), MOST_CHANGE));
+            let within =
+                converged[lane] && !passes && ratio <= 1.0 && crossing.is_none_or(|crossing| crossing.is_at_the_end());
             let attached = self.alone[lane].as_ref().is_none_or(|alone| alone.h >= h && !alone.has_switched());
             if within && attached {
                 self.error_ratios[lane] += ratio * h / self.controller.duration;

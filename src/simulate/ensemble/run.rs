@@ -12,6 +12,7 @@ use crate::numerics::Sample;
 use crate::simulate::control::{Controller, Schedule};
 use crate::simulate::diagnostics::{OpenConstraint, SingularPass, SingularWatch, not_finite};
 use crate::simulate::error::SimulationError;
+use crate::simulate::features::FeatureWatch;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::step::{Counters, StepFailure, Stepper};
 
@@ -45,10 +46,12 @@ struct TileRun<'s> {
     count: usize,
     /// With a tolerance: keeps all lanes within it.
     lanes: Option<LaneSteps<'s>>,
-    /// The first row before which a lane's local errors add up to more than the tolerance.
+    /// The first row before which a lane's local errors add up to more than the tolerance, or its steps pass over a feature.
     beyond: Option<usize>,
     /// Where switches are observed.
     switches: Option<SwitchExtents<'s>>,
+    /// Without a tolerance: whether steps pass over what forces do in space.
+    features: Option<FeatureWatch<'s>>,
     /// Whether the first rows were advanced to.
     begun: bool,
     /// The first of the samples that stopped, and its state at the beginning of the failed step.
@@ -146,6 +149,7 @@ impl<'s> EnsembleRun<'s> {
                     lanes: None,
                     beyond: None,
                     switches: None,
+                    features: None,
                     stopped: None,
                     watch: None,
                     reduction: None,
@@ -251,7 +255,7 @@ impl<'s> EnsembleRun<'s> {
         not_finite(&self.simulator.system, &self.simulator.program.layout, state, stop.time)
     }
 
-    /// The first row before which a sample's local errors add up to more than the tolerance.
+    /// The first row before which a sample's local errors add up to more than the tolerance, or fixed steps pass over a force.
     pub fn beyond_tolerance_from(&self) -> Option<usize> {
         self.tiles.iter().filter_map(|tile| tile.beyond).min()
     }
@@ -278,6 +282,7 @@ impl TileRun<'_> {
         if !std::mem::replace(&mut self.begun, true) {
             self.accelerations = RowAccelerations::new(self.simulator, self.stepper.tile(), tolerance.is_some());
             self.lanes = tolerance.map(|controller| LaneSteps::new(self.simulator, controller, &mut self.stepper));
+            self.features = self.simulator.features().filter(|_| tolerance.is_none()).map(FeatureWatch::new);
             let observes_switches = observed == Observed::Switches;
             self.switches = self
                 .simulator
@@ -302,6 +307,9 @@ impl TileRun<'_> {
                 if let Some(switches) = &mut self.switches {
                     switches.begin(&self.stepper);
                 }
+                if let Some(features) = &mut self.features {
+                    features.begin(&self.stepper);
+                }
                 let failures = match &mut self.lanes {
                     Some(lanes) => lanes.step(&mut self.stepper, h, end),
                     None => self.stepper.step(h, end),
@@ -315,6 +323,9 @@ impl TileRun<'_> {
                 if let Some(switches) = &mut self.switches {
                     switches.end(&self.stepper, h);
                 }
+                let features = self.features.as_mut();
+                let hidden = features.is_some_and(|it| it.end_hidden(&self.stepper, self.count, (h, end)));
+                self.beyond = self.beyond.or(hidden.then_some(row));
                 self.reduce(end);
                 stops.extend(failures.into_iter().map(|StepFailure { lane, time, equation }| Stop {
                     sample: self.first + lane,

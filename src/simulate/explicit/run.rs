@@ -8,10 +8,14 @@ use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
 use crate::simulate::error::SimulationError;
+use crate::simulate::features::{FeatureWork, Features, Passage};
 use crate::simulate::simulator::Simulator;
 
 /// Samples whose states are advanced together.
 const WIDTH: usize = 32;
+
+/// What functions of the positions may change by in a step, as a share of their range: rows of a long step see some of it.
+const MOST_PASSED: f64 = 0.75;
 
 /// Places in a step at which outputs are taken that are reduced to one number: between them they are cubics.
 const REDUCED: usize = 16;
@@ -82,11 +86,33 @@ fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Re
 #[derive(Debug)]
 pub(super) struct Tiles<'s> {
     tiles: Vec<Tile<'s>>,
+    features: Option<&'s Features>,
+    samples: Vec<Sample>,
 }
 
 impl<'s> Tiles<'s> {
     pub fn start(simulator: &'s Simulator, samples: &[Sample]) -> Result<Self, SimulationError> {
-        Ok(Self { tiles: tiles(simulator, samples, 1)? })
+        let (features, tiles) = (simulator.features(), tiles(simulator, samples, 1)?);
+        Ok(Self { tiles, features, samples: samples.to_vec() })
+    }
+
+    /// Whether a sample passes over most of what a force does in space in the step that was tried.
+    pub fn pass_over(&self, end: f64) -> bool {
+        let Some(features) = self.features else { return false };
+        let mut work = FeatureWork::default();
+        self.tiles.iter().any(|tile| {
+            (0..tile.count).any(|lane| {
+                let passage = Passage {
+                    end,
+                    h: end - tile.run.time,
+                    parameters: &self.samples[tile.first + lane],
+                    states: [&tile.run.state, &tile.run.next],
+                    width: tile.alive.len(),
+                    lane,
+                };
+                features.change(passage, MOST_PASSED, &mut work)
+            })
+        })
     }
 
     /// Tries a step of all; the worst lane's error.

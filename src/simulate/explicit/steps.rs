@@ -44,6 +44,12 @@ pub enum ExplicitObstacle {
         /// So many.
         steps: usize,
     },
+    /// A force changes in space within a step.
+    #[error("a step from t = {time:.3} s passes over what a force does in space: samples do so at different times")]
+    PassesOver {
+        /// s
+        time: f64,
+    },
     /// No step is small enough.
     #[error("no step is small enough at t = {time:.3} s: the motion is not smooth there, or the position is singular")]
     StepTooSmall {
@@ -91,6 +97,9 @@ pub fn explicit_schedule(
             tiles.reject();
             h = step * if worst.ratio.is_finite() { factor.clamp(LEAST_FACTOR, SAFETY) } else { LEAST_FACTOR };
             continue;
+        }
+        if tiles.pass_over(end) {
+            return Ok(Err(ExplicitObstacle::PassesOver { time }));
         }
         if worst.stiffness > STABLE {
             (stiff, others) = (stiff + 1, 0);

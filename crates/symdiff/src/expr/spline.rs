@@ -127,7 +127,7 @@ impl Spline {
     }
 
     /// What the derivative of this order may be over an interval.
-    pub(crate) fn enclose(self, order: u8, x: Interval) -> Interval {
+    pub fn enclose(self, order: u8, x: Interval) -> Interval {
         if !x.magnitude().is_finite() {
             return Interval::ENTIRE;
         }
