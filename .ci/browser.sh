@@ -6,8 +6,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 install() {
-    command -v node >/dev/null && command -v npm >/dev/null || { apt-get update && apt-get install -y --no-install-recommends nodejs npm; } || return 1
-    [ -n "${CHROMIUM:-}" ] || command -v chromium >/dev/null || { apt-get update && apt-get install -y --no-install-recommends chromium fonts-dejavu-core; } || return 1
+    .ci/install.sh "node npm" nodejs npm || return 1
+    [ -n "${CHROMIUM:-}" ] || .ci/install.sh chromium chromium fonts-dejavu-core || return 1
     (cd tests/browser && npm ci --no-audit --no-fund --silent)
 }
 if ! install; then

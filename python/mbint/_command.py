@@ -40,6 +40,8 @@ def command() -> str:
         FileNotFoundError: there is none.
     """
     if chosen := os.environ.get("MBINT"):
+        if not (os.path.isfile(chosen) or shutil.which(chosen)):
+            raise FileNotFoundError(f"the variable MBINT names {chosen}, and there is no such command")
         return chosen
     name = "mbint" + sysconfig.get_config_var("EXE") if sysconfig.get_config_var("EXE") else "mbint"
     schemes = (sysconfig.get_path("scripts"), sysconfig.get_path("scripts", f"{os.name}_user"))

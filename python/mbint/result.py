@@ -109,6 +109,9 @@ class Result:
 
     def plot(self, output: str | None = None, methods: list[str] | None = None) -> Figure:
         """Bounds of an output over time; by default of all outputs, one below the other. Needs matplotlib."""
-        from .plot import figure
+        try:
+            from .plot import figure
+        except ModuleNotFoundError as missing:
+            raise ModuleNotFoundError("plots need matplotlib: pip install 'mbint[plot]'") from missing
 
         return figure(self, [output] if output else list(self.units), methods)

@@ -17,7 +17,7 @@ from .study import Study, shard_all
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from .study import Model
+    from .study import Model, Value
 
 #: Points: a table with a column for each parameter, or the same as a dictionary, or a file of it.
 Points = pd.DataFrame | Mapping[str, Any] | str | Path
@@ -29,7 +29,7 @@ def sample(
     *,
     design: str | None = None,
     seed: int = 0,
-    set: Mapping[str, str | float] | None = None,  # the name of the command's option
+    set: Mapping[str, Value] | None = None,  # the name of the command's option
     scene: str | None = None,
     threads: int | None = None,
     executor: Executor | None = None,

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+#: A parameter's value: a number in SI units, two for an interval, or a text with unit and tolerance.
+Value = str | float | Sequence[float]
+
 #: A model: the path of a YAML or URDF file, or the content of a YAML file as a dictionary.
 Model = str | Path | Mapping[str, Any]
 
@@ -30,7 +33,8 @@ class Study:
 
     Args:
         model: path of a model file, or its content as a dictionary (formulas and values with units as strings).
-        set: parameters that differ from the file's, as ``{"l1": "0.16 m ± 2%", "tau": 0.4}``; numbers are in SI units.
+        set: parameters that differ from the file's, as ``{"l1": "0.16 m ± 2%", "tau": 0.4, "k": (90, 110)}``; numbers are in SI
+            units, and two of them are an interval.
         methods: methods to run; by default the model's.
         scenes: scenes to run; by default all.
         certify: whether to add certified bounds.
@@ -44,7 +48,7 @@ class Study:
         self,
         model: Model,
         *,
-        set: Mapping[str, str | float] | None = None,  # the name of the command's option
+        set: Mapping[str, Value] | None = None,  # the name of the command's option
         methods: Sequence[str] | None = None,
         scenes: Sequence[str] | None = None,
         certify: bool = False,
@@ -57,11 +61,13 @@ class Study:
         self.folder = Path(folder) if folder is not None else Path(self._temporary.name) / "results"
         self.model = self._file(model)
         self.options: list[str] = []
+        if set is not None and not isinstance(set, Mapping):
+            raise TypeError(f'parameters are set by a dictionary, as {{"l1": "0.16 m"}}, not by a {type(set).__name__}')
         for name, value in (set or {}).items():
-            self.options += ["--set", f"{name}={value if isinstance(value, str) else repr(float(value))}"]
-        for method in methods or ():
+            self.options += ["--set", f"{name}={_value(name, value)}"]
+        for method in _names(methods):
             self.options += ["--method", method]
-        for scene in scenes or ():
+        for scene in _names(scenes):
             self.options += ["--scene", scene]
         if threads is not None:
             self.options += ["--threads", str(threads)]
@@ -71,8 +77,10 @@ class Study:
 
     def _file(self, model: Model) -> Path:
         """The model's file; a dictionary is written to one. JSON is YAML."""
-        if not isinstance(model, Mapping):
+        if isinstance(model, (str, Path)):
             return Path(model)
+        if not isinstance(model, Mapping):
+            raise TypeError(f"a model is the path of a file or a dictionary, not a {type(model).__name__}")
         path = Path(self._temporary.name) / "model.yaml"
         path.write_text(json.dumps(model, ensure_ascii=False, indent=1, default=_plain), encoding="utf-8")
         return path
@@ -124,6 +132,8 @@ class Study:
         if (self.folder / "summary.json").is_file():
             alone = Result(self.folder)
             return {alone.summary["model"]: alone}
+        if not (self.folder / "scenes.json").is_file():
+            raise FileNotFoundError(f"there are no results in {self.folder}; call run() first")
         scenes = json.loads((self.folder / "scenes.json").read_text(encoding="utf-8"))
         return {scene: Result(self.folder / scene) for scene in scenes["scenes"]}
 
@@ -212,6 +222,24 @@ def run(model: Model, **options: Any) -> Study:
         MbintError: the model has errors, or a run failed.
     """
     return Study(model, **options).run()
+
+
+def _value(name: str, value: Value) -> str:
+    """A parameter's value for the command; shortest digits that are read as the same number."""
+    if isinstance(value, str):
+        return value
+    try:
+        if isinstance(value, (Sequence, np.ndarray)):
+            lower, upper = map(float, value)
+            return f"[{lower!r}, {upper!r}]"
+        return repr(float(value))
+    except (TypeError, ValueError):
+        raise TypeError(f"`{name}` is set to a number, an interval of two, or a text, not to {value!r}") from None
+
+
+def _names(names: Sequence[str] | None) -> Sequence[str]:
+    """Names; one may stand alone."""
+    return [names] if isinstance(names, str) else names or ()
 
 
 def _plain(value: object) -> object:

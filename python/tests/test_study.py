@@ -1,6 +1,7 @@
 """The package against the command, and against closed forms. The variable MBINT names the command."""
 
 import json
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -57,6 +58,37 @@ def test_errors_are_those_of_the_command() -> None:
     with pytest.raises(mbint.MbintError, match="no key `mas`|has no `mas`") as caught:
         mbint.run(FALL | {"bodies": {"ball": {"mas": 1, "coordinates": ["y"]}}})
     assert caught.value.status == 2
+
+
+def test_values_are_numbers_intervals_or_texts() -> None:
+    bounds = [mbint.run(FALL, set={"g": g}, methods="chebyshev").summary["parameters"][0] for g in ((9, 10), "[9, 10]")]
+    assert bounds[0] == bounds[1] and (bounds[0]["lower"], bounds[0]["upper"]) == (9, 10)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: mbint.run(5), TypeError, "the path of a file or a dictionary, not a int"),
+        (lambda: mbint.run(FALL | {"x": {1}}), TypeError, "a model cannot have a set"),
+        (lambda: mbint.run(FALL, set="g=9"), TypeError, "set by a dictionary"),
+        (lambda: mbint.run(FALL, set={"g": (1, 2, 3)}), TypeError, "`g` is set to a number, an interval of two"),
+        (lambda: mbint.run(FALL, set={"g": None}), TypeError, "`g` is set to a number, an interval of two"),
+        (lambda: mbint.run(FALL, set={"h": 1}), mbint.MbintError, "unknown parameter `h`"),
+        (lambda: mbint.run(FALL, set={"g": "9 kg"}), mbint.MbintError, "where an acceleration"),
+        (lambda: mbint.run("nowhere.yaml"), mbint.MbintError, "there is no such file"),
+        (lambda: mbint.Study(FALL).bounds, FileNotFoundError, "call run\\(\\) first"),
+        (lambda: mbint.sample(FALL), mbint.MbintError, "give points"),
+    ],
+)
+def test_errors_say_what_is_wrong(call: Callable[[], object], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        call()
+
+
+def test_a_missing_command_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MBINT", "/nowhere/mbint")
+    with pytest.raises(FileNotFoundError, match="MBINT names /nowhere/mbint"):
+        mbint.run(FALL)
 
 
 def test_an_executor_gives_the_same_bytes(tmp_path: Path) -> None:

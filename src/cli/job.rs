@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::console::Console;
-use super::kept_run::context;
+use super::kept_run::{KeptRun, context, expected};
 use super::overview::{damped, excluded, unreliable};
 use super::progress::Progress;
 use super::request::{Job, Request, Settings};
@@ -47,7 +47,7 @@ pub(super) fn run_one(job: &Job, request: &Request) -> Result<Done, Failure> {
 pub(super) fn bounds(
     model: &Description,
     settings: &Settings,
-    store: Option<&PartStore>,
+    store: Option<(&KeptRun, &PartStore)>,
     begun: &(dyn Fn() + Sync),
 ) -> Result<(Bounds, Summary), Failure> {
     let progress = Progress::new(&model.name, !settings.quiet);
@@ -55,13 +55,19 @@ pub(super) fn bounds(
         begun();
         progress.set(fraction);
     };
+    let there = store.filter(|_| !settings.quiet).map(|(kept, _)| kept.there());
     let options = study::Options {
         methods: settings.methods.clone(),
         threads: settings.threads,
         certify_time: settings.certify_time,
         skip_infeasible: settings.skip_infeasible,
         costly: settings.yes,
-        store,
+        store: store.map(|(_, store)| store),
+        disk: &|bytes| {
+            if let Some(there) = &there {
+                progress.note(&expected(&model.name, there, bytes));
+            }
+        },
         progress: &set_progress,
         stage: &|stage| progress.stage(stage),
         interrupted: &interrupt::asked,
@@ -83,8 +89,9 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let context = || context(&job.files, &asked.set, job.scene.as_deref(), asked.skip_infeasible);
     let store = request.store.as_ref().map(|kept| kept.open(&context())).transpose();
     let store = store.map_err(|error| failed(&error))?;
-    let found = bounds(&job.model, &request.settings, store.as_ref(), &|| interrupt::keep_results(true));
-    if let (Some(kept), Some(store)) = (&request.store, &store)
+    let kept = request.store.as_ref().zip(store.as_ref());
+    let found = bounds(&job.model, &request.settings, kept, &|| interrupt::keep_results(true));
+    if let Some((kept, store)) = kept
         && !kept.close((job.number, job.scene.as_deref()), store)
     {
         found.map_or_else(
@@ -94,7 +101,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
         return Err(Failure::Deferred);
     }
     let (bounds, mut summary) = found?;
-    verdicts::add_commands(&mut summary, &job.path, &request.overrides);
+    let named = request.named.get(job.number).unwrap_or(&job.path);
+    verdicts::add_commands(&mut summary, named, &request.overrides);
     let written = if request.timings { summary.clone() } else { summary.without_seconds() };
     let interrupted = interrupt::asked();
     let folder = match interrupted && !request.overwrite && holds_complete_results(&job.folder) {
@@ -108,7 +116,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     interrupt::keep_results(false);
     let resolved = || resolution(&bounds).max(verdicts::status(&summary));
     let status = if summary.failure.is_some() { Status::Failed } else { resolved() };
-    let stored = request.store.as_ref().zip(store.as_ref()).map(|(kept, store)| kept.told(store));
+    let stored = kept.map(|(kept, store)| kept.told(store));
     Ok(Done { status, bounds, summary, files, folder, stored })
 }
 

@@ -1,11 +1,13 @@
 //! A run whose simulations are kept in a folder.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
+
+use indicatif::HumanBytes;
 
 use super::console::count;
 use crate::results::ModelFile;
-use crate::store::{Asked, Missing, PartStore, Shard, StoreError};
+use crate::store::{Asked, Content, Missing, PartStore, Shard, StoreError};
 
 /// Where a run's simulations are kept, and what it left to shards.
 #[derive(Debug)]
@@ -17,12 +19,21 @@ pub(super) struct KeptRun {
     /// How long a shard may take, s.
     shard_seconds: f64,
     shards: RefCell<Vec<Shard>>,
+    /// What the folder had when it was opened last.
+    there: Cell<Content>,
 }
 
 impl KeptRun {
     /// In a folder.
     pub fn new(folder: PathBuf, missing: Missing) -> Self {
-        Self { folder, missing, plans: false, shard_seconds: f64::INFINITY, shards: RefCell::default() }
+        Self {
+            folder,
+            missing,
+            plans: false,
+            shard_seconds: f64::INFINITY,
+            shards: RefCell::default(),
+            there: Cell::default(),
+        }
     }
 
     /// In the folder of a study, of which shards are left that take at most so many seconds.
@@ -37,7 +48,15 @@ impl KeptRun {
 
     /// The store of a job, given all that decides its results beside the tasks.
     pub fn open(&self, context: &[u8]) -> Result<PartStore, StoreError> {
-        PartStore::open(&self.folder, context, self.missing)
+        let store = PartStore::open(&self.folder, context, self.missing)?;
+        self.there.set(store.tidy()?);
+        Ok(store)
+    }
+
+    /// What the folder had when it was opened, in words.
+    pub fn there(&self) -> String {
+        let Content { parts, bytes } = self.there.get();
+        format!("{} in {} ({})", count(parts, "part", "parts"), self.folder.display(), HumanBytes(bytes))
     }
 
     /// Notes what a job left to shards: of which model, and of which scene of it. Whether its results are complete and to be written.
@@ -50,7 +69,7 @@ impl KeptRun {
     /// What was taken from the folder, and what was added.
     pub fn told(&self, store: &PartStore) -> String {
         let (found, simulated) = store.counts();
-        let found = count(found - simulated.min(found), "part", "parts");
+        let found = count(found, "part", "parts");
         format!("{found} from {}, {} simulated", self.folder.display(), count(simulated, "part", "parts"))
     }
 
@@ -58,6 +77,11 @@ impl KeptRun {
     pub fn shards(self) -> Vec<Shard> {
         self.shards.into_inner()
     }
+}
+
+/// What a run with a store says before its first simulation.
+pub(super) fn expected(name: &str, there: &str, bytes: u64) -> String {
+    format!("{name}: {there}; this run's simulations take {} on the disk at most", HumanBytes(bytes))
 }
 
 /// All that decides a model's results beside the tasks, unambiguously.

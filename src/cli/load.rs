@@ -101,20 +101,21 @@ pub(super) fn input_once(models: &[PathBuf]) -> Result<(), Failure> {
 
 /// The files that were read, the model first, with hashes of their bytes; and their texts.
 fn files(reading: &Reading) -> (Vec<ModelFile>, Vec<(String, String)>) {
+    let mut paths: Vec<&str> = Vec::new();
     let mut files: Vec<ModelFile> = Vec::new();
     let mut texts: Vec<(String, String)> = Vec::new();
     for source in reading.diagnostics.sources.all().filter(|source| source.name != "--set") {
         let name = Path::new(&source.name).file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
         let sha256 = Sha256::digest(&source.text).iter().map(|byte| format!("{byte:02x}")).collect();
         let file = ModelFile { name: name.clone(), sha256 };
-        // A robot alone stands behind the text of the model that is made of it.
-        match files.iter_mut().find(|known| known.name == file.name) {
-            Some(known) => *known = file,
-            None => files.push(file),
-        }
-        match texts.iter_mut().find(|known| known.0 == name) {
-            Some(known) => known.1.clone_from(&source.text),
-            None => texts.push((name, source.text.clone())),
+        // A robot alone stands behind the text of the model that is made of it. Files of two folders may have one name.
+        if let Some(place) = paths.iter().position(|path| *path == source.name) {
+            files[place] = file;
+            texts[place].1.clone_from(&source.text);
+        } else {
+            paths.push(&source.name);
+            files.push(file);
+            texts.push((name, source.text.clone()));
         }
     }
     (files, texts)

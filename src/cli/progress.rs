@@ -65,6 +65,12 @@ impl Progress {
         }
     }
 
+    /// A line above the bar, that stays.
+    pub fn note(&self, line: &str) {
+        // If standard error is closed, nobody can be told.
+        self.bar.suspend(|| drop(writeln!(std::io::stderr(), "{line}")));
+    }
+
     /// Shows what is being done.
     pub fn stage(&self, stage: &str) {
         stage.clone_into(&mut self.stage.lock().unwrap_or_else(PoisonError::into_inner));

@@ -14,6 +14,8 @@ use crate::store::Missing;
 /// The arguments of a run, checked.
 pub(super) struct Request {
     pub models: Vec<PathBuf>,
+    /// The same models as results name them.
+    pub named: Vec<PathBuf>,
     pub overrides: Vec<Override>,
     /// Empty for all scenes.
     pub scenes: Vec<String>,
@@ -75,6 +77,7 @@ impl Request {
             args.asked.in_order();
         let overrides = set.overrides()?;
         Ok(Self {
+            named: args.models.clone(),
             models: args.models,
             overrides,
             scenes,

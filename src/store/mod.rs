@@ -9,10 +9,11 @@ mod error;
 mod part;
 mod plan;
 mod task;
+mod whole;
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use sha2::{Digest, Sha256};
 
@@ -54,8 +55,23 @@ pub struct PartStore {
     context: [u8; 32],
     missing: Missing,
     deferred: Mutex<Vec<Deferred>>,
-    found: AtomicUsize,
-    simulated: AtomicUsize,
+    /// Names of parts that were read, and of those that were begun.
+    read: Mutex<HashSet<String>>,
+    begun: Mutex<HashSet<String>>,
+}
+
+/// What parts there are in a folder, of whatever runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Content {
+    /// How many.
+    pub parts: usize,
+    /// Their size.
+    pub bytes: u64,
+}
+
+/// What is behind a lock. A panic elsewhere leaves it whole: it only grows.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl PartStore {
@@ -79,10 +95,19 @@ impl PartStore {
             folder: folder.to_owned(),
             context,
             missing,
-            deferred: Mutex::new(Vec::new()),
-            found: AtomicUsize::new(0),
-            simulated: AtomicUsize::new(0),
+            deferred: Mutex::default(),
+            read: Mutex::default(),
+            begun: Mutex::default(),
         })
+    }
+
+    /// What the folder has. Half-written files of programs that were killed are removed. Shards do without this: they list nothing.
+    ///
+    /// # Errors
+    /// Where the folder cannot be read.
+    pub fn tidy(&self) -> Result<Content, StoreError> {
+        whole::remove_left_over(&self.folder.join(TASKS))?;
+        whole::remove_left_over(&self.folder.join(PARTS))
     }
 
     /// Name of a task's part.
@@ -101,7 +126,7 @@ impl PartStore {
     pub fn part(&self, name: &str) -> Result<Option<PartReader>, StoreError> {
         let part = PartReader::open(&self.path(PARTS, name, "part"))?;
         if part.is_some() {
-            self.found.fetch_add(1, Ordering::Relaxed);
+            locked(&self.read).insert(name.to_owned());
         }
         Ok(part)
     }
@@ -116,7 +141,7 @@ impl PartStore {
     /// # Errors
     /// Where the file cannot be made.
     pub fn begin(&self, name: &str) -> Result<PartWriter, StoreError> {
-        self.simulated.fetch_add(1, Ordering::Relaxed);
+        locked(&self.begun).insert(name.to_owned());
         PartWriter::begin(&self.path(PARTS, name, "part"))
     }
 
@@ -135,14 +160,13 @@ impl PartStore {
     pub fn defer(&self, name: &str, task: &Task, seconds: f64, bytes: u64) -> Result<(), StoreError> {
         task.write(&self.path(TASKS, name, "task"))?;
         let deferred = Deferred { part: name.to_owned(), simulations: task.samples.len(), seconds, bytes };
-        // A panic elsewhere leaves the list whole: it only grows.
-        self.deferred.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(deferred);
+        locked(&self.deferred).push(deferred);
         Ok(())
     }
 
     /// What was deferred, in the order of the study.
     pub fn deferred(&self) -> Vec<Deferred> {
-        self.deferred.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone()
+        locked(&self.deferred).clone()
     }
 
     /// A task that was deferred.
@@ -155,7 +179,8 @@ impl PartStore {
 
     /// Parts that were found, and parts that were simulated.
     pub fn counts(&self) -> (usize, usize) {
-        (self.found.load(Ordering::Relaxed), self.simulated.load(Ordering::Relaxed))
+        let begun = locked(&self.begun);
+        (locked(&self.read).difference(&begun).count(), begun.len())
     }
 
     fn path(&self, folder: &str, name: &str, extension: &str) -> PathBuf {

@@ -5,18 +5,24 @@
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::FORMAT;
 use super::error::StoreError;
+use super::whole::{self, Durable};
 use crate::methods::Simulated;
 use crate::numerics::ScanBounds;
 
 const MAGIC: &[u8; 8] = b"mbint\x00pt";
 const HEADER: u64 = 12;
 const HASH: u64 = 32;
+
+/// What took longer to simulate is on the disk before it appears. Of the rest a loss of power costs the last half minute's at most, which a
+/// system writes by itself.
+const WORTH_SYNCING: Duration = Duration::from_secs(1);
 
 /// The end of a part: what became of the samples, and the bounds of a scan.
 type Outcome = (Simulated, Option<ScanBounds>);
@@ -25,6 +31,7 @@ type Outcome = (Simulated, Option<ScanBounds>);
 #[derive(Debug)]
 pub struct PartWriter {
     path: PathBuf,
+    begun: Instant,
     file: BufWriter<NamedTempFile>,
     hash: Sha256,
     bytes: Vec<u8>,
@@ -34,9 +41,9 @@ impl PartWriter {
     pub(super) fn begin(path: &Path) -> Result<Self, StoreError> {
         // A path of the store lies in one of its folders.
         let folder = path.parent().unwrap_or(Path::new("."));
-        let file = tempfile::Builder::new().prefix(".part-").tempfile_in(folder);
-        let file = BufWriter::with_capacity(1 << 18, file.map_err(|error| StoreError::io(path, error))?);
-        let mut writer = Self { path: path.to_owned(), file, hash: Sha256::new(), bytes: Vec::new() };
+        let file = whole::begin(folder).map_err(|error| StoreError::io(path, error))?;
+        let (begun, file) = (Instant::now(), BufWriter::with_capacity(1 << 18, file));
+        let mut writer = Self { path: path.to_owned(), begun, file, hash: Sha256::new(), bytes: Vec::new() };
         let header = [&MAGIC[..], &FORMAT.to_le_bytes()].concat();
         writer.write(&header)?;
         Ok(writer)
@@ -73,7 +80,8 @@ impl PartWriter {
         let failed = |error| StoreError::io(&self.path, error);
         self.file.write_all(&hash).map_err(failed)?;
         let file = self.file.into_inner().map_err(|error| StoreError::io(&self.path, error.into_error()))?;
-        persist(file, &self.path)
+        let durable = if self.begun.elapsed() > WORTH_SYNCING { Durable::Now } else { Durable::Soon };
+        whole::persist(file, &self.path, durable).map_err(|error| StoreError::io(&self.path, error))
     }
 }
 
@@ -165,26 +173,4 @@ fn length_of_outcome(file: &mut BufReader<File>, length: u64) -> std::io::Result
     file.seek(SeekFrom::Start(length - HASH - 8))?;
     file.read_exact(&mut bytes)?;
     Ok(u64::from_le_bytes(bytes))
-}
-
-/// Writes a file that appears when it is whole.
-pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut file =
-        tempfile::Builder::new().prefix(".part-").tempfile_in(folder).map_err(|error| StoreError::io(path, error))?;
-    file.write_all(bytes).map_err(|error| StoreError::io(path, error))?;
-    persist(file, path)
-}
-
-/// Gives a temporary file its name, after its bytes are on the disk.
-fn persist(file: NamedTempFile, path: &Path) -> Result<(), StoreError> {
-    file.as_file().sync_all().map_err(|error| StoreError::io(path, error))?;
-    // Others may read what one of them computed.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        let readable = std::fs::Permissions::from_mode(0o644);
-        file.as_file().set_permissions(readable).map_err(|error| StoreError::io(path, error))?;
-    }
-    file.persist(path).map(drop).map_err(|error| StoreError::io(path, error.error))
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::error::StoreError;
-use super::part::write_whole;
+use super::whole::{self, Durable};
 use super::{Deferred, FORMAT, PARTS};
 
 /// A study's round.
@@ -28,6 +28,8 @@ pub struct Plan {
 pub struct Asked {
     /// Absolute paths of the models.
     pub models: Vec<PathBuf>,
+    /// The models as they were named; results say that, and not where a machine has them.
+    pub named: Vec<PathBuf>,
     /// Parameters that are set.
     pub set: Vec<String>,
     /// Scenes; all where empty.
@@ -148,7 +150,8 @@ impl StudyFolder {
         let mut text = serde_json::to_vec_pretty(&plan)
             .map_err(|error| StoreError::io(&self.plan_file(), std::io::Error::other(error)))?;
         text.push(b'\n');
-        write_whole(&self.plan_file(), &text)
+        whole::remove_left_over(&self.0)?;
+        whole::write(&self.plan_file(), &text, Durable::Now)
     }
 
     /// Numbers of shards of which a part is missing. Only names are looked at.

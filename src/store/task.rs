@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::FORMAT;
 use super::error::StoreError;
-use super::part::write_whole;
+use super::whole::{self, Durable};
 use crate::methods::{Observed, Until};
 use crate::numerics::Sample;
 use crate::simulate::{Channel, Controller, Schedule};
@@ -48,7 +48,8 @@ impl Task {
     }
 
     pub(super) fn write(&self, path: &Path) -> Result<(), StoreError> {
-        write_whole(path, &self.to_bytes()?)
+        // One that is lost is planned again.
+        whole::write(path, &self.to_bytes()?, Durable::Soon)
     }
 
     pub(super) fn read(path: &Path) -> Result<Self, StoreError> {

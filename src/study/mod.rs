@@ -84,6 +84,8 @@ pub struct Options<'a> {
     pub costly: bool,
     /// Where simulations are stored, if they are.
     pub store: Option<&'a PartStore>,
+    /// Told, where simulations are stored, how many bytes they may take on the disk, before the first is made.
+    pub disk: &'a (dyn Fn(u64) + Sync),
     /// Told now and then which fraction is done.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Told what is being done, in a few words, whenever something else begins.
@@ -102,6 +104,7 @@ impl Default for Options<'_> {
             skip_infeasible: false,
             costly: true,
             store: None,
+            disk: &|_| (),
             progress: &|_| (),
             stage: &|_| (),
             interrupted: &|| false,

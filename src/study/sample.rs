@@ -70,11 +70,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
             simulators.push(simulator);
         }
         // Only the steps are those of a run.
-        let Options { threads, certify_time, skip_infeasible, costly, store, progress, stage, interrupted, .. } =
-            *options;
-        let methods = Some(Vec::new());
-        let options =
-            Options { methods, threads, certify_time, skip_infeasible, costly, store, progress, stage, interrupted };
+        let options = Options { methods: Some(Vec::new()), ..*options };
         let studies = subsystems.iter().zip(simulators).enumerate().map(|(number, (subsystem, simulator))| {
             let mut study = Study::new(&subsystem.description, simulator, &options)?;
             study.stored = options.store.map(|store| Stored { store, subsystem: number });
@@ -87,6 +83,13 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
         let times = steps.iter().find(|(schedule, _)| schedule.rows == rows);
         let times = times.map_or_else(Vec::new, |(schedule, _)| (0..rows).map(|row| schedule.time(row)).collect());
         let (columns, outputs) = columns(description, &subsystems, &studies);
+        if options.store.is_some() {
+            let bytes = |(study, (schedule, _)): (&Study, &(Schedule, _))| {
+                let samples = if study.domain.dimension() == 0 { 1 } else { chosen.count };
+                (8 * study.simulator.system.outputs.len() * schedule.rows * samples) as u64
+            };
+            (options.disk)(studies.iter().zip(&steps).map(bytes).sum());
+        }
         let progress = Progress::new(studies.len() * chosen.count * rows, options.progress);
         (options.stage)("samples");
         write(&Trajectories {

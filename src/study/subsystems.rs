@@ -142,6 +142,9 @@ pub(super) fn run(
     if !options.costly && price.is_costly(description.bounds.budget.simulations) {
         return Err(RunError::Costly(price));
     }
+    if options.store.is_some() {
+        (options.disk)(studies.iter().map(Study::stored_bytes).sum());
+    }
     let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut lost = 0;
     for (subsystem, study) in subsystems.iter().zip(&studies) {

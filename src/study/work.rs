@@ -1,7 +1,8 @@
 //! How much a study has to simulate, before it does.
 
-use super::single::Study;
-use crate::methods::{BoundingMethod, Method};
+use super::ensemble::{bytes_of_scan, bytes_of_values};
+use super::single::{Study, problem};
+use crate::methods::{BoundingMethod, Method, Observed};
 use crate::numerics::{step_validation, validation};
 use crate::simulate::Schedule;
 
@@ -13,16 +14,38 @@ impl Study<'_> {
         parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
     }
 
+    /// Bytes that the simulations take where they are stored. Where a tolerance decides how many there are, as many as the budget allows.
+    pub(super) fn stored_bytes(&self) -> u64 {
+        let problem = problem(self.description, &self.simulator);
+        let (outputs, rows, methods) = (self.simulator.system.outputs.len(), self.rows(), self.request.methods());
+        let observes_motion = methods.iter().any(|(_, asked)| asked.observes(&problem) == Observed::Motion);
+        let lines = if observes_motion { 2 * self.simulator.system.q.len() + outputs } else { outputs };
+        let of_method = |(method, asked): &(Method, &dyn BoundingMethod)| {
+            let samples = asked.samples().map_or(self.request.budget.simulations, |samples| samples as usize);
+            match method {
+                Method::Scan => bytes_of_scan(outputs, rows, samples),
+                _ => bytes_of_values(lines, rows, samples),
+            }
+        };
+        let methods: u64 = methods.iter().map(of_method).sum();
+        let parts = if self.certify_time { 3 } else { 1 };
+        // Each with whole and with halved steps.
+        parts * methods + 2 * bytes_of_values(lines, rows, self.held_out())
+    }
+
+    /// Samples that only measure errors.
+    fn held_out(&self) -> usize {
+        let k = self.domain.dimension();
+        if self.request.is_empty() {
+            return 0;
+        }
+        step_validation(k).len() + validation(k, self.request.degree()).len()
+    }
+
     /// Samples × rows of all methods.
     pub(super) fn total_work(&self, schedule: &Schedule) -> usize {
         let work = |(_, method): &(Method, &dyn BoundingMethod)| method.work(&self.request.budget);
         let methods: usize = self.request.methods().iter().map(work).sum();
-        let k = self.domain.dimension();
-        let held_out = if self.request.is_empty() {
-            0
-        } else {
-            step_validation(k).len() + validation(k, self.request.degree()).len()
-        };
-        (1 + held_out + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
+        (1 + self.held_out() + methods * if self.certify_time { 2 } else { 1 }) * schedule.rows
     }
 }

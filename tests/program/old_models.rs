@@ -21,6 +21,24 @@ fn models_of_before_are_run() {
     }
 }
 
+#[test]
+fn a_model_of_before_has_its_bounds() {
+    let place = Place::new();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/old_models/1.0/slider_crank.yaml");
+    fs::copy(model, place.path().join("model.yaml")).unwrap();
+    place.run("run model.yaml --method chebyshev -o out -q", 0);
+    let table = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    let columns: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let column = |name: &str| columns.iter().position(|column| *column == name).unwrap();
+    let (lower, upper) = (column("x3.chebyshev.lower"), column("x3.chebyshev.upper"));
+    let width = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        cells[upper].parse::<f64>().unwrap() - cells[lower].parse::<f64>().unwrap()
+    };
+    let widest = table.lines().skip(1).map(width).fold(0.0, f64::max);
+    assert!((widest - 0.251).abs() < 1e-3, "{widest}");
+}
+
 /// The number in the schema grows with the language.
 #[test]
 fn the_schema_has_a_version() {

@@ -125,3 +125,149 @@ fn a_run_goes_on_from_what_is_stored() {
     assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("second")));
     assert_eq!(place.files("kept/parts"), names);
 }
+
+/// A ball thrown up: reduced outputs, requirements, statistics; its pull comes from a table.
+const THROWN: &str = "
+model: thrown
+parameters:
+  v: { value: 2, unit: m/s, tolerance: 60 mm/s, distribution: normal }
+  m: { value: 1, unit: kg, tolerance: 2% }
+bodies: { ball: { mass: m, coordinates: [y] } }
+tables: { pull: { file: pull.csv, units: [s, N] } }
+effects: { weight: { force: { on: ball, value: [0, -9.81*pull(t)] } } }
+initial: { ball.y: 0, ball.vy: v }
+outputs:
+  y: ball.y
+  peak: { max: y }
+  up: { when: y >= 0.1 }
+requirements:
+  low: { output: peak, max: 0.2 m }
+  below: y <= 0.3 m
+statistics: { quantiles: [5%, 95%] }
+simulation: { duration: 0.4, step: 1e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 3 }, scan: { points: 5 } }
+";
+
+const PULL: &str = "t,pull\n0,1\n1,1.1\n";
+
+#[test]
+fn merged_verdicts_and_statistics_are_those_of_the_run() {
+    let place = Place::new();
+    fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
+    fs::write(place.path().join("pull.csv"), PULL).unwrap();
+    let overlay = "parameters: { m: 1.1 kg ± 1% }\n";
+    fs::write(place.path().join("overlay.yaml"), overlay).unwrap();
+    let asked = "thrown.yaml --with overlay.yaml --set v=2.05±1%";
+    place.run(&format!("run {asked} -o direct -q"), 4);
+    assert!(place.files("direct").iter().any(|name| name == "statistics.csv"));
+    place.run(&format!("plan {asked} -o study --at-once 0"), 0);
+    loop {
+        for index in 0..shards(&place, "study") {
+            place.run(&format!("shard study --index {index}"), 0);
+        }
+        let merged = place.command("merge study -o merged -q").output().unwrap();
+        if merged.status.code() != Some(75) {
+            assert_eq!(merged.status.code(), Some(4), "{}", String::from_utf8_lossy(&merged.stderr));
+            break;
+        }
+    }
+    assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("merged")));
+}
+
+/// Names of all parts of a plan.
+fn parts(place: &Place, study: &str) -> Vec<String> {
+    let plan = fs::read_to_string(place.path().join(study).join("plan.json")).unwrap();
+    let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+    let shards = plan["shards"].as_array().unwrap();
+    let names = shards.iter().flat_map(|shard| shard["parts"].as_array().unwrap());
+    names.map(|name| name.as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn parts_follow_every_file_of_the_model() {
+    let place = Place::new();
+    let write = |name: &str, text: &str| fs::write(place.path().join(name), text).unwrap();
+    fs::create_dir(place.path().join("parts")).unwrap();
+    // The included file has the name of the model, in another folder.
+    let main = THROWN
+        .replace("bodies: { ball: { mass: m, coordinates: [y] } }", "include: parts/thrown.yaml\ninstances: { far: { of: fall } }\nbodies: { ball: { mass: m, coordinates: [y] } }")
+        .replace("  y: ball.y\n", "  y: ball.y\n  far: far.stone.y\n");
+    let part = "
+assemblies:
+  fall:
+    parameters: { g: { value: 9.81, unit: N, tolerance: 1% } }
+    bodies: { stone: { mass: 1, coordinates: [y] } }
+    effects: { weight: { force: { on: stone, value: [0, -g] } } }
+    initial: { stone.y: 0, stone.vy: 0 }
+";
+    let files = [("thrown.yaml", main.as_str()), ("parts/thrown.yaml", part), ("pull.csv", PULL)];
+    files.iter().for_each(|(name, text)| write(name, text));
+    let mut known = vec![];
+    let changes =
+        [("", ""), ("thrown.yaml", "step: 1e-3"), ("parts/thrown.yaml", "value: 9.81"), ("pull.csv", "1,1.1")];
+    for (number, (name, changed)) in changes.iter().enumerate() {
+        for (file, text) in files.iter().filter(|(file, _)| file == name) {
+            write(file, &text.replace(changed, &changed.replace('1', "2")));
+            let (_, errors) = place.run("shard study0 --index 0", 1);
+            assert!(errors.contains("the model is not what it was when the study was planned"), "{name}: {errors}");
+        }
+        place.run(&format!("plan thrown.yaml -o study{number} --at-once 0"), 0);
+        let own = parts(&place, &format!("study{number}"));
+        assert!(!own.is_empty() && own.iter().all(|part| !known.contains(part)), "{name}");
+        known.extend(own);
+        files.iter().for_each(|(name, text)| write(name, text));
+    }
+}
+
+#[test]
+fn a_killed_run_leaves_nothing_behind_the_next_one() {
+    let place = Place::new();
+    let long = THROWN.replace("step: 1e-3", "step: 1e-7").replace("requirements", "#").replace("  low", "#");
+    let long = long.replace("  below", "#").replace("statistics:", "#");
+    fs::write(place.path().join("long.yaml"), long).unwrap();
+    fs::write(place.path().join("pull.csv"), PULL).unwrap();
+    fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
+    let mut killed = place.command("sample long.yaml --design sobol:1000 --store kept -q").spawn().unwrap();
+    let left_over = || {
+        let names =
+            fs::read_dir(place.path().join("kept/parts")).map(|entries| entries.flatten()).into_iter().flatten();
+        names.filter(|entry| entry.file_name().to_string_lossy().starts_with(".part-")).count()
+    };
+    for _ in 0..6000 {
+        if left_over() > 0 || killed.try_wait().unwrap().is_some() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(left_over(), 1);
+    // What is being written stays.
+    place.run("run pendulum.yaml --scene short -o first -q --store kept", 0);
+    assert_eq!(left_over(), 1);
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert_eq!(left_over(), 1);
+    place.run("run pendulum.yaml --scene short -o first -q --store kept", 0);
+    assert_eq!(left_over(), 0);
+}
+
+#[test]
+fn the_disk_that_a_store_takes_is_told_before() {
+    let place = Place::new();
+    fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
+    fs::write(place.path().join("pull.csv"), PULL).unwrap();
+    for options in ["", "--certify-time", "--method scan", "--method chebyshev"] {
+        let _ = fs::remove_dir_all(place.path().join("kept"));
+        let (_, told) = place.run(&format!("run thrown.yaml -o out --store kept {options}"), 4);
+        let told = told.lines().next().unwrap();
+        let words = told.strip_prefix("thrown: no parts in kept (0 B); this run's simulations take ").unwrap();
+        let (number, unit) = words.strip_suffix(" on the disk at most").unwrap().split_once(' ').unwrap();
+        assert_eq!(unit, "KiB", "{told}");
+        // A part has a hundred bytes or two beside its values.
+        let at_most = 1024.0 * number.parse::<f64>().unwrap();
+        let lengths = tree(&place.path().join("kept/parts"));
+        let taken: usize = lengths.iter().map(|(_, bytes)| bytes.len().saturating_sub(1000)).sum();
+        assert!(taken as f64 <= at_most && at_most < 4.0 * taken.max(4096) as f64, "{told}: {taken}");
+    }
+    let (_, told) = place.run("run thrown.yaml -o out --store kept", 4);
+    assert!(told.starts_with("thrown: 2 parts in kept (") || told.starts_with("thrown: 3 parts in kept ("), "{told}");
+}

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub(super) use self::points::Points;
 use super::args::{FileFormat, SampleArgs, Threads};
 use super::console::{BOLD, Console, count};
-use super::kept_run::{KeptRun, context};
+use super::kept_run::{KeptRun, context, expected};
 use super::progress::Progress;
 use super::{Failure, Status, interrupt, load};
 use crate::export::{ExportError, write_samples};
@@ -113,9 +113,15 @@ impl Sampling<'_> {
         let store = store.map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
         interrupt::listen();
         let progress = Progress::new(name, !self.quiet);
+        let there = self.store.filter(|_| !self.quiet).map(KeptRun::there);
         let options = study::Options {
             threads: self.threads.number(),
             store: store.as_ref(),
+            disk: &|bytes| {
+                if let Some(there) = &there {
+                    progress.note(&expected(name, there, bytes));
+                }
+            },
             progress: &|fraction| progress.set(fraction),
             stage: &|stage| progress.stage(stage),
             interrupted: &interrupt::asked,
@@ -164,6 +170,14 @@ impl Sampling<'_> {
         if let Some((path, _)) = self.output.filter(|_| !self.quiet) {
             let samples = count(points.count(), "sample", "samples");
             console.print(&format!("{BOLD}{name}{BOLD:#}: {samples} in {}\n", path.display()))?;
+            if !description.reduced.is_empty() {
+                let names: Vec<&str> = description.reduced.iter().map(|reduced| reduced.name.as_str()).collect();
+                console
+                    .print(&format!("  not sampled, because they follow from the values: {}\n", names.join(", ")))?;
+            }
+            if let Some((kept, store)) = self.store.zip(store.as_ref()) {
+                console.print(&format!("  {}\n", kept.told(store)))?;
+            }
         }
         Ok(Status::Done)
     }

@@ -37,6 +37,7 @@ pub(super) fn plan(args: PlanArgs, console: &mut Console) -> Result<Status, Fail
     }
     let asked = Asked {
         models,
+        named: args.models,
         set: set.overrides()?.iter().map(|setting| setting.text.clone()).collect(),
         scenes: scene,
         methods: method.iter().map(|method| method.name().to_owned()).collect(),
@@ -161,6 +162,7 @@ pub(super) fn status(args: &StatusArgs, console: &mut Console) -> Result<Status,
 fn request(asked: &Asked, threads: Threads, kept: KeptRun) -> Result<Request, Failure> {
     Ok(Request {
         models: asked.models.clone(),
+        named: asked.named.clone(),
         overrides: overrides(asked)?,
         scenes: asked.scenes.clone(),
         certify: asked.certify,

@@ -26,7 +26,7 @@ use crate::simulate::{
 
 use jet::SampleJet;
 pub(super) use progress::Progress;
-pub(super) use stored::{Stored, samples_of_part, simulate_part};
+pub(super) use stored::{Stored, bytes_of_scan, bytes_of_values, samples_of_part, simulate_part};
 
 /// Values (rows × lines × samples) that one block holds.
 const BLOCK: usize = 1 << 20;

@@ -224,9 +224,18 @@ fn seconds_of(motions: &Motions, task: &Task) -> f64 {
 
 /// Size of a task's part.
 fn bytes_of(motions: &Motions, task: &Task) -> u64 {
-    let values = match task.scan {
-        Some(_) => NUMBERS_OF_SCAN * motions.outputs(),
-        None => lines(motions, task.observed) * task.samples.len(),
-    };
-    (8 * values * motions.rows()) as u64
+    match task.scan {
+        Some(_) => bytes_of_scan(motions.outputs(), motions.rows(), task.samples.len()),
+        None => bytes_of_values(lines(motions, task.observed), motions.rows(), task.samples.len()),
+    }
+}
+
+/// Size of the values of so many samples.
+pub(in crate::study) fn bytes_of_values(lines: usize, rows: usize, samples: usize) -> u64 {
+    (8 * lines * rows) as u64 * samples as u64
+}
+
+/// Size of the parts of a scan of so many samples, at most.
+pub(in crate::study) fn bytes_of_scan(outputs: usize, rows: usize, samples: usize) -> u64 {
+    bytes_of_values(NUMBERS_OF_SCAN * outputs, rows, samples.div_ceil(ScanGrid::LEAST_SHARD))
 }
