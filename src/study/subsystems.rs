@@ -21,7 +21,7 @@ use crate::reduce::{Choices, Reduction, Subsystem, narrow};
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
 };
-use crate::simulate::{Assembled, Simulator};
+use crate::simulate::{Assembled, SimulationError, Simulator};
 
 /// A subsystem, compiled.
 pub struct Prepared {
@@ -146,7 +146,7 @@ pub(super) fn run(
         (options.disk)(studies.iter().map(Study::stored_bytes).sum());
     }
     let (mut ran, mut kept) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    let mut lost = 0;
+    let (mut lost, mut deferred) = (0, false);
     for (subsystem, study) in subsystems.iter().zip(&studies) {
         let found = caught("the run", || -> Result<_, RunError> {
             if options.skip_infeasible {
@@ -157,6 +157,11 @@ pub(super) fn run(
             Ok((bounds, summary, kept))
         });
         let (bounds, summary, part) = match found {
+            // What the other subsystems lack is planned in the same round.
+            Ok(Err(RunError::Simulation(SimulationError::Deferred))) => {
+                deferred = true;
+                continue;
+            }
             Ok(found) => found?,
             Err(error) => {
                 lost += 1;
@@ -170,6 +175,9 @@ pub(super) fn run(
         };
         ran.push(Done { subsystem, bounds, summary });
         kept.push(part.map(|part| (part, subsystem.outputs.as_slice(), subsystem.parameters.as_slice())));
+    }
+    if deferred {
+        return Err(SimulationError::Deferred.into());
     }
     let kept = kept.into_iter().collect::<Option<Vec<_>>>().filter(|_| keep);
     let kept = kept.map(|parts| Kept::of_parts(parts, description.outputs.len()));
