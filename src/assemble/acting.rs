@@ -12,6 +12,8 @@ use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Pair, Vector};
 pub struct Acting<'m, 'g, 'd> {
     /// The mechanism, in motion.
     pub m: &'m Mechanism<'g, 'd>,
+    /// The effect's place among all.
+    pub effect: usize,
     /// What acts on it so far.
     pub applied: &'m mut AppliedForces<'g>,
 }
@@ -130,6 +132,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
 
     fn potential(&mut self, coefficients: &[Scalar<'g>], energy: Scalar<'g>) {
         self.applied.add_potential(self.m, coefficients, energy);
+    }
+
+    fn state_rate(&mut self, place: usize, rate: Scalar<'g>) {
+        self.applied.add_state_rate(self.m.states[&(self.effect, place)], rate);
     }
 
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {

@@ -239,6 +239,11 @@ impl<'g> AppliedForces<'g> {
         Ok(())
     }
 
+    /// How fast the state changes whose place in q is `index`.
+    pub fn add_state_rate(&mut self, index: usize, rate: Scalar<'g>) {
+        self.add(Target::Coordinate(index), rate);
+    }
+
     /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the
     /// force.
     pub fn add_potential(&mut self, m: &Mechanism<'g, '_>, coefficients: &[Scalar<'g>], potential: Scalar<'g>) {

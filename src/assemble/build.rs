@@ -88,8 +88,10 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
         name: name.clone(),
         scale: if owner.is_length() { length } else { 1.0 },
         is_angle: !owner.is_length(),
+        is_state: owner.is_state(),
     });
-    let coordinates = coordinates.collect();
+    let mut coordinates: Vec<CoordinateInfo> = coordinates.collect();
+    m.scale_states(&balance.force, &start, description.simulation.duration, &mut coordinates);
     let formulation = FormulationInfo { joint: !m.tree.is_absolute(), why: "the model asks for them".to_owned() };
     let (analysis, modes) = (description.analysis, description.modes.clone());
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
@@ -152,10 +154,10 @@ fn apply_effects<'g>(
     for (index, effect) in description.effects.iter().enumerate() {
         let nodes = g.len();
         applied.begin();
-        effect.kind.apply(&mut Acting { m, applied: &mut applied })?;
+        effect.kind.apply(&mut Acting { m, effect: index, applied: &mut applied })?;
         m.sensors.extend(applied.measured().iter().map(|&(measure, value)| ((index, measure), value)));
         let forces = applied.coordinates_touched(m);
-        if forces == 0 {
+        if forces == 0 && effect.kind.states().is_empty() {
             let why = "it moves nothing: it is zero, or acts on what is held".to_owned();
             left_out.push(LeftOut { what: format!("effect {}", effect.name), why });
         }
@@ -203,6 +205,7 @@ impl<'g> Balance<'g> {
         for body in &m.bodies {
             body.add_inertia(&mut mass, &mut force);
         }
+        mass.extend(m.states.values().map(|&index| (index, index, g.number(1.0))));
         let mut inertia = vec![g.number(0.0); m.q.len()];
         for &(row, column, value) in &mass {
             inertia[row] += value * m.w[column];

@@ -42,6 +42,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             potentials: Vec::new(),
             teeth: Vec::new(),
             kinetic_energy_of_beams: g.number(0.0),
+            states: BTreeMap::new(),
             sensors: BTreeMap::new(),
         };
         for parameter in &description.parameters {
@@ -65,6 +66,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
                 mechanism.add_joint_coordinate(joint, coordinate);
             }
         }
+        mechanism.add_states(&description.effects);
         Ok(mechanism)
     }
 

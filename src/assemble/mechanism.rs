@@ -31,6 +31,8 @@ pub enum Owner {
     Body(usize, Coordinate),
     /// Of a joint: of a tree's, or defined by a constraint, without inertia.
     Joint(usize, JointCoordinate),
+    /// Of a state, which is its velocity.
+    State,
 }
 
 impl Owner {
@@ -39,7 +41,13 @@ impl Owner {
         match self {
             Self::Body(_, coordinate) => coordinate.is_length(),
             Self::Joint(_, coordinate) => coordinate == JointCoordinate::Displacement,
+            Self::State => false,
         }
+    }
+
+    /// Whether its velocity is a state.
+    pub fn is_state(self) -> bool {
+        self == Self::State
     }
 
     /// The coordinate's name among its owner's.
@@ -51,6 +59,7 @@ impl Owner {
             Self::Body(_, Coordinate::Angle) | Self::Joint(_, JointCoordinate::Angle) => "angle",
             Self::Body(_, Coordinate::Euler(index)) => ["p0", "p1", "p2", "p3"][index],
             Self::Joint(_, JointCoordinate::Displacement) => "displacement",
+            Self::State => "",
         }
     }
 }
@@ -99,16 +108,25 @@ pub struct Mechanism<'g, 'd> {
     pub potentials: Vec<Scalar<'g>>,
     /// Kinetic energy of what is no rigid body, J.
     pub kinetic_energy_of_beams: Scalar<'g>,
-    /// What the effects built so far measure.
+    /// Places in `q` of the coordinates whose velocities are states, by effect and place among its states.
+    pub states: BTreeMap<(usize, usize), usize>,
+    /// What the effects built so far measure, and all states.
     pub sensors: BTreeMap<(usize, Sensor), Scalar<'g>>,
 }
 
 impl<'g> Mechanism<'g, '_> {
     /// Symbols for one more coordinate of a body or joint called `name`; its place in q.
     pub fn add_coordinate(&mut self, owner: Owner, name: &str) -> usize {
-        let name = format!("{name}.{}", owner.suffix());
+        let name = match owner {
+            Owner::State => name.to_owned(),
+            _ => format!("{name}.{}", owner.suffix()),
+        };
         // A joint may be called like a body.
-        let prefix = if matches!(owner, Owner::Joint(..)) { "joint:" } else { "" };
+        let prefix = match owner {
+            Owner::Body(..) => "",
+            Owner::Joint(..) => "joint:",
+            Owner::State => "state:",
+        };
         for (kind, list) in [("q", &mut self.q), ("v", &mut self.v), ("w", &mut self.w)] {
             list.push(self.g.variable(&format!("{kind}:{prefix}{name}")));
         }

@@ -38,6 +38,7 @@ mod reaction;
 mod recursion;
 mod start;
 mod start_conditions;
+mod states;
 mod symbols;
 mod system;
 mod teeth;

@@ -66,7 +66,7 @@ impl<'g> Mechanism<'g, '_> {
 
     /// Whether all distances are coordinates of the mechanism: those of the inboard joints alone.
     pub fn has_distances(&self) -> bool {
-        self.coordinates.iter().all(|owner| matches!(owner, Owner::Joint(..)))
+        !self.coordinates.iter().any(|owner| matches!(owner, Owner::Body(..)))
     }
 
     /// A joint's coordinate, whether it is a coordinate of the mechanism or not: then an angle of space is between −π and π.

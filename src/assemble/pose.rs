@@ -127,6 +127,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
                     }
                 }
                 Owner::Joint(joint, coordinate) => self.joint(joint, coordinate)?,
+                Owner::State => 0.0,
             });
         }
         Ok(values)

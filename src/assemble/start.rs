@@ -65,6 +65,7 @@ impl<'g> Mechanism<'g, '_> {
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(self, joint, coordinate),
+            Owner::State => 0.0,
         };
         Ok(self.coordinates.iter().map(value).collect())
     }
@@ -107,6 +108,7 @@ impl<'g> Mechanism<'g, '_> {
                 _ => {}
             }
         }
+        self.states_at_start(description, wanted, &mut found)?;
         Ok(found)
     }
 

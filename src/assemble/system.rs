@@ -130,6 +130,8 @@ pub struct CoordinateInfo {
     pub scale: f64,
     /// Whether it tells of a rotation (an angle, an Euler parameter) rather than of a position.
     pub is_angle: bool,
+    /// Whether its velocity is a state, and the coordinate itself stands in no equation.
+    pub is_state: bool,
 }
 
 /// A constraint's name and owner.
@@ -247,6 +249,11 @@ impl System {
         let used = self.graph.symbols_of(&roots);
         let unused = |number: &usize| used.binary_search(&self.parameters[*number].symbol).is_err();
         (0..self.parameters.len()).filter(unused).collect()
+    }
+
+    /// The coordinates of the mechanism, without those of states.
+    pub fn coordinates_of_motion(&self) -> impl Iterator<Item = &CoordinateInfo> {
+        self.coordinates.iter().filter(|coordinate| !coordinate.is_state)
     }
 
     /// Whether an output depends on accelerations or multipliers.

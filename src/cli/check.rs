@@ -179,7 +179,7 @@ impl Counts {
     fn of(model: &Description) -> Result<Self, RunError> {
         let (Assembled { system, mobility, undetermined, shared, .. }, structure) = study::structure(model)?;
         let whole = Whole {
-            coordinates: system.coordinates.len(),
+            coordinates: system.coordinates_of_motion().count(),
             constraints: system.constraints.len(),
             degrees_of_freedom: mobility.degrees_of_freedom,
         };
@@ -221,7 +221,7 @@ impl Whole {
     fn of_parts(parts: &[Assembled]) -> (Self, String) {
         let sum = |of: fn(&Assembled) -> usize| parts.iter().map(of).sum();
         let numbers = Self {
-            coordinates: sum(|part| part.system.coordinates.len()),
+            coordinates: sum(|part| part.system.coordinates_of_motion().count()),
             constraints: sum(|part| part.system.constraints.len()),
             degrees_of_freedom: sum(|part| part.mobility.degrees_of_freedom),
         };

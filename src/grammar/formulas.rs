@@ -171,21 +171,6 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
-    /// What an effect measures that is not in the model; nothing where the name is of something else.
-    fn unread_measure(&self, name: &str) -> Option<Result<Symbol, NameError>> {
-        let (owner, member) = name.rsplit_once('.')?;
-        if self.model.body(owner).is_some() || self.model.joint(owner).is_some() {
-            return None;
-        }
-        let unread = self.unread.iter().position(|(known, _)| known == owner)?;
-        let measures = &self.unread[unread].1;
-        let found = measures.iter().find(|(measure, _)| measure.name() == member);
-        Some(match found {
-            Some(&(measure, _)) => Ok(Symbol::Sensor { effect: self.model.effects() + unread, measure }),
-            None => Err(unknown::no_measure(owner, member, measures)),
-        })
-    }
-
     /// The formula's dimension; what does not go together in it is reported.
     pub fn kind(&mut self, node: &Node, formula: &Formula, offset: usize) -> Kind {
         let mut mismatches = Vec::new();
@@ -203,13 +188,13 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// Dimensions of a table's argument and value.
-    fn table(&self, spline: Spline) -> [Option<Dimension>; 2] {
+    pub(super) fn table(&self, spline: Spline) -> [Option<Dimension>; 2] {
         let found = self.tables.iter().find(|table| table.spline == spline);
         found.map_or([None; 2], |table| table.dimensions)
     }
 
     /// The dimension of what a name stands for. An equation's multiplier is the force that goes with what it equates.
-    fn kind_of(&self, symbol: Symbol) -> Kind {
+    pub(super) fn kind_of(&self, symbol: Symbol) -> Kind {
         if let Symbol::Reaction { joint, component: ReactionComponent::Force } = symbol
             && let Some(left) = self.model.equated(joint)
         {
@@ -218,9 +203,15 @@ impl<S: SymbolTable> Reader<'_, S> {
             return equated.map_or(Kind::Any, |dimension| Kind::motion(dimension.conjugate()));
         }
         if let Symbol::Sensor { effect, measure } = symbol {
-            let unread = effect.checked_sub(self.model.effects()).and_then(|unread| self.unread.get(unread));
-            let measures = unread.map_or_else(|| self.model.measures(effect), |(_, measures)| measures.clone());
-            let dimension = measures.into_iter().find(|(known, _)| *known == measure).map(|(_, dimension)| dimension);
+            let measures = match effect.checked_sub(self.model.effects()) {
+                None => self.model.measures(effect),
+                Some(place) => match self.unread.get(place) {
+                    Some((_, measures)) => measures.clone(),
+                    None => self.declared.measures_of(place - self.unread.len()).to_vec(),
+                },
+            };
+            let found = measures.into_iter().find(|(known, _)| *known == measure && measure.has_unit());
+            let dimension = found.map(|(_, dimension)| dimension);
             return dimension.map_or(Kind::Any, Kind::motion);
         }
         names::kind(symbol, &self.kinds)

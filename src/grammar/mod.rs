@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
+pub(crate) mod declared;
 pub(crate) mod dimension;
 pub(crate) mod display_unit;
 mod element;
@@ -24,6 +25,7 @@ pub(crate) mod tolerance;
 pub(crate) mod unit;
 mod unit_names;
 pub(crate) mod unknown;
+mod unread;
 pub(crate) mod values;
 mod vectors;
 

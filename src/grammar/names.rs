@@ -7,7 +7,7 @@ use super::motions::{
     ANGULAR_MOTIONS, ATTITUDE, AXES, JOINT_MOTIONS, MOTIONS, Motion, joint_dimension, motion_dimension,
 };
 use super::quantity::Dimension;
-use super::symbols::{Coordinate, EnergyKind, PointRef, ReactionComponent, Symbol, SymbolTable, TimeOrder};
+use super::symbols::{Coordinate, EnergyKind, PointRef, ReactionComponent, Sensor, Symbol, SymbolTable, TimeOrder};
 
 /// The ground's name.
 pub const GROUND: &str = "ground";
@@ -72,7 +72,8 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
             .or_else(|| joint_motion(table, owner, member))
             .or_else(|| reaction(table, owner, member, None))
             .or_else(|| measure(table, owner, member))
-            .or_else(|| deviation(table, name)),
+            .or_else(|| deviation(table, name))
+            .or_else(|| state(table, name)),
         (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
             .or_else(|| angular_motion(table, owner, member, part))
             .or_else(|| reaction(table, owner, member, Some(part)))
@@ -87,6 +88,9 @@ fn of_instance(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     table.instances().next()?;
     if let Some(index) = table.parameter(name) {
         return Some(Symbol::Parameter(index));
+    }
+    if let Some(state) = state(table, name) {
+        return Some(state);
     }
     let (owner, member) = name.rsplit_once('.')?;
     if let Some(port) = table.port(owner) {
@@ -176,7 +180,12 @@ fn word(table: &impl SymbolTable, word: &str) -> Option<Symbol> {
     if let Some((_, kind)) = ENERGIES.iter().find(|(energy, _)| *energy == word) {
         return Some(Symbol::Energy(*kind));
     }
-    table.parameter(word).map(Symbol::Parameter)
+    table.parameter(word).map(Symbol::Parameter).or_else(|| state(table, word))
+}
+
+/// What has a value is called like it.
+fn state(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
+    measure_of(table, table.state(name)?, Sensor::VALUE.name())
 }
 
 fn body_motion(table: &impl SymbolTable, body: &str, member: &str) -> Option<Symbol> {
@@ -256,7 +265,10 @@ fn torque_at(table: &impl SymbolTable, joint: &str, about: &str) -> Option<Symbo
 }
 
 fn measure(table: &impl SymbolTable, effect: &str, member: &str) -> Option<Symbol> {
-    let effect = table.effect(effect)?;
+    measure_of(table, table.effect(effect)?, member)
+}
+
+fn measure_of(table: &impl SymbolTable, effect: usize, member: &str) -> Option<Symbol> {
     let measures = table.measures(effect);
     let (measure, _) = measures.into_iter().find(|(measure, _)| measure.name() == member)?;
     Some(Symbol::Sensor { effect, measure })
@@ -273,6 +285,9 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
         (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
         (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
         (Context::Effect, Symbol::Sensor { measure, .. }) if measure.is_motion() => None,
+        (Context::Equation, Symbol::Sensor { measure, .. }) if measure.is_motion() => {
+            Some("a joint constrains positions, which no state gives: let a `servo` follow it")
+        }
         (_, Symbol::Sensor { .. }) => {
             Some("what an effect does is known only when the motion is; only outputs may use it")
         }

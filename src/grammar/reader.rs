@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use symdiff::Spline;
 
+use super::declared::DeclaredStates;
 use super::dimension::Kind;
 use super::mapping::Grammar;
 use super::names;
@@ -27,6 +28,8 @@ pub struct Reader<'d, S> {
     /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
     /// the others had errors.
     pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
+    /// States that are known before they are read.
+    pub declared: DeclaredStates,
     /// A name of its own that the formula being read may use, and its dimension.
     pub variable: Option<(&'static str, Dimension)>,
     /// Dimension of each parameter.

@@ -23,6 +23,8 @@ pub trait SymbolTable {
     fn effects(&self) -> usize;
     /// The effect of a name.
     fn effect(&self, name: &str) -> Option<usize>;
+    /// The effect of a name, which may have a value by its name alone.
+    fn state(&self, name: &str) -> Option<usize>;
     /// What an effect measures.
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.
@@ -292,6 +294,7 @@ impl OnJoint {
 pub struct Sensor {
     name: &'static str,
     is_motion: bool,
+    has_unit: bool,
 }
 
 impl Sensor {
@@ -314,14 +317,25 @@ impl Sensor {
     /// Between two surfaces.
     pub const FRICTION: Self = Self::of_force("friction");
 
-    /// What follows from positions and velocities alone, so that the effect's own formulas may refer to it.
+    /// Of a state; the name of the effect alone stands for it too.
+    pub const VALUE: Self = Self::of_motion("value");
+    /// How fast a state changes.
+    pub const CHANGE: Self = Self::of_force("rate");
+
+    /// What follows from positions, velocities and states alone, so that the effect's own formulas may refer to it.
     pub const fn of_motion(name: &'static str) -> Self {
-        Self { name, is_motion: true }
+        Self { name, is_motion: true, has_unit: true }
     }
 
     /// What follows from the forces.
     pub const fn of_force(name: &'static str) -> Self {
-        Self { name, is_motion: false }
+        Self { name, is_motion: false, has_unit: true }
+    }
+
+    /// The same where nothing says in which unit.
+    #[must_use]
+    pub const fn of_unknown_unit(self) -> Self {
+        Self { has_unit: false, ..self }
     }
 
     /// What pushes a joint's coordinate.
@@ -337,9 +351,14 @@ impl Sensor {
         self.name
     }
 
-    /// Whether it follows from positions and velocities alone.
+    /// Whether it follows from positions, velocities and states alone.
     pub fn is_motion(self) -> bool {
         self.is_motion
+    }
+
+    /// Whether its unit is known.
+    pub fn has_unit(self) -> bool {
+        self.has_unit
     }
 }
 

@@ -10,7 +10,7 @@ mod simulation;
 mod start;
 mod statistics;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::Formula;
 
@@ -81,6 +81,8 @@ pub struct Description {
     pub instances: Vec<Instance>,
     /// Ports of instances: the body or the point that each is.
     pub ports: BTreeMap<String, String>,
+    /// Effects that are states, or have some.
+    pub states: BTreeSet<String>,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -205,6 +207,7 @@ impl Description {
             statistics: Statistics::default(),
             instances: Vec::new(),
             ports: BTreeMap::new(),
+            states: BTreeSet::new(),
             places: Places::default(),
         }
     }

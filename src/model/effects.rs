@@ -10,6 +10,15 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
     for entry in entries {
         reader.name(entry, "an effect");
         let kind = EffectKind::read(reader, &entry.key, &entry.value, entry.key_span.clone());
-        reader.model.effects.extend(kind.map(|kind| Effect { name: entry.key.clone(), kind }));
+        add(reader, &entry.key, kind);
     }
+}
+
+/// Adds an effect, if it could be read.
+pub fn add(reader: &mut Reader, name: &str, kind: Option<EffectKind>) {
+    let Some(kind) = kind else { return };
+    if !kind.states().is_empty() {
+        reader.model.states.insert(name.to_owned());
+    }
+    reader.model.effects.push(Effect { name: name.to_owned(), kind });
 }

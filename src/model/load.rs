@@ -11,10 +11,11 @@ use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, joints, motion_times, parameters, requests, requirements, space, statistics,
-    tables, teeth,
+    analysis, bodies, bounds, effects, joints, motion_times, parameters, requests, requirements, space, states,
+    statistics, tables, teeth,
 };
 use crate::grammar::Lengths;
+use crate::grammar::declared::DeclaredStates;
 use crate::grammar::names::GROUND;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
@@ -195,6 +196,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         model,
         variable: None,
         unread: Vec::new(),
+        declared: DeclaredStates::default(),
         kinds: Vec::new(),
         corners: Vec::new(),
         varies: Vec::new(),
@@ -239,6 +241,7 @@ fn describe(
     let body_entries = section(&mut reader, fields.get("bodies"), "bodies");
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
+    let state_entries = section(&mut reader, fields.get("states"), "states");
     let output_entries = section(&mut reader, fields.get("outputs"), "outputs");
     let requirement_entries = section(&mut reader, fields.get("requirements"), "requirements");
     analysis::read(&mut reader, &fields);
@@ -260,8 +263,10 @@ fn describe(
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);
     bodies::read(&mut reader, body_entries);
+    states::declare(&mut reader, state_entries, effect_entries);
     joints::read(&mut reader, joint_entries);
     effects::read(&mut reader, effect_entries);
+    states::read(&mut reader, state_entries);
     reader.model.initial = requests::start_values(&mut reader, initial_entries, true);
     reader.model.guess = requests::start_values(&mut reader, guess_entries, false);
     let limits = fields.get("limits").map(|node| (node, fields.key_span("limits")));
@@ -294,6 +299,7 @@ fn describe(
     }
     let section = fields.get("statistics").map(|node| (node, fields.key_span("statistics")));
     statistics::read(&mut reader, section);
+    states::check(&mut reader, &fields, effect_entries);
     analysis::check_requests(&mut reader, &fields);
     if robot.is_none() {
         not_empty(&mut reader, &fields, body_entries, output_entries);

@@ -29,6 +29,7 @@ mod requirements;
 mod scenes;
 mod scheme;
 mod space;
+mod states;
 mod statistics;
 mod tables;
 mod teeth;

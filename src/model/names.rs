@@ -65,6 +65,10 @@ impl SymbolTable for Description {
         self.effects.iter().position(|effect| effect.name == name)
     }
 
+    fn state(&self, name: &str) -> Option<usize> {
+        self.states.contains(name).then(|| self.effect(name)).flatten()
+    }
+
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)> {
         self.effects[effect].kind.measures()
     }

@@ -192,7 +192,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         model: study.description.name.clone(),
         mbint: env!("CARGO_PKG_VERSION").to_owned(),
         formulation: system.formulation.name().to_owned(),
-        coordinates: system.q.len(),
+        coordinates: system.coordinates_of_motion().count(),
         constraints: system.lambda.len(),
         degrees_of_freedom: mobility.degrees_of_freedom,
         redundant_constraints: names(&mobility.redundant),

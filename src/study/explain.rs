@@ -56,7 +56,7 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
         space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
         analysis: None,
         formulation: format!("{} coordinates: {}", system.formulation.name(), system.formulation.why),
-        coordinates: system.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),
+        coordinates: system.coordinates_of_motion().map(|coordinate| coordinate.name.clone()).collect(),
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,
         redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),

@@ -41,6 +41,7 @@ effects! {
     preload::Preload,
     beam::Beam,
     belt::Belt,
+    state::State,
 }
 
 /// Something that an effect measures, and what it is.
@@ -92,6 +93,20 @@ pub trait ForceElement: Element {
     fn loading_joint(&self) -> Option<(usize, &Formula)> {
         None
     }
+
+    /// The states that it brings; [`Forces::state_rate`] says how they change.
+    fn states(&self) -> Vec<StateVariable<'_>> {
+        Vec::new()
+    }
+}
+
+/// A state of an effect.
+#[derive(Clone, Copy, Debug)]
+pub struct StateVariable<'a> {
+    /// By which formulas know it.
+    pub sensor: Sensor,
+    /// Its value at the start, of parameters.
+    pub initial: &'a Formula,
 }
 
 /// What an effect acts on.

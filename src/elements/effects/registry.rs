@@ -142,6 +142,13 @@ macro_rules! effects {
                 }
             }
 
+            /// The states that it brings.
+            pub fn states(&self) -> Vec<StateVariable<'_>> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::states(effect),)*
+                }
+            }
+
             /// The joint whose reaction its force grows with, and the factor.
             pub fn loading_joint(&self) -> Option<(usize, &symdiff::Formula)> {
                 match self {

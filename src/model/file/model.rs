@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 
 use super::*;
 use crate::elements::JointKind;
-use crate::elements::effects::{EffectKind, Impact};
+use crate::elements::effects::{EffectKind, Impact, State};
 
 grammar! {
     /// A mechanism, its uncertain parameters, and what is asked of it.
@@ -36,6 +36,8 @@ grammar! {
         joints: Option<IndexMap<String, JointKind>>,
         /// What moves the bodies.
         effects: Option<IndexMap<String, EffectKind>>,
+        /// Numbers that change as formulas say, beside the motion: integrals, currents, what a controller remembers.
+        states: Option<IndexMap<String, State>>,
         /// What is done with the mechanism; by default its `motion`.
         analysis: Option<AnalysisName>,
         /// What is asked of `analysis: modes`.
@@ -78,6 +80,8 @@ grammar! {
         joints: Option<IndexMap<String, JointKind>>,
         /// Instead of the model's of the same name, or on top.
         effects: Option<IndexMap<String, EffectKind>>,
+        /// Instead of the model's of the same name, or on top.
+        states: Option<IndexMap<String, State>>,
         /// Instead of the model's.
         analysis: Option<AnalysisName>,
         /// Instead of the model's.

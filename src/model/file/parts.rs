@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 
 use super::*;
 use crate::elements::JointKind;
-use crate::elements::effects::EffectKind;
+use crate::elements::effects::{EffectKind, State};
 use crate::grammar::mapping::schema_only;
 
 grammar! {
@@ -23,6 +23,8 @@ grammar! {
         joints: Option<IndexMap<String, JointKind>>,
         /// What moves its bodies.
         effects: Option<IndexMap<String, EffectKind>>,
+        /// Numbers of its own that change as formulas say.
+        states: Option<IndexMap<String, State>>,
         /// Coordinates and velocities at the start.
         initial: Option<IndexMap<String, StartFile>>,
         /// Where assembly begins to look for coordinates.

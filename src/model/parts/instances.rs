@@ -16,7 +16,7 @@ use crate::syntax::yaml::{Entry, Node, Value};
 const MAX_DEPTH: usize = 20;
 
 /// Sections whose entries an instance has under its own name.
-const NAMED: [&str; 5] = ["bodies", "joints", "effects", "initial", "guess"];
+const NAMED: [&str; 6] = ["bodies", "joints", "effects", "states", "initial", "guess"];
 
 /// An instance to be written out.
 struct New {
@@ -191,7 +191,7 @@ impl Writer<'_, '_> {
         scope: &Arc<Scope>,
     ) {
         let copies = NAMED.map(|section| self.repeated(&entries_of(section), shift, Some(scope)));
-        let [bodies, mut joints, mut effects, initial, guess] = copies;
+        let [bodies, mut joints, mut effects, states, initial, guess] = copies;
         let (ground, mut bodies): (Vec<Entry>, Vec<Entry>) = bodies.into_iter().partition(|body| body.key == GROUND);
         if scope.ground().is_some_and(|ground| ground.strip_prefix(prefix) == Some(GROUND)) {
             let points = ground.first().and_then(|ground| ground.value.get("points")).cloned();
@@ -220,7 +220,7 @@ impl Writer<'_, '_> {
         if placement.turns() {
             self.refuse_directions(&effects);
         }
-        for (section, entries) in NAMED.into_iter().zip([bodies, joints, effects, initial, guess]) {
+        for (section, entries) in NAMED.into_iter().zip([bodies, joints, effects, states, initial, guess]) {
             for entry in entries {
                 let key = scope.full(&entry.key);
                 self.add(section, Entry { key, ..entry });
@@ -250,7 +250,7 @@ impl Writer<'_, '_> {
     /// Reports instances that are called like something else, and names that are there twice.
     fn check_names(&mut self, instances: &[Entry]) {
         for instance in instances {
-            let sections = ["bodies", "joints", "effects", "parameters"];
+            let sections = ["bodies", "joints", "effects", "states", "parameters"];
             let known = sections.iter().flat_map(|section| self.entries(section));
             let other = known.into_iter().find(|entry| entry.key == instance.key).map(|entry| entry.key_span.clone());
             let other = other.or_else(|| self.definitions.get(&instance.key).map(|entry| entry.key_span.clone()));
@@ -258,7 +258,7 @@ impl Writer<'_, '_> {
                 self.twice(&instance.key, &instance.key_span, &other);
             }
         }
-        for section in ["parameters", "bodies", "joints", "effects", "initial", "guess"] {
+        for section in ["parameters", "bodies", "joints", "effects", "states", "initial", "guess"] {
             for (key, span, first) in duplicates(self.entries(section)) {
                 self.twice(&key, &span, &first);
             }

@@ -13,16 +13,17 @@ use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// Sections whose entries can be left out by name.
-const NAMED: [&str; 3] = ["effects", "joints", "outputs"];
+const NAMED: [&str; 4] = ["effects", "joints", "states", "outputs"];
 
 /// Those of what moves and acts, and that of what is observed.
-const PARTS: &[&str] = &["effects", "joints"];
+const PARTS: &[&str] = &["effects", "joints", "states"];
 const OUTPUTS: &[&str] = &["outputs"];
 
 /// Sections of which a scene's entries replace the model's of the same name, or come on top.
-const BY_NAME: [(&str, &str); 6] = [
+const BY_NAME: [(&str, &str); 7] = [
     ("joints", "joints"),
     ("effects", "effects"),
+    ("states", "states"),
     ("initial", "start values"),
     ("guess", "start values"),
     ("outputs", "outputs"),

@@ -43,7 +43,9 @@ impl Motion for JetClosure<'_> {
 /// What counts as one of each line of a state, of velocities as far as nothing is known yet.
 pub(super) fn sizes(simulator: &Simulator, duration: f64) -> Vec<f64> {
     let scale = &simulator.program.scale;
-    scale.iter().copied().chain(scale.iter().map(|scale| scale / duration)).collect()
+    // Nothing depends on the coordinate whose velocity a state is.
+    let positions = simulator.system.coordinates.iter().map(|c| if c.is_state { f64::INFINITY } else { c.scale });
+    positions.chain(scale.iter().map(|scale| scale / duration)).collect()
 }
 
 /// A tile of samples between two steps.

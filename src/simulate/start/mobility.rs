@@ -30,7 +30,8 @@ pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobil
         Some(generic) if generic.len() <= at_start.len() => generic,
         _ => at_start.clone(),
     };
-    let degrees_of_freedom = (system.q.len() + redundant.len()).saturating_sub(system.lambda.len());
+    let degrees_of_freedom =
+        (system.coordinates_of_motion().count() + redundant.len()).saturating_sub(system.lambda.len());
     let singular_at_start = if at_start.len() > redundant.len() { at_start } else { Vec::new() };
     Mobility { degrees_of_freedom, redundant, singular_at_start }
 }

@@ -1,0 +1,72 @@
+//! States: velocities of coordinates of their own, with mass 1 and their rate for a force.
+
+use symdiff::{Expr, Scalar};
+
+use super::mechanism::{Mechanism, Owner};
+use super::system::{CoordinateInfo, Start};
+use crate::grammar::Sensor;
+use crate::model::{Description, Effect, TimeOrder};
+use crate::multibody::{BuildError, Context};
+
+impl<'g> Mechanism<'g, '_> {
+    /// The coordinates of all states; what they are called in formulas.
+    pub fn add_states(&mut self, effects: &[Effect]) {
+        for (effect, Effect { name, kind }) in effects.iter().enumerate() {
+            for (place, state) in kind.states().into_iter().enumerate() {
+                let name = match state.sensor.name() {
+                    value if value == Sensor::VALUE.name() => name.clone(),
+                    other => format!("{name}.{other}"),
+                };
+                let index = self.add_coordinate(Owner::State, &name);
+                self.states.insert((effect, place), index);
+                self.sensors.insert((effect, state.sensor), self.v[index]);
+            }
+        }
+    }
+
+    /// Their values at the start, and zero for the coordinates themselves.
+    pub fn states_at_start(
+        &self,
+        description: &Description,
+        wanted: TimeOrder,
+        found: &mut [Option<Scalar<'g>>],
+    ) -> Result<(), BuildError> {
+        for (&(effect, place), &index) in &self.states {
+            found[index] = Some(match wanted {
+                TimeOrder::Velocity => {
+                    let states = description.effects[effect].kind.states();
+                    self.formula(states[place].initial, Context::Parameters)?
+                }
+                _ => self.g.number(0.0),
+            });
+        }
+        Ok(())
+    }
+
+    /// Typical sizes of the states, over a second: by their values and rates at the nominal start, at least 1.
+    pub fn scale_states(&self, rates: &[Scalar<'g>], start: &Start, duration: f64, coordinates: &mut [CoordinateInfo]) {
+        if self.states.is_empty() {
+            return;
+        }
+        let zero = self.g.number(0.0).expr();
+        let graph = self.g.graph();
+        let nominal = |symbol: Expr| self.uncertain.iter().find(|p| p.symbol == symbol).map_or(0.0, |p| p.nominal);
+        let values = |exprs: &[Expr]| graph.evaluate(exprs, nominal);
+        let guess = values(&start.guess);
+        let speeds = values(&start.velocity.iter().map(|v| v.unwrap_or(zero)).collect::<Vec<_>>());
+        let at_start = |symbol: Expr| {
+            let place = |list: &[Scalar<'g>]| list.iter().position(|own| own.expr() == symbol);
+            match (place(&self.q), place(&self.v)) {
+                (Some(place), _) => guess[place],
+                (_, Some(place)) => speeds[place],
+                _ => nominal(symbol),
+            }
+        };
+        let places: Vec<usize> = self.states.values().copied().collect();
+        let changes = graph.evaluate(&places.iter().map(|&place| rates[place].expr()).collect::<Vec<_>>(), at_start);
+        for (place, change) in places.into_iter().zip(changes) {
+            let sizes = [speeds[place].abs(), (change * duration).abs()];
+            coordinates[place].scale = sizes.into_iter().filter(|size| size.is_finite()).fold(1.0, f64::max);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! A state: a number that changes as a formula says, beside the mechanism's coordinates.
+//!
+//! ```text
+//! ẏ = f(t, q, v, y)        in the unit of y over s;      y = y₀ at the start
+//! ```
+//!
+//! y is the velocity of a coordinate of its own, with mass 1 and the force f, so that schemes, jets and enclosures take it as they
+//! take every velocity (decision 0100). Nothing depends on that coordinate itself.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use symdiff::Formula;
+
+use super::{ForceElement, Forces, StateVariable, TypedSensor};
+use crate::grammar::quantity::Dimension;
+use crate::grammar::values::Number;
+use crate::grammar::formulas::Written;
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
+use crate::multibody::BuildError;
+
+/// A number with its rate of change.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// f, may depend on t, positions, velocities and states.
+    pub rate: Formula,
+    /// y₀, of parameters.
+    pub initial: Formula,
+    /// Of y, where it is known.
+    pub dimension: Option<Dimension>,
+}
+
+impl ForceElement for State {
+    const SENSORS: &'static [TypedSensor] = &[
+        (Sensor::VALUE.of_unknown_unit(), Dimension::NUMBER),
+        (Sensor::CHANGE.of_unknown_unit(), Dimension::NUMBER),
+    ];
+
+    fn sensors(&self) -> Vec<TypedSensor> {
+        match self.dimension {
+            None => Self::SENSORS.to_vec(),
+            Some(dimension) => {
+                vec![(Sensor::VALUE, dimension), (Sensor::CHANGE, dimension.per(Dimension::TIME))]
+            }
+        }
+    }
+
+    fn states(&self) -> Vec<StateVariable<'_>> {
+        vec![StateVariable { sensor: self.sensors()[0].0, initial: &self.initial }]
+    }
+
+    fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
+        let rate = forces.value(&self.rate)?;
+        forces.sensor(self.sensors()[1].0, rate);
+        forces.state_rate(0, rate);
+        Ok(())
+    }
+}
+
+impl State {
+    /// The dimension of what a mapping with `rate` and `initial` describes, as far as it is known without what is read later; nothing
+    /// is reported.
+    pub fn dimension_of<S: SymbolTable>(reader: &mut Reader<'_, S>, mapping: &Node) -> Option<Dimension> {
+        let initial = mapping.get("initial").and_then(|node| reader.quietly(node));
+        let rate = || Some(reader.quietly(mapping.get("rate")?)?.times(Dimension::TIME));
+        initial.or_else(rate)
+    }
+}
+
+impl Group for State {
+    fn key_names() -> Vec<&'static str> {
+        vec!["rate", "initial"]
+    }
+
+    fn keys(generator: &mut SchemaGenerator) -> Vec<Key> {
+        let schema = generator.subschema_for::<Number>();
+        let key = |name, doc, required: bool| Key {
+            name,
+            doc,
+            unit: "",
+            required,
+            default: (!required).then(|| 0.into()),
+            default_in_words: None,
+            schema: schema.clone(),
+            requirement: None,
+            keys: Vec::new(),
+        };
+        vec![
+            key("rate", "How fast it changes: a formula of t, parameters, positions, velocities and states, in its unit over s.", true),
+            key("initial", "Its value at the start, a formula of parameters; its unit is that of the state.", false),
+        ]
+    }
+
+    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
+        let rate = reader.required(fields, "rate").and_then(|node| any_unit(reader, node, Context::Effect));
+        let initial = match fields.get("initial") {
+            Some(node) => any_unit(reader, node, Context::Constant),
+            None => Some((Formula::number(0.0), None)),
+        };
+        let ((rate, change), (initial, own)) = (rate?, initial?);
+        if let (Some(change), Some(own)) = (change, own) {
+            let node = fields.get("rate")?;
+            reader.check_fits(&node.span, change, own.per(Dimension::TIME));
+        }
+        let dimension = own.or_else(|| change.map(|change| change.times(Dimension::TIME)));
+        Some(Self { rate, initial, dimension })
+    }
+
+    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+        found.extend([&self.rate, &self.initial]);
+    }
+
+    fn references<'a>(&'a mut self, _found: &mut Vec<Reference<'a>>) {}
+
+    fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
+        None
+    }
+}
+
+/// A formula or a number with its unit, of any dimension.
+fn any_unit<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    node: &Node,
+    context: Context,
+) -> Option<(Formula, Option<Dimension>)> {
+    let (formula, dimension) = match reader.written(node)? {
+        Written::Quantity { value, unit } => (Formula::number(unit.to_si(value)), Some(unit.dimension)),
+        Written::Formula(formula) => {
+            reader.check_names(node, &formula, 0, context).then_some(())?;
+            let dimension = reader.kind(node, &formula, 0).dimension();
+            (formula, dimension)
+        }
+    };
+    reader.require(node, &formula, |_| true, "");
+    Some((formula, dimension))
+}
+
+impl Element for State {
+    const KEYWORD: &'static str = "state";
+    const WHAT: &'static str = "a state";
+    const DESCRIPTION: &'static str = "A number with its rate of change: an integral, a current, a filter's value.";
+    const EQUATIONS: &'static [&'static str] = &["ẏ = rate"];
+    const SOURCE: &'static str = "Brüls & Arnold, J. Comput. Nonlinear Dynam. 3 (2008) 041007";
+    const EXAMPLE: &'static str = "{ rate: arm.angle - 0.1*sin(2*t), initial: 0.2 rad*s }";
+    const SHORT: Option<&'static str> = None;
+}
+
+impl JsonSchema for State {
+    fn schema_name() -> Cow<'static, str> {
+        "State".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Self::object(generator)
+    }
+}

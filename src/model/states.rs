@@ -1,0 +1,127 @@
+//! `states:`.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use super::description::Analysis;
+use super::effects;
+use super::names::Reader;
+use crate::elements::effects::State;
+use crate::grammar::reader::Fields;
+use crate::grammar::{Element, Sensor};
+use crate::syntax::suggest::clip;
+use crate::syntax::yaml::{Entry, Node};
+
+/// How often units are looked for that follow from one another.
+const MOST_PASSES: usize = 8;
+
+/// Makes the names of states known, which everything may speak of: those of the section, and of effects that are states.
+pub fn declare(reader: &mut Reader, entries: &[Entry], effects: &[Entry]) {
+    let among_effects = effects.iter().filter_map(|entry| Some((entry, entry.value.get(State::KEYWORD)?)));
+    let all: Vec<(&Entry, &Node)> = entries.iter().map(|entry| (entry, &entry.value)).chain(among_effects).collect();
+    all.iter().for_each(|(entry, _)| reader.declared.add(&entry.key));
+    for _ in 0..MOST_PASSES {
+        let mut found = false;
+        for (entry, node) in &all {
+            if let Some(place) = reader.declared.without_unit(&entry.key)
+                && let Some(dimension) = State::dimension_of(reader, node)
+            {
+                reader.declared.set(place, dimension);
+                found = true;
+            }
+        }
+        if !found {
+            break;
+        }
+    }
+}
+
+/// Reads the states, once all else is known that their rates may speak of.
+pub fn read(reader: &mut Reader, entries: &[Entry]) {
+    report_loops(reader, entries);
+    for entry in entries {
+        if !reader.name(entry, "a state") {
+            continue;
+        }
+        let is_effect = reader.model.effects.iter().any(|effect| effect.name == entry.key);
+        let is_parameter = reader.model.parameters.iter().any(|parameter| parameter.name == entry.key);
+        if is_effect || is_parameter {
+            let other = if is_effect { "an effect" } else { "a parameter" };
+            let message = format!("{other} is called `{}` too", clip(&entry.key));
+            reader.error(entry.key_span.clone(), message, "give the state another name".to_owned());
+            continue;
+        }
+        let state = State::read_node(reader, &entry.value, entry.key_span.clone());
+        effects::add(reader, &entry.key, state.map(Into::into));
+    }
+}
+
+/// Reports rates that depend on one another.
+fn report_loops(reader: &mut Reader, entries: &[Entry]) {
+    let suffix = format!(".{}", Sensor::CHANGE.name());
+    let text = |entry: &Entry| entry.value.get("rate").and_then(Node::scalar).map(|scalar| scalar.text.clone());
+    let of_rates: Vec<(&Entry, String)> = entries
+        .iter()
+        .filter_map(|entry| Some((entry, text(entry)?)))
+        .filter(|(_, text)| text.contains(&suffix))
+        .collect();
+    let mut needs: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (entry, text) in &of_rates {
+        let is_of = |name: &str| {
+            let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || matches!(c, '_' | '.'));
+            text.match_indices(name).any(|(at, _)| {
+                !is_part(text[..at].chars().next_back()) && !is_part(text[at + name.len()..].chars().next())
+            })
+        };
+        let others = of_rates.iter().map(|(other, _)| other.key.as_str());
+        needs.insert(&entry.key, others.filter(|other| is_of(&format!("{other}{suffix}"))).collect());
+    }
+    let mut reported = BTreeSet::new();
+    for (entry, _) in &of_rates {
+        let Some(circle) = circle(&needs, &entry.key).filter(|circle| circle.iter().all(|name| reported.insert(*name)))
+        else {
+            continue;
+        };
+        let names = circle.iter().chain(&circle[..1]).map(|name| format!("`{}{suffix}`", clip(name)));
+        let message = format!("rates of states depend on one another: {}", names.collect::<Vec<_>>().join(" → "));
+        let help = "a rate may depend on states, not on rates in a circle: solve for one of them by hand".to_owned();
+        let place = entry.value.get("rate").map_or(&entry.key_span, |node| &node.span).clone();
+        reader.error(place, message, help);
+    }
+}
+
+/// A shortest path through what is needed that comes back to its beginning.
+fn circle<'n>(needs: &BTreeMap<&'n str, Vec<&'n str>>, first: &'n str) -> Option<Vec<&'n str>> {
+    let mut came_from: BTreeMap<&str, &str> = BTreeMap::new();
+    let mut next = VecDeque::from([first]);
+    while let Some(name) = next.pop_front() {
+        for &other in needs.get(name).into_iter().flatten() {
+            if other == first {
+                let mut path = vec![name];
+                while path[path.len() - 1] != first {
+                    path.push(came_from[path[path.len() - 1]]);
+                }
+                path.reverse();
+                return Some(path);
+            }
+            if !came_from.contains_key(other) {
+                came_from.insert(other, name);
+                next.push_back(other);
+            }
+        }
+    }
+    None
+}
+
+/// Reports states where nothing moves in time.
+pub fn check(reader: &mut Reader, fields: &Fields, effects: &[Entry]) {
+    if reader.model.states.is_empty()
+        || (reader.model.analysis == Analysis::Motion && !reader.model.starts_at_equilibrium)
+    {
+        return;
+    }
+    let of_effects = effects.iter().find(|entry| reader.model.states.contains(&entry.key));
+    let place = of_effects.map_or_else(|| fields.key_span("states"), |entry| entry.key_span.clone());
+    let help =
+        "states change in time: leave them out here, e.g. in a scene with `without`, or ask for `analysis: motion`";
+    reader.error(place, "states belong to a motion from a given start", help.to_owned());
+}
