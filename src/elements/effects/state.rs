@@ -5,7 +5,7 @@
 //! ```
 //!
 //! y is the velocity of a coordinate of its own, with mass 1 and the force f, so that schemes, jets and enclosures take it as they
-//! take every velocity (decision 0100). Nothing depends on that coordinate itself.
+//! take every velocity (decision 0082). Nothing depends on that coordinate itself.
 
 use std::borrow::Cow;
 
