@@ -1,9 +1,8 @@
 //! Guesses of bodies that have no coordinates of their own, in joint coordinates.
 //!
 //! Such a guess says where its body would be looked for if every body had coordinates: walked from the ground with what is named, as in
-//! absolute coordinates. What its inboard joint measures there is where the joint's coordinate is looked for.
-
-use std::collections::BTreeSet;
+//! absolute coordinates. What the inboard joints measure there is where their coordinates are looked for: those of all children, so that
+//! a loop is closed from the same place, and in the same branch.
 
 use symdiff::{Builder, Expr};
 
@@ -13,17 +12,16 @@ use crate::model::{Description, StartValue};
 use crate::multibody::BuildError;
 
 impl Mechanism<'_, '_> {
-    /// Notes where to look for the inboard joints' coordinates of children that `guess` names.
+    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.
     pub fn guess_children(&mut self, description: &Description) -> Result<(), BuildError> {
-        let named = description.guess.iter().filter_map(|value| match value {
+        let mut named = description.guess.iter().filter_map(|value| match value {
             StartValue::Coordinate { body, .. } | StartValue::Orientation { body, .. } => Some(*body),
             _ => None,
         });
-        let children: BTreeSet<usize> = named.filter(|&body| self.is_child(body)).collect();
-        if children.is_empty() {
+        if !named.any(|body| self.is_child(body)) {
             return Ok(());
         }
         let builder = Builder::new();
@@ -38,9 +36,7 @@ impl Mechanism<'_, '_> {
             let place = absolute.q.iter().position(|q| q.expr() == symbol);
             place.map_or_else(|| nominal(symbol), |place| places[place])
         };
-        for joint in
-            children.into_iter().filter_map(|body| self.tree.inboard[body].as_ref()).map(|inboard| inboard.joint)
-        {
+        for joint in self.tree.inboard.iter().flatten().map(|inboard| inboard.joint) {
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
                 let Some(&place) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
                 let measured = absolute.measured_coordinate(OnJoint { joint, coordinate })?.expr();
