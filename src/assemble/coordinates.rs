@@ -79,10 +79,13 @@ impl<'g> Mechanism<'g, '_> {
     pub fn definitions(&self, joint: usize) -> Result<Vec<Definition<'g>>, BuildError> {
         let kind = &self.joints[joint].kind;
         let mut rows = Vec::new();
-        if self.tree.contains(joint) {
-            return Ok(rows);
-        }
+        // What a tree turns and moves by is defined by that; a screw of a tree turns, and its displacement follows.
+        let is_of_tree = self.tree.contains(joint);
+        let is_screw = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
         for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
+            if is_of_tree && !(is_screw && coordinate == JointCoordinate::Displacement) {
+                continue;
+            }
             let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
             let (Some(between), Some(axis)) = (kind.between(), kind.axis_of(coordinate)) else { continue };
             let own = self.q[index];

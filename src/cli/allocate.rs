@@ -18,7 +18,6 @@ pub(super) fn allocate(args: AllocateArgs, console: &mut Console) -> Result<Stat
     };
     let folder = args.output.clone().unwrap_or_else(|| results_of(&model.name));
     prepare_folder(&folder).map_err(|error| Failure::Wrong(error.to_string()))?;
-    interrupt::listen();
     let progress = Progress::new(&model.name, !args.run.quiet);
     let options = study::Options {
         threads: args.run.threads.number(),

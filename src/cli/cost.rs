@@ -30,7 +30,6 @@ pub(super) fn cost(args: CostArgs, console: &mut Console) -> Result<Status, Fail
         progress: &|fraction| progress.set(fraction),
         interrupted: &interrupt::asked,
     };
-    interrupt::listen();
     // A study says itself what there is to keep.
     interrupt::keep_results(true);
     let study = match study::cost(&model, &options) {

@@ -109,6 +109,7 @@ pub fn main() -> ExitCode {
         }
     };
 
+    interrupt::listen();
     let mut console = Console::default();
     let executed = study::caught("the command", || execute(cli.command, &mut console));
     let executed = executed.unwrap_or_else(|error| Err(Failure::Failed(error.to_string())));

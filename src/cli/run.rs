@@ -63,7 +63,6 @@ pub(super) fn run_all(request: &Request, console: &mut Console, told: &mut Told)
         prepare_folder(&job.folder).map_err(|error| Failure::Wrong(error.to_string()))?;
     }
 
-    interrupt::listen();
     for (i, work) in work.iter().enumerate() {
         if i > 0 && !request.quiet {
             console.print("\n")?;

@@ -31,7 +31,6 @@ pub(super) fn snapshot(args: SnapshotArgs, console: &mut Console) -> Result<Stat
     let mut status = if loaded.is_complete { Status::Done } else { Status::Failed };
     let settings = Settings { threads: args.threads.number(), yes: args.yes, quiet: args.quiet, ..Settings::default() };
     let jobs = jobs(loaded.models, &args)?;
-    interrupt::listen();
     for job in &jobs {
         let run = || if args.check { job.check(&settings, console) } else { job.record(&settings, console) };
         // The other models run even if one fails.

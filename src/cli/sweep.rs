@@ -84,7 +84,6 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
     let mut status = Status::Done;
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();
-    interrupt::listen();
     for run in 0..runs {
         let inner = axes.last().map_or(1, |axis| axis.values.len());
         let place = if axes.len() == 2 { vec![run / inner, run % inner] } else { vec![run] };

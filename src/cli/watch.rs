@@ -27,7 +27,6 @@ pub(super) fn watch(mut request: Request, console: &mut Console) -> Result<Statu
     }
     let is_quiet = request.quiet;
     let mut known: BTreeMap<String, Snapshot> = BTreeMap::new();
-    interrupt::listen();
     loop {
         // Before they are read: what changes meanwhile is seen.
         let before = marks(&request);

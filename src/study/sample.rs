@@ -73,7 +73,7 @@ pub fn sample<T: Send, E: From<RunError> + Send>(
         let options = Options { methods: Some(Vec::new()), ..*options };
         let studies = subsystems.iter().zip(simulators).enumerate().map(|(number, (subsystem, simulator))| {
             let mut study = Study::new(&subsystem.description, simulator, &options)?;
-            study.stored = options.store.map(|store| Stored { store, subsystem: number });
+            study.stored = options.store.map(|store| Stored { store, subsystem: number, assembles_first: false });
             Ok(study)
         });
         let studies = studies.collect::<Result<Vec<Study>, RunError>>()?;

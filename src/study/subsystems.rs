@@ -131,7 +131,8 @@ pub(super) fn run(
     let studies = subsystems.iter().zip(studies).enumerate().map(|(number, (subsystem, (simulator, progress)))| {
         let mut study = Study::new(&subsystem.description, simulator, options)?;
         study.progress = progress;
-        study.stored = options.store.map(|store| Stored { store, subsystem: number });
+        study.stored =
+            options.store.map(|store| Stored { store, subsystem: number, assembles_first: options.skip_infeasible });
         if keep {
             study.keep_surrogate()?;
         }

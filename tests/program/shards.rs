@@ -271,3 +271,39 @@ fn the_disk_that_a_store_takes_is_told_before() {
     let (_, told) = place.run("run thrown.yaml -o out --store kept", 4);
     assert!(told.starts_with("thrown: 5 parts in kept (1"), "{told}");
 }
+
+/// A rod that is shorter than the height of its crank's end reaches no block.
+#[test]
+fn what_cannot_be_assembled_is_left_out_of_shards_too() {
+    let place = Place::new();
+    let text = "
+model: rod
+parameters: { length: 1 m ± 2%, throw: 0.99 m ± 2% }
+bodies:
+  crank: { mass: 1, inertia: 0.1, points: { A: [0, 0], B: [throw, 0] } }
+  rod: { mass: 1, inertia: 0.1, points: { B: [0, 0], C: [length, 0] } }
+  block: { mass: 1, coordinates: [x] }
+joints: { pin: { revolute: [ground, crank.A] }, knee: { revolute: [crank.B, rod.B] }, end: { revolute: [rod.C, block] } }
+effects: { weight: { gravity: { acceleration: [0, -9.81] } } }
+initial: { crank.angle: 80 deg, crank.angular_velocity: 0 }
+guess: { rod.angle: -70 deg }
+outputs: { x: block.x }
+simulation: { duration: 0.2, step: 2e-3, output_step: 0.05 }
+bounds: { chebyshev: { order: 2 }, scan: { points: 5 } }
+";
+    fs::write(place.path().join("rod.yaml"), text).unwrap();
+    let ran = place.command("run rod.yaml --skip-infeasible -o direct -q").output().unwrap();
+    assert!(matches!(ran.status.code(), Some(0 | 3)), "{}", String::from_utf8_lossy(&ran.stderr));
+    place.run("plan rod.yaml --skip-infeasible -o study --at-once 0", 0);
+    loop {
+        for index in 0..shards(&place, "study") {
+            place.run(&format!("shard study --index {index}"), 0);
+        }
+        let merged = place.command("merge study -o merged -q").output().unwrap();
+        if merged.status.code() != Some(75) {
+            assert_eq!(merged.status.code(), ran.status.code(), "{}", String::from_utf8_lossy(&merged.stderr));
+            break;
+        }
+    }
+    assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("merged")));
+}

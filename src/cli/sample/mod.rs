@@ -111,7 +111,6 @@ impl Sampling<'_> {
         let context = context(&model.files, &set, scene.as_deref(), false);
         let store = self.store.map(|kept| kept.open(&context)).transpose();
         let store = store.map_err(|error| Failure::Failed(format!("{name}: {error}")))?;
-        interrupt::listen();
         let progress = Progress::new(name, !self.quiet);
         let there = self.store.filter(|_| !self.quiet).map(KeptRun::there);
         let options = study::Options {

@@ -119,7 +119,6 @@ pub(super) fn shard(args: &ShardArgs, console: &mut Console) -> Result<Status, F
     }
     let context = context(&model, &asked.set, shard.scene.as_deref(), asked.skip_infeasible);
     let store = PartStore::open(folder.path(), &context, Missing::Simulate).map_err(|error| failed(&error))?;
-    super::interrupt::listen();
     let options = study::Options {
         // Samples are of no method.
         methods: if asked.points.is_some() { Some(Vec::new()) } else { methods(&asked)? },

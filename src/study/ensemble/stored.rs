@@ -23,6 +23,8 @@ pub(in crate::study) struct Stored<'a> {
     pub store: &'a PartStore,
     /// Number of the subsystem.
     pub subsystem: usize,
+    /// Whether samples that cannot be assembled are found before their tasks are deferred, since the box is cut by them.
+    pub assembles_first: bool,
 }
 
 fn of_store(error: StoreError) -> SimulationError {
@@ -133,6 +135,9 @@ impl Stored<'_> {
                     take(task, part.ok_or_else(lost)?)?;
                 }
                 None => {
+                    if self.assembles_first {
+                        motions.assemble(&task.samples)?;
+                    }
                     let (seconds, bytes) = (seconds_of(motions, &task), bytes_of(motions, &task));
                     self.store.defer(&name, &task, seconds, bytes).map_err(of_store)?;
                     deferred = true;
