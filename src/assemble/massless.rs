@@ -60,7 +60,7 @@ struct Balance<'m, 'g, 'd> {
 }
 
 impl<'g> Balance<'_, 'g, '_> {
-    /// Whether the force tells where the coordinate is.
+    /// Whether the force determines where the coordinate is.
     fn check(&self, unknown: &[Scalar<'g>], multipliers: &[Scalar<'g>]) -> Result<(), BuildError> {
         let found: FxHashSet<Expr> = symbols(self.m, &[self.force]).into_iter().collect();
         let depends = |on: &[Scalar<'g>]| on.iter().any(|symbol| found.contains(&symbol.expr()));
@@ -69,7 +69,7 @@ impl<'g> Balance<'_, 'g, '_> {
         } else if depends(multipliers) {
             "its force depends on reactions; give the body a small mass"
         } else if !depends(unknown) {
-            "no spring and no joint tells where it is; give the body a mass, or leave the coordinate out of its `coordinates`"
+            "no spring and no joint determines where it is; give the body a mass, or leave the coordinate out of its `coordinates`"
         } else {
             return Ok(());
         };

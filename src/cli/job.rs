@@ -116,7 +116,7 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     interrupt::keep_results(false);
     let resolved = || resolution(&bounds).max(verdicts::status(&summary));
     let status = if summary.failure.is_some() { Status::Failed } else { resolved() };
-    let stored = kept.map(|(kept, store)| kept.told(store));
+    let stored = kept.map(|(kept, store)| kept.found(store));
     Ok(Done { status, bounds, summary, files, folder, stored })
 }
 

@@ -67,7 +67,7 @@ impl KeptRun {
     }
 
     /// What was taken from the folder, and what was added.
-    pub fn told(&self, store: &PartStore) -> String {
+    pub fn found(&self, store: &PartStore) -> String {
         let (found, simulated) = store.counts();
         let found = count(found, "part", "parts");
         format!("{found} from {}, {} simulated", self.folder.display(), count(simulated, "part", "parts"))

@@ -107,7 +107,7 @@ fn body(reader: &mut Reader, entry: &Entry, index: usize) {
         let needed = needed && has_forces;
         let node = if needed { reader.required(&fields, key) } else { fields.get(key) }?;
         let formula = reader.formula(node, Context::Constant, dimension)?;
-        // What is written as 0 has none: joints or springs have to tell where it is.
+        // What is written as 0 has none: joints or springs have to determine where it is.
         if needed && formula.as_number() != Some(0.0) {
             reader.require(node, &formula, |value| value > 0.0, "must be positive");
         } else {

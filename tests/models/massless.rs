@@ -1,4 +1,4 @@
-//! Bodies without mass: joints or springs tell where they are.
+//! Bodies without mass: joints or springs determine where they are.
 
 use mbint::inner::model;
 use mbint::inner::study::{self, Options};
@@ -101,7 +101,7 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
 
 #[test]
 fn what_nothing_places_is_refused_with_its_name() {
-    let told = |effects: &str| {
+    let message = |effects: &str| {
         let text = format!(
             "
 bodies: {{ node: {{ mass: 0, coordinates: [x] }}, block: {{ mass: 2, coordinates: [x] }} }}
@@ -115,9 +115,9 @@ simulation: {{ duration: 1, step: 1e-3 }}
         study::run(&description, Options::default()).unwrap_err().to_string()
     };
     let mount = "mount: { spring_damper: { between: [ground, block], along: x, stiffness: 10, free_length: 0.1 } }";
-    let loose = told(mount);
-    assert!(loose.contains("`node.x` has no inertia, and no spring and no joint tells where it is"), "{loose}");
-    let damped = told(&format!(
+    let loose = message(mount);
+    assert!(loose.contains("`node.x` has no inertia, and no spring and no joint determines where it is"), "{loose}");
+    let damped = message(&format!(
         "{mount}, pad: {{ spring_damper: {{ between: [node, block], along: x, stiffness: 10, damping: 1 }} }}"
     ));
     assert!(damped.contains("`node.x` has no inertia, and its force depends on velocities"), "{damped}");

@@ -81,7 +81,7 @@ fn merged_shards_are_the_run() {
 }
 
 #[test]
-fn what_is_missing_is_told() {
+fn what_is_missing_is_reported() {
     let place = Place::new();
     fs::write(place.path().join("pendulum.yaml"), PENDULUM).unwrap();
     place.run("plan pendulum.yaml -o study --at-once 0", 0);
@@ -251,25 +251,25 @@ fn a_killed_run_leaves_nothing_behind_the_next_one() {
 }
 
 #[test]
-fn the_disk_that_a_store_takes_is_told_before() {
+fn the_disk_that_a_store_takes_is_reported_before() {
     let place = Place::new();
     fs::write(place.path().join("thrown.yaml"), THROWN).unwrap();
     fs::write(place.path().join("pull.csv"), PULL).unwrap();
     for options in ["", "--certify-time", "--method scan", "--method chebyshev"] {
         let _ = fs::remove_dir_all(place.path().join("kept"));
-        let (_, told) = place.run(&format!("run thrown.yaml -o out --store kept {options}"), 4);
-        let told = told.lines().next().unwrap();
-        let words = told.strip_prefix("thrown: no parts in kept (0 B); this run's simulations take ").unwrap();
+        let (_, reported) = place.run(&format!("run thrown.yaml -o out --store kept {options}"), 4);
+        let reported = reported.lines().next().unwrap();
+        let words = reported.strip_prefix("thrown: no parts in kept (0 B); this run's simulations take ").unwrap();
         let (number, unit) = words.strip_suffix(" on the disk at most").unwrap().split_once(' ').unwrap();
-        assert_eq!(unit, "KiB", "{told}");
+        assert_eq!(unit, "KiB", "{reported}");
         // A part has a hundred bytes or two beside its values.
         let at_most = 1024.0 * number.parse::<f64>().unwrap();
         let lengths = tree(&place.path().join("kept/parts"));
         let taken: usize = lengths.iter().map(|(_, bytes)| bytes.len().saturating_sub(1000)).sum();
-        assert!(taken as f64 <= at_most && at_most < 4.0 * taken.max(4096) as f64, "{told}: {taken}");
+        assert!(taken as f64 <= at_most && at_most < 4.0 * taken.max(4096) as f64, "{reported}: {taken}");
     }
-    let (_, told) = place.run("run thrown.yaml -o out --store kept", 4);
-    assert!(told.starts_with("thrown: 5 parts in kept (1"), "{told}");
+    let (_, reported) = place.run("run thrown.yaml -o out --store kept", 4);
+    assert!(reported.starts_with("thrown: 5 parts in kept (1"), "{reported}");
 }
 
 /// A rod that is shorter than the height of its crank's end reaches no block.

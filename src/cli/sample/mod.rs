@@ -175,7 +175,7 @@ impl Sampling<'_> {
                     .print(&format!("  not sampled, because they follow from the values: {}\n", names.join(", ")))?;
             }
             if let Some((kept, store)) = self.store.zip(store.as_ref()) {
-                console.print(&format!("  {}\n", kept.told(store)))?;
+                console.print(&format!("  {}\n", kept.found(store)))?;
             }
         }
         Ok(Status::Done)

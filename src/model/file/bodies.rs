@@ -8,7 +8,7 @@ use super::*;
 grammar! {
     /// A rigid body with its frame.
     Body is "a body" {
-        /// kg; 0 where joints or springs tell where the body is.
+        /// kg; 0 where joints or springs determine where the body is.
         mass: Option<Number>,
         /// About the centre of mass, kg*m^2.
         inertia: Option<InertiaFile>,

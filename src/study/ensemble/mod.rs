@@ -133,17 +133,6 @@ impl<'a> Motions<'a> {
         Ok(self.advance(&mut run, samples, sampling, reduce))
     }
 
-    /// Whether samples can be assembled, where they are followed by steps.
-    ///
-    /// # Errors
-    /// The first sample that cannot.
-    pub fn assemble(&self, samples: &[Sample]) -> Result<(), SimulationError> {
-        if self.simulator.system.analysis.visits() {
-            return Ok(());
-        }
-        self.start(samples).map(drop)
-    }
-
     /// Samples at their start.
     fn start(&self, samples: &[Sample]) -> Result<SampleRun<'a>, SimulationError> {
         let run = SampleRun::start(self.simulator, samples, self.schedule)?;

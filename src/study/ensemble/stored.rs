@@ -135,8 +135,8 @@ impl Stored<'_> {
                     take(task, part.ok_or_else(lost)?)?;
                 }
                 None => {
-                    if self.assembles_first {
-                        motions.assemble(&task.samples)?;
+                    if self.assembles_first && !motions.simulator.system.analysis.visits() {
+                        motions.start(&task.samples)?;
                     }
                     let (seconds, bytes) = (seconds_of(motions, &task), bytes_of(motions, &task));
                     self.store.defer(&name, &task, seconds, bytes).map_err(of_store)?;
