@@ -12,15 +12,15 @@ if readelf -l "$program" | grep -q INTERP; then
     echo "error: $program is not static" >&2
     exit 1
 fi
-mkdir -p "$place/root/work" "$place/image"
+mkdir -p "$place/root/models" "$place/image"
 cp "$program" "$place/root/mbint"
-cp "$sources/models/slider_crank.yaml" "$place/root/work/"
+cp "$sources/models/slider_crank.yaml" "$place/root/models/"
 # Not every system lets everybody have a root of their own.
 if [ "$(id -u)" = 0 ]; then as_root=(); elif unshare --map-root-user true 2>/dev/null; then as_root=(unshare --map-root-user); else as_root=(sudo); fi
 alone() { "${as_root[@]}" chroot "$place/root" /mbint "$@"; }
 alone --version
-alone run /work/slider_crank.yaml --method chebyshev --output /work/alone --quiet
-[ -s "$place/root/work/alone/bounds.csv" ]
+alone run /models/slider_crank.yaml --method chebyshev --output /models/alone --quiet
+[ -s "$place/root/models/alone/bounds.csv" ]
 echo "size: $(stat -c %s "$program") bytes"
 
 case $(uname -m) in x86_64) architecture=amd64 ;; *) architecture=arm64 ;; esac
@@ -33,15 +33,15 @@ for engine in docker podman buildah; do
     buildah)
         buildah build --isolation chroot --platform "linux/$architecture" --file "$sources/Dockerfile" --tag mbint:try "$place/image"
         container=$(buildah from mbint:try)
-        buildah run --isolation chroot --volume "$place/root/work:/work" "$container" -- /usr/bin/mbint "${inside[@]}"
+        buildah run --isolation chroot --volume "$place/root/models:/models" "$container" -- /usr/bin/mbint "${inside[@]}"
         buildah rm "$container" >/dev/null
         ;;
     *)
         "$engine" build --build-arg "TARGETARCH=$architecture" --file "$sources/Dockerfile" --tag mbint:try "$place/image"
-        "$engine" run --rm --volume "$place/root/work:/work" mbint:try "${inside[@]}"
+        "$engine" run --rm --volume "$place/root/models:/models" mbint:try "${inside[@]}"
         ;;
     esac
-    diff -r "$place/root/work/alone" "$place/root/work/image"
+    diff -r "$place/root/models/alone" "$place/root/models/image"
     echo "the image of $engine has the same results"
     exit 0
 done

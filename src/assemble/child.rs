@@ -108,19 +108,19 @@ impl<'g> Mechanism<'g, '_> {
         let (zero, one) = (g.number(0.0), g.number(if inboard.reversed { -1.0 } else { 1.0 }));
         let mut dofs = Vec::new();
         for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
+            if !mobilizer.is_counted_by(coordinate) {
+                continue;
+            }
             let (rotation, translation) = match (mobilizer.pitch(), coordinate) {
-                (Some(pitch), JointCoordinate::Angle) => {
+                (Some(pitch), _) => {
                     let advance = 1.0 / TAU * self.formula(pitch, Context::Parameters)?;
                     (one, one * advance)
                 }
-                (Some(_), JointCoordinate::Displacement) => continue,
                 (None, JointCoordinate::Angle) => (one, zero),
                 (None, JointCoordinate::Displacement) => (zero, one),
             };
-            if mobilizer.axis_of(coordinate).is_some() {
-                let index = self.add_joint_coordinate(inboard.joint, coordinate);
-                dofs.push(DegreeOfFreedom { index, rotation, translation });
-            }
+            let index = self.add_joint_coordinate(inboard.joint, coordinate);
+            dofs.push(DegreeOfFreedom { index, rotation, translation });
         }
         Ok(dofs)
     }

@@ -4,8 +4,9 @@
 //! absolute coordinates. What the inboard joints measure there is where their coordinates are looked for: those of all children, so that
 //! a loop is closed from the same place, and in the same branch.
 
-use symdiff::{Builder, Expr};
+use symdiff::Builder;
 
+use super::at_guess::AtGuess;
 use super::mechanism::Mechanism;
 use crate::grammar::{JointCoordinate, OnJoint};
 use crate::model::{Description, StartValue};
@@ -27,20 +28,12 @@ impl Mechanism<'_, '_> {
         let builder = Builder::new();
         let absolute = Mechanism::new(&builder, description, false)?;
         let guess = absolute.start(description)?.guess;
-        let nominal = |symbol: Expr| {
-            let parameter = absolute.uncertain.iter().find(|parameter| parameter.symbol == symbol);
-            parameter.map_or(0.0, |parameter| parameter.nominal)
-        };
-        let places = builder.graph().evaluate(&guess, nominal);
-        let at_guess = |symbol: Expr| {
-            let place = absolute.q.iter().position(|q| q.expr() == symbol);
-            place.map_or_else(|| nominal(symbol), |place| places[place])
-        };
+        let at_guess = AtGuess::of(&absolute, &builder.graph(), &guess);
         for joint in self.tree.inboard.iter().flatten().map(|inboard| inboard.joint) {
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
                 let Some(&place) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };
                 let measured = absolute.measured_coordinate(OnJoint { joint, coordinate })?.expr();
-                let value = builder.graph().evaluate(&[measured], at_guess)[0];
+                let value = at_guess.values(&builder.graph(), &[measured])[0];
                 self.child_guesses.push((place, value));
             }
         }

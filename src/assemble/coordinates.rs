@@ -79,11 +79,10 @@ impl<'g> Mechanism<'g, '_> {
     pub fn definitions(&self, joint: usize) -> Result<Vec<Definition<'g>>, BuildError> {
         let kind = &self.joints[joint].kind;
         let mut rows = Vec::new();
-        // What a tree turns and moves by is defined by that; a screw of a tree turns, and its displacement follows.
-        let is_of_tree = self.tree.contains(joint);
-        let is_screw = kind.mobilizer().is_some_and(|mobilizer| mobilizer.pitch().is_some());
+        let mobilizer = kind.mobilizer().filter(|_| self.tree.contains(joint));
         for (coordinate, name) in [(JointCoordinate::Angle, "angle"), (JointCoordinate::Displacement, "displacement")] {
-            if is_of_tree && !(is_screw && coordinate == JointCoordinate::Displacement) {
+            // What a tree moves by needs no definition.
+            if mobilizer.as_ref().is_some_and(|mobilizer| mobilizer.is_counted_by(coordinate)) {
                 continue;
             }
             let Some(&index) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };

@@ -13,6 +13,7 @@
 use rustc_hash::FxHashSet;
 use symdiff::{Expr, Scalar};
 
+use super::at_guess::AtGuess;
 use super::constraints::Constraints;
 use super::mechanism::Mechanism;
 use super::system::{ConstraintInfo, ResidualUnit, Start};
@@ -40,10 +41,11 @@ impl<'g> Constraints<'g> {
         let is_balanced = |place: &usize| !is_massive[*place] && !constrained.contains(&m.q[*place].expr());
         let balanced: Vec<usize> = (0..m.q.len()).filter(is_balanced).collect();
         let unknown: Vec<Scalar<'g>> = balanced.iter().map(|&place| m.q[place]).collect();
+        let start = AtGuess::of(m, &m.g.graph(), &start.guess);
         for place in balanced {
             let balance = Balance { m, place, force: force[place] };
             balance.check(&unknown, &self.lambda)?;
-            let stiffness = balance.stiffness(start);
+            let stiffness = balance.stiffness(&start);
             let unit = if m.coordinates[place].is_length() { ResidualUnit::Length } else { ResidualUnit::Angle };
             let info = ConstraintInfo { name: balance.name().to_owned(), joint: balance.owner().to_owned(), unit };
             self.add(info, stiffness.recip() * force[place]);
@@ -77,23 +79,13 @@ impl<'g> Balance<'_, 'g, '_> {
     }
 
     /// The largest derivative of the force by a coordinate, near the start; 1 where all are zero there.
-    fn stiffness(&self, start: &Start) -> f64 {
+    fn stiffness(&self, start: &AtGuess) -> f64 {
         let coordinates = Scalar::exprs(&self.m.q);
-        let parameters = &self.m.uncertain;
         self.m.g.with(|graph| {
-            let nominal = |symbol: Expr| {
-                parameters
-                    .iter()
-                    .find(|parameter| parameter.symbol == symbol)
-                    .map_or(0.0, |parameter| parameter.nominal)
-            };
-            let places = graph.evaluate(&start.guess, nominal);
             let derivatives: Vec<Expr> =
                 graph.jacobian(&[self.force.expr()], &coordinates).entries().map(|(_, _, value)| value).collect();
-            let values = graph.evaluate(&derivatives, |symbol| {
-                coordinates.iter().position(|&q| q == symbol).map_or_else(|| nominal(symbol), |place| places[place])
-            });
-            let largest = values.into_iter().map(f64::abs).filter(|value| value.is_finite()).fold(0.0, f64::max);
+            let values = start.values(graph, &derivatives).into_iter();
+            let largest = values.map(f64::abs).filter(|value| value.is_finite()).fold(0.0, f64::max);
             if largest > 0.0 { largest } else { 1.0 }
         })
     }

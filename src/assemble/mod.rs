@@ -16,6 +16,7 @@
 mod acting;
 mod analysis;
 mod applied_forces;
+mod at_guess;
 mod build;
 mod child;
 mod child_guesses;

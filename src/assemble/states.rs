@@ -2,6 +2,7 @@
 
 use symdiff::{Expr, Scalar};
 
+use super::at_guess::AtGuess;
 use super::mechanism::{Mechanism, Owner};
 use super::system::{CoordinateInfo, Start};
 use crate::grammar::Sensor;
@@ -50,20 +51,13 @@ impl<'g> Mechanism<'g, '_> {
         }
         let zero = self.g.number(0.0).expr();
         let graph = self.g.graph();
-        let nominal = |symbol: Expr| self.uncertain.iter().find(|p| p.symbol == symbol).map_or(0.0, |p| p.nominal);
-        let values = |exprs: &[Expr]| graph.evaluate(exprs, nominal);
-        let guess = values(&start.guess);
-        let speeds = values(&start.velocity.iter().map(|v| v.unwrap_or(zero)).collect::<Vec<_>>());
-        let at_start = |symbol: Expr| {
-            let place = |list: &[Scalar<'g>]| list.iter().position(|own| own.expr() == symbol);
-            match (place(&self.q), place(&self.v)) {
-                (Some(place), _) => guess[place],
-                (_, Some(place)) => speeds[place],
-                _ => nominal(symbol),
-            }
-        };
+        let mut at_start = AtGuess::of(self, &graph, &start.guess);
+        let velocities: Vec<Expr> = start.velocity.iter().map(|v| v.unwrap_or(zero)).collect();
+        let speeds = at_start.values(&graph, &velocities);
+        at_start.set(&self.v, speeds.clone());
         let places: Vec<usize> = self.states.values().copied().collect();
-        let changes = graph.evaluate(&places.iter().map(|&place| rates[place].expr()).collect::<Vec<_>>(), at_start);
+        let changes: Vec<Expr> = places.iter().map(|&place| rates[place].expr()).collect();
+        let changes = at_start.values(&graph, &changes);
         for (place, change) in places.into_iter().zip(changes) {
             let sizes = [speeds[place].abs(), (change * duration).abs()];
             coordinates[place].scale = sizes.into_iter().filter(|size| size.is_finite()).fold(1.0, f64::max);

@@ -172,6 +172,12 @@ impl<'a> Mobilizer<'a> {
         self.axis().filter(|_| absent != Some(coordinate))
     }
 
+    /// Whether the coordinate is one that the motion is counted by; a helix' displacement follows from its angle.
+    pub fn is_counted_by(&self, coordinate: JointCoordinate) -> bool {
+        let follows = matches!(self, Self::Helix { .. }) && coordinate == JointCoordinate::Displacement;
+        self.axis_of(coordinate).is_some() && !follows
+    }
+
     /// The angle at rest; `None` where it is zero.
     pub fn twist(&self) -> Option<&'a Formula> {
         match *self {

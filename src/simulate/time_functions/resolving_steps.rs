@@ -51,7 +51,7 @@ impl ResolvingSteps {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let mut steps: Vec<(f64, f64)> = (1..=PLACES)
             .map(|place| (1.0 - share / duration) * duration * (golden * place as f64).fract())
-            .map(|from| (from, self.resolved_step(from, share, HALVINGS)))
+            .map(|from| (from, self.resolved_step(from, share, (share, HALVINGS))))
             .collect();
         steps.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
         steps.truncate(PLACES - LEFT_OUT);
@@ -62,9 +62,8 @@ impl ResolvingSteps {
         }
     }
 
-    /// A step halved until it resolves all functions, or so many times.
-    fn resolved_step(&mut self, from: f64, step: f64, halvings: u32) -> f64 {
-        let mut h = step;
+    /// A part h of a step, halved until it resolves all functions, or so many times.
+    fn resolved_step(&mut self, from: f64, step: f64, (mut h, halvings): (f64, u32)) -> f64 {
         for _ in 0..halvings {
             let share = if h < step { RESOLVED } else { TOO_FAST };
             if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
@@ -96,14 +95,7 @@ impl ResolvingSteps {
             h *= 0.5;
             halvings -= 1;
         }
-        while halvings > 0 {
-            let share = if h < step { RESOLVED } else { TOO_FAST };
-            if self.functions.are_resolved((from, from + h), h, share, &mut self.work) {
-                break;
-            }
-            h *= 0.5;
-            halvings -= 1;
-        }
+        let h = self.resolved_step(from, step, (h, halvings));
         self.last = Some(h).filter(|&h| h < step);
         Ok(h)
     }
