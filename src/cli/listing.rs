@@ -122,7 +122,7 @@ impl Row<3> for FunctionDocs {
 
 impl Row<4> for OutputDocs {
     const TITLE: &'static str = "Outputs";
-    const INTRODUCTION: &'static str = "An output is a formula of the following names and of parameters. Names in capitals are\n\
+    const INTRODUCTION: &'static str = "An output is a formula of the following names, of parameters and of the outputs above it. Names in capitals are\n\
         the model's own. A body has the names that its coordinates allow: `angle` in the plane, Euler parameters in space;\n\
         a joint those of its coordinates; an effect those that its own page lists. `mbint explain --outputs` prints \
         this list.";

@@ -20,7 +20,7 @@ use crate::syntax::suggest::clip;
 use crate::syntax::yaml::{Node, Scalar};
 
 /// Operations in one formula.
-const MAX_TERMS: usize = 10_000;
+pub const MAX_TERMS: usize = 10_000;
 
 /// What stands in a field: a number with its unit, or a formula.
 pub enum Written {

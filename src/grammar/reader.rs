@@ -89,18 +89,25 @@ pub struct Fields<'n> {
     what: &'static str,
     keys: Vec<&'static str>,
     entries: HashMap<&'n str, (Span, &'n Node)>,
+    /// Keys that are not there, but which a key that is not known was probably meant to be: that is reported already.
+    misspelt: Vec<&'static str>,
 }
 
 impl<'n> Fields<'n> {
     /// A mapping of one key, whose value stands for all of it.
     pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
-        Self { at, what, keys, entries: HashMap::from([(key, (node.span.clone(), node))]) }
+        Self { at, what, keys, entries: HashMap::from([(key, (node.span.clone(), node))]), misspelt: Vec::new() }
     }
 
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<&'n Node> {
         debug_assert!(self.keys.contains(&key), "`{key}` is not in the grammar of {}", self.what);
         self.entries.get(key).map(|(_, node)| *node)
+    }
+
+    /// Whether a key is neither there nor, misspelt, reported.
+    pub fn lacks(&self, key: &str) -> bool {
+        self.get(key).is_none() && !self.misspelt.contains(&key)
     }
 
     /// The place of a key.
@@ -151,6 +158,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 return None;
             }
         };
+        let mut misspelt = Vec::new();
         for entry in entries.iter().filter(|entry| !keys.contains(&entry.key.as_str())) {
             let message = format!("{what} has no `{}`", clip(&entry.key));
             let help = if entry.key.contains(':') {
@@ -158,17 +166,18 @@ impl<S: SymbolTable> Reader<'_, S> {
             } else {
                 suggest::help(&entry.key, "keys", keys.iter().copied())
             };
+            misspelt.extend(suggest::nearest(entry.key.split(':').next().unwrap_or(""), keys.iter().copied()));
             self.error(entry.key_span.clone(), message, help);
         }
         let entries =
             entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
-        Some(Fields { at, what, keys, entries })
+        Some(Fields { at, what, keys, entries, misspelt })
     }
 
     /// The value of a key that must be there.
     pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
         let found = fields.get(key);
-        if found.is_none() {
+        if fields.lacks(key) {
             self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
         }
         found

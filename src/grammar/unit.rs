@@ -98,6 +98,29 @@ pub struct UnitError {
     pub help: Option<String>,
 }
 
+/// Names of units that are written out, and their signs.
+const WORDS: [(&str, &str); 19] = [
+    ("meter", "m"),
+    ("metre", "m"),
+    ("millimeter", "mm"),
+    ("millimetre", "mm"),
+    ("inch", "in"),
+    ("inches", "in"),
+    ("foot", "ft"),
+    ("feet", "ft"),
+    ("gram", "g"),
+    ("kilogram", "kg"),
+    ("second", "s"),
+    ("sec", "s"),
+    ("minute", "min"),
+    ("hour", "h"),
+    ("newton", "N"),
+    ("joule", "J"),
+    ("degree", "deg"),
+    ("radian", "rad"),
+    ("percent", "%"),
+];
+
 /// Name, and what one of it is in SI: a product and a divisor.
 const UNITS: [(&str, f64, f64, Dimension); 63] = [
     ("m", 1.0, 1.0, Dimension::LENGTH),
@@ -318,7 +341,7 @@ impl UnitParser<'_> {
         }
         let help = match name {
             "Hz" | "kHz" => Some("write `rev/s` or `rad/s`, whichever is meant; or `1/s`".to_owned()),
-            _ => match suggest::nearest(name, UNITS.iter().map(|(known, ..)| *known)) {
+            _ => match in_words(name).or_else(|| suggest::nearest(name, UNITS.iter().map(|(known, ..)| *known))) {
                 Some(near) => Some(format!("did you mean `{near}`?")),
                 None => {
                     Some("units are written like `N*s/m` or `kg*m^2`; a product of numbers needs its `*`".to_owned())
@@ -327,6 +350,13 @@ impl UnitParser<'_> {
         };
         Err(UnitError { message: format!("unknown unit `{}`", suggest::clip(name)), span, help })
     }
+}
+
+/// The sign of a unit whose name is written out, in the plural or not.
+fn in_words(name: &str) -> Option<&'static str> {
+    let name = name.to_lowercase();
+    let known = |word: &str| WORDS.iter().find(|(known, _)| *known == word).map(|(_, sign)| *sign);
+    known(&name).or_else(|| known(name.strip_suffix('s')?))
 }
 
 fn is_part_of_name(c: char) -> bool {

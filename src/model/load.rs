@@ -279,12 +279,7 @@ fn describe(
     teeth::check(&mut reader, joint_entries, effect_entries, output_entries);
     analysis::check_outputs(&mut reader, output_entries);
     analysis::read_modes(&mut reader, &fields);
-    let simulation = if analysis::needs_time(&reader.model) {
-        reader.required(&fields, "simulation")
-    } else {
-        fields.get("simulation")
-    };
-    if let Some(node) = simulation {
+    if let Some(node) = fields.get("simulation") {
         requests::simulation_section(&mut reader, node, fields.key_span("simulation"));
     }
     analysis::fit_time(&mut reader.model);
@@ -301,9 +296,7 @@ fn describe(
     statistics::read(&mut reader, section);
     states::check(&mut reader, &fields, effect_entries);
     analysis::check_requests(&mut reader, &fields);
-    if robot.is_none() {
-        not_empty(&mut reader, &fields, body_entries, output_entries);
-    }
+    missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);
     reader.warn_of_lengths();
     let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));
     let unused = parameters::unused(&reader, parameter_entries, is_count);
@@ -333,15 +326,27 @@ fn title(reader: &mut Reader, fields: &Fields, scene: Option<&str>) {
     }
 }
 
-/// Reports that a model without a robot has no body or no output.
-fn not_empty(reader: &mut Reader, fields: &Fields, bodies: &[Entry], outputs: &[Entry]) {
-    if bodies.iter().all(|entry| entry.key == GROUND) {
-        let help = "e.g. `slider: { mass: 0.45, coordinates: [x] }`".to_owned();
-        reader.error(fields.key_span("bodies"), "a model needs at least one body", help);
+/// Reports what a model does not say; one with a robot has bodies and outputs.
+fn missing_sections(reader: &mut Reader, fields: &Fields, is_robot: bool, bodies: &[Entry], outputs: &[Entry]) {
+    let no_body = !is_robot && bodies.iter().all(|entry| entry.key == GROUND);
+    let no_output = !is_robot && outputs.is_empty();
+    let no_time = analysis::needs_time(&reader.model) && fields.get("simulation").is_none();
+    let asked = [
+        (no_body, "bodies", "a model needs at least one body", "e.g. `slider: { mass: 0.45, coordinates: [x] }`"),
+        (no_output, "outputs", "a model needs at least one output", "name what is to be observed, e.g. `x: slider.x`"),
+        (no_time, "simulation", "a model needs `simulation`", "e.g. `simulation: { duration: 2, step: 1e-3 }`"),
+    ];
+    let is_reported = |key: &str| fields.get(key).is_none() && !fields.lacks(key);
+    let missing: Vec<_> = asked.into_iter().filter(|(missing, key, ..)| *missing && !is_reported(key)).collect();
+    let keys: Vec<&str> = missing.iter().map(|(_, key, ..)| *key).filter(|key| fields.lacks(key)).collect();
+    if keys.len() > 1 {
+        let help = "`mbint new NAME` writes a model to begin with".to_owned();
+        reader.error(fields.at.clone(), format!("a model needs {}", suggest::list(&keys)), help);
     }
-    if outputs.is_empty() {
-        let help = "name what is to be observed, e.g. `x: slider.x`".to_owned();
-        reader.error(fields.key_span("outputs"), "a model needs at least one output", help);
+    for (_, key, message, help) in missing {
+        if keys.len() < 2 || !keys.contains(&key) {
+            reader.error(fields.key_span(key), message, help.to_owned());
+        }
     }
 }
 

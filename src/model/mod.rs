@@ -19,6 +19,7 @@ mod effects;
 mod joints;
 mod load;
 mod motion_times;
+mod named_outputs;
 mod overlay;
 mod overrides;
 mod parameters;

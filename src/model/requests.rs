@@ -1,6 +1,7 @@
 //! What is asked of the mechanism: `initial:`, `guess:`, `outputs:` and `simulation:`.
 
 use super::description::{Formulation, Output, Simulation, StartValue, Stepping};
+use super::named_outputs::with_outputs;
 use super::{display, file, reduced};
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::Written;
@@ -150,7 +151,7 @@ pub fn outputs(reader: &mut Reader, entries: &[Entry]) {
                 }
             }
             None => {
-                if let Some(output) = output(reader, entry) {
+                if let Some(output) = output(reader, entry, entries) {
                     add(reader, entry, output);
                 }
             }
@@ -203,13 +204,14 @@ fn add(reader: &mut Reader, entry: &Entry, output: Output) {
     }
 }
 
-fn output(reader: &mut Reader, entry: &Entry) -> Option<Output> {
+fn output(reader: &mut Reader, entry: &Entry, all: &[Entry]) -> Option<Output> {
     let node = &entry.value;
     let (formula, unit, dimension) = match reader.written(node)? {
         Written::Quantity { value, unit } => {
             (symdiff::Formula::number(unit.to_si(value)), unit.dimension.unit(), Some(unit.dimension))
         }
         Written::Formula(formula) => {
+            let formula = with_outputs(reader, entry, all, formula)?;
             reader.check_names(node, &formula, 0, Context::Output).then_some(())?;
             let dimension = match reader.kind(node, &formula, 0) {
                 Kind::Known { dimension, .. } => Some(dimension),

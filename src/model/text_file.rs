@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest::clip;
 
 /// Largest file that is read.
 pub(super) const MAX_BYTES: u64 = 10_000_000;
@@ -30,10 +31,18 @@ pub(super) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagno
         return Err(too_large(bytes.len() as u64, most));
     }
     String::from_utf8(bytes).map_err(|error| {
-        let offset = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..offset].iter().filter(|byte| **byte == b'\n').count() + 1;
-        let message = format!("the file is not UTF-8 text: byte {} in line {line}", offset + 1);
-        Box::new(Diagnostic::of_file(message).help("a model file is text in UTF-8".to_owned()))
+        let (valid, _) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+        let before = String::from_utf8_lossy(valid);
+        let line = before.matches('\n').count() + 1;
+        let last = before.rsplit('\n').next().unwrap_or("");
+        let (column, shown) = (last.chars().count() + 1, clip(last.trim_start()));
+        let behind = if shown.is_empty() { String::new() } else { format!(", behind `{shown}`") };
+        let message = format!("the file is not UTF-8 text: line {line}, column {column}{behind}");
+        let help = match error.as_bytes() {
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "this is UTF-16: save the file as UTF-8",
+            _ => "a model file is text in UTF-8: save it as that",
+        };
+        Box::new(Diagnostic::of_file(message).help(help.to_owned()))
     })
 }
 

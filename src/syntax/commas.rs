@@ -10,9 +10,14 @@ use super::tree::{Entry, Node, Scalar, Value};
 pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Diagnostics) -> Vec<Entry> {
     let mut joined: Vec<Entry> = Vec::with_capacity(entries.len());
     for entry in entries {
-        match joined.last_mut().filter(|last| is_open(&last.value) && entry.value.is_null()) {
-            Some(last) => last.value = together(text, &last.value, &entry.key_span, diagnostics),
-            None => joined.push(entry),
+        match joined.last_mut().filter(|_| entry.value.is_null()) {
+            Some(last) if is_open(&last.value) => {
+                last.value = together(text, &last.value, &entry.key_span, diagnostics);
+            }
+            Some(last) if is_decimal(&last.value, &entry.key) => {
+                last.value = with_point(&last.value, &entry, diagnostics);
+            }
+            _ => joined.push(entry),
         }
     }
     joined
@@ -34,6 +39,22 @@ pub(super) fn join_items(text: &str, items: Vec<Node>, diagnostics: &mut Diagnos
 fn is_open(node: &Node) -> bool {
     let depth = |text: &str| text.matches('(').count() > text.matches(')').count();
     node.scalar().is_some_and(|scalar| scalar.plain && depth(&scalar.text))
+}
+
+/// Whether a whole number and a key are the two sides of a decimal comma: `0,5`, perhaps with a unit.
+fn is_decimal(first: &Node, second: &str) -> bool {
+    let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let whole = first.scalar().filter(|scalar| scalar.plain).map(|scalar| scalar.text.trim_start_matches(['+', '-']));
+    whole.is_some_and(is_whole) && second.starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// A number whose decimal comma is reported, with a point.
+fn with_point(first: &Node, second: &Entry, diagnostics: &mut Diagnostics) -> Node {
+    let span = first.span.start..second.key_span.end;
+    let number = format!("{}.{}", first.scalar().map_or("", |scalar| &scalar.text), second.key);
+    let help = format!("decimals stand behind a point: `{}`", clip(&number));
+    diagnostics.push(Diagnostic::error(span.clone(), "a comma ends the number between braces").help(help));
+    Node { span, value: Value::Scalar(Scalar::plain(number, None)) }
 }
 
 /// A text and the piece behind its comma; where the last parenthesis closes, the comma is reported.

@@ -4,6 +4,7 @@ mod commas;
 pub(crate) mod diagnostic;
 mod habit;
 mod harmless;
+mod not_yaml;
 mod render;
 pub(crate) mod scope;
 pub(crate) mod source;

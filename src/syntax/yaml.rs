@@ -9,6 +9,7 @@ use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, options};
 
 use super::commas::{join_items, join_values};
 use super::diagnostic::{Diagnostic, Diagnostics};
+use super::not_yaml;
 use super::source::Span;
 use super::suggest::clip;
 pub use super::tree::{Entry, Node, Scalar, Value};
@@ -85,17 +86,7 @@ impl Builder<'_, '_> {
             }
             kind => Diagnostic::error(span, format!("this is not YAML: {kind}")),
         };
-        let tab =
-            self.text[..at].rsplit('\n').next().is_some_and(|line| line.trim_start_matches(' ').starts_with('\t'))
-                || self.text[at..].starts_with('\t');
-        let help = if tab {
-            Some("YAML is indented with spaces, not tabs".to_owned())
-        } else if let Some(name) = name_with_index(self.text, at) {
-            Some(format!("within braces and brackets, quote a name with an index: `\"{}\"`", clip(name)))
-        } else {
-            interval_before(self.text, at).map(|interval| format!("quote the interval: `\"{}\"`", clip(interval)))
-        };
-        self.diagnostics.push(diagnostic.help(help));
+        self.diagnostics.push(diagnostic.help(not_yaml::help(self.text, at, kind)));
     }
 
     /// Takes one event; whether to go on.
@@ -233,29 +224,6 @@ impl Builder<'_, '_> {
         }
         unique
     }
-}
-
-/// The name with an index in braces, `leg_{i}`, at which the text stops to be YAML.
-fn name_with_index(text: &str, at: usize) -> Option<&str> {
-    let start_of_line = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-    let before = &text[start_of_line..text[at..].find(' ').map_or(text.len(), |space| at + space)];
-    let open = before.rfind('{').filter(|open| before[..*open].ends_with(|c: char| c.is_alphanumeric() || c == '_'))?;
-    let start = before[..open].rfind([' ', '[', '{', ',', '"']).map_or(0, |space| space + 1);
-    let close = open + before[open..].find('}')? + 1;
-    Some(&before[start..close])
-}
-
-/// The interval with a unit behind it, `[0.49, 0.51] m`, at which the text stops to be YAML.
-fn interval_before(text: &str, at: usize) -> Option<&str> {
-    // The error stands at the unit, or at what comes behind it.
-    let start_of_line = text[..at].trim_end().rfind('\n').map_or(0, |newline| newline + 1);
-    let end_of_line = text[at..].find('\n').map_or(text.len(), |newline| at + newline);
-    let line = &text[start_of_line..end_of_line];
-    let open = line[..(at - start_of_line).min(line.len())].rfind('[')?;
-    let close = open + line[open..].find(']')?;
-    let behind = line[close + 1..].find([',', '}', '#', '\n']).map_or(line.len(), |end| close + 1 + end);
-    let unit = line[close + 1..behind].trim();
-    (unit.starts_with(char::is_alphabetic) || unit.starts_with('°')).then(|| line[open..behind].trim())
 }
 
 #[cfg(test)]

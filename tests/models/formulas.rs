@@ -128,6 +128,19 @@ fn units_stand_in_formulas() {
     }
 }
 
+/// The names of outputs stand for their formulas, unless the model has something of that name.
+#[test]
+fn outputs_name_the_outputs_above_them() {
+    let text = pushed("F");
+    let outputs = |outputs: &str| text.replace("outputs: { x: b.x, v: b.vx, f: \"F\" }", outputs);
+    let named = "outputs: { v: b.vx, d: 2*b.x, power: F*v, twice: 2*power + F*v, shifted: b.x + d }";
+    let written = "outputs: { v: b.vx, d: 2*b.x, power: F*b.vx, twice: 2*(F*b.vx) + F*b.vx, shifted: b.x + d }";
+    let [named, written] = [named, written].map(|text| nominal(&read(&outputs(text))));
+    for name in ["power", "twice", "shifted"] {
+        assert_eq!(curve(&named, name), curve(&written, name), "{name}");
+    }
+}
+
 /// A jump in the box: the bounds of a scan show both of its sides, whatever its points.
 #[test]
 fn a_jump_by_a_parameter_is_inside_the_bounds() {

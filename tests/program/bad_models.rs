@@ -161,7 +161,8 @@ fn files_that_are_no_models_are_refused() {
     assert_eq!(error_of(folder.path()), "this is a directory, not a file");
     assert_eq!(error_of(&file("empty.yaml", b"")), "the file is empty");
     assert_eq!(error_of(&file("comments.yaml", b"# nothing\n# here\n")), "the file is empty");
-    assert_eq!(error_of(&file("latin1.yaml", b"a: 1\nb: \xff\n")), "the file is not UTF-8 text: byte 9 in line 2");
+    let latin = "the file is not UTF-8 text: line 2, column 6, behind `b: üx`";
+    assert_eq!(error_of(&file("latin1.yaml", b"a: 1\nb: \xc3\xbcx\xff\n")), latin);
     assert!(error_of(&file("binary.yaml", &[0x7f, b'E', b'L', b'F', 2, 1, 1, 0])).contains("zero byte"));
     let large = folder.path().join("large.yaml");
     fs::File::create(&large).unwrap().set_len(100_000_000).unwrap();
