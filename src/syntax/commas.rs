@@ -9,13 +9,23 @@ use super::tree::{Entry, Node, Scalar, Value};
 /// The values of a mapping in braces, those in one that a comma has cut.
 pub(super) fn join_values(text: &str, entries: Vec<Entry>, diagnostics: &mut Diagnostics) -> Vec<Entry> {
     let mut joined: Vec<Entry> = Vec::with_capacity(entries.len());
-    for entry in entries {
+    let mut entries = entries.into_iter().peekable();
+    while let Some(entry) = entries.next() {
         match joined.last_mut().filter(|_| entry.value.is_null()) {
             Some(last) if is_open(&last.value) => {
                 last.value = together(text, &last.value, &entry.key_span, diagnostics);
             }
             Some(last) if is_decimal(&last.value, &entry.key) => {
                 last.value = with_point(&last.value, &entry, diagnostics);
+            }
+            Some(last) if is_text(last, &entry.key) => {
+                let rest = std::iter::from_fn(|| entries.next_if(|next| next.value.is_null())).last();
+                let span = last.value.span.start..rest.unwrap_or(entry).key_span.end;
+                let written = text.get(span.clone()).unwrap_or("");
+                let help = format!("quote the text: `\"{}\"`", clip(written));
+                let message = "an unquoted comma ends the text between braces";
+                diagnostics.push(Diagnostic::error(span.clone(), message).help(help));
+                last.value = Node { span, value: Value::Scalar(Scalar::plain(written, None)) };
             }
             _ => joined.push(entry),
         }
@@ -46,6 +56,12 @@ fn is_decimal(first: &Node, second: &str) -> bool {
     let is_whole = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let whole = first.scalar().filter(|scalar| scalar.plain).map(|scalar| scalar.text.trim_start_matches(['+', '-']));
     whole.is_some_and(is_whole) && second.starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// Whether a key goes on with a text that a comma has cut: no key has a space.
+fn is_text(before: &Entry, key: &str) -> bool {
+    let is_plain = before.value.scalar().is_some_and(|scalar| scalar.plain && !scalar.text.is_empty());
+    is_plain && (before.key == "description" || key.contains(' '))
 }
 
 /// A number whose decimal comma is reported, with a point.

@@ -10,10 +10,10 @@ use crate::common::{band, curve, distance_from, largest, model, nominal, output,
 /// Newton's tolerance (1e-11 of the model's size) times what the closed forms' slopes make of it.
 const CLOSED: f64 = 1e-10;
 
-type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// Where two circles meet, to the left of the way from the first centre to the second.
-fn left_of(first: Point, radius: f64, second: Point, other: f64) -> Point {
+pub(super) fn left_of(first: Point, radius: f64, second: Point, other: f64) -> Point {
     let (x, y) = (second[0] - first[0], second[1] - first[1]);
     let distance = x.hypot(y);
     let along = (radius * radius - other * other + distance * distance) / (2.0 * distance);
