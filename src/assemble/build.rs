@@ -94,6 +94,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     m.scale_states(&balance.force, &start, description.simulation.duration, &mut coordinates);
     let formulation = FormulationInfo { joint: !m.tree.is_absolute(), why: "the model asks for them".to_owned() };
     let (analysis, modes) = (description.analysis, description.modes.clone());
+    let mass_of_bodies = m.total_mass();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);
     let [q, v, w] = [&m.q, &m.v, &m.w].map(|list| Scalar::exprs(list));
     let [lambda, constraint] = [&constraints.lambda, &constraints.values].map(|list| Scalar::exprs(list));
@@ -125,6 +126,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             constraint,
             outputs,
             length,
+            mass_of_bodies,
             start,
             analysis,
             modes,

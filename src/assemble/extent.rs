@@ -37,6 +37,12 @@ impl Mechanism<'_, '_> {
         let largest = largest.fold(0.0, f64::max);
         Ok(if largest > 0.0 { largest } else { 1.0 })
     }
+
+    /// Mass of all bodies, kg, at their nominal parameters.
+    pub fn total_mass(&self) -> f64 {
+        let masses: Vec<Scalar> = self.bodies.iter().map(|body| body.mass).collect();
+        self.sample(&masses, 0.0, |parameter| parameter.nominal).into_iter().filter(|mass| mass.is_finite()).sum()
+    }
 }
 
 /// The formula of a start value that is a position.

@@ -46,6 +46,8 @@ pub struct System {
     pub outputs: Vec<OutputInfo>,
     /// The model's size, m: the largest length that it names.
     pub length: f64,
+    /// Mass of all bodies, kg, nominally.
+    pub mass_of_bodies: f64,
     /// What is known at the start.
     pub start: Start,
     /// What is done with it.

@@ -36,10 +36,12 @@ pub enum SimulationError {
         why: String,
     },
     /// The equations of motion cannot be solved at the start.
-    #[error("the equations of motion are singular at the start: {}", equations.join(", "))]
+    #[error("the equations of motion are singular at the start: {}{}", equations.join(", "), not_placed(massless.as_deref()))]
     Singular {
         /// Names of the equations without a pivot.
         equations: Vec<String>,
+        /// A coordinate among them that has no inertia.
+        massless: Option<String>,
     },
     /// No static equilibrium was found.
     #[error("{}", equilibrium_message(coordinate, force, *is_free, parameters))]
@@ -247,11 +249,28 @@ pub(super) fn equation_name(system: &System, equation: Equation) -> String {
     }
 }
 
+/// What helps where joints place a body without mass only in part.
+fn not_placed(massless: Option<&str>) -> String {
+    let Some(coordinate) = massless else { return String::new() };
+    format!(
+        "; `{coordinate}` has no inertia, and joints place its body only in part: leave `formulation: absolute` out, \
+         or give the body a small mass"
+    )
+}
+
 /// Why a matrix of this system has no factors.
 pub(super) fn no_factors(system: &System, none: &NoFactors<Equation>) -> SimulationError {
     match none {
         NoFactors::Singular { rows } => {
-            SimulationError::Singular { equations: rows.iter().map(|&row| equation_name(system, row)).collect() }
+            let has_inertia = |coordinate: usize| system.mass.iter().any(|&(row, ..)| row == coordinate);
+            let massless = rows.iter().find_map(|row| match row {
+                Equation::Motion(coordinate) if !has_inertia(*coordinate) => Some(*coordinate),
+                _ => None,
+            });
+            SimulationError::Singular {
+                equations: rows.iter().map(|&row| equation_name(system, row)).collect(),
+                massless: massless.map(|coordinate| system.coordinates[coordinate].name.clone()),
+            }
         }
         NoFactors::TooLong => SimulationError::TooLong,
     }

@@ -175,3 +175,25 @@ bounds: { scan: { points: 3 } }
     println!("{off:?}");
     assert!(off[0] < 1e-9 && off[1] < 1e-9, "{off:?}");
 }
+
+/// A pendulum on a ball joint swings in a plane: the reaction across it is rounding, which is no output that is lost.
+#[test]
+fn a_reaction_that_is_rounding_is_reliable() {
+    let text = "
+bodies:
+  ground: { points: { J: { position: [1, 2, 3], rotation: { axis: x, angle: -50 deg } } } }
+  bob: { mass: 1.3, inertia: [0.05, 0.12, 0.12], points: { J: [-1.7, 0, 0] } }
+joints: { ball: { spherical: [ground.J, bob.J] } }
+effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }
+initial: { bob.orientation: { axis: x, angle: -50 deg }, bob.omega: [0, 0, 0] }
+outputs: { x: ball.force.x, y: ball.force.y, z: ball.force.z }
+simulation: { duration: 5, tolerance: 1e-6, output_step: 0.1 }
+bounds: { scan: { points: 2 } }
+";
+    let bounds = run(&read(text));
+    assert!(largest(curve(&bounds, "y").iter().copied()) < 1e-10);
+    for output in &bounds.outputs {
+        let unresolved = &band(output, Method::Scan).error.unresolved;
+        assert!(!unresolved.contains(&true), "{}: {:?}", output.name, unresolved.iter().position(|&lost| lost));
+    }
+}

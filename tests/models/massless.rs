@@ -99,6 +99,39 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}
     assert!(coarse < 1e-3 && (order(coarse, fine) - 2.0).abs() < 0.1, "the push is off by {coarse:e}, {fine:e} N");
 }
 
+/// An arm without mass on a hinge, placed by springs: joint coordinates know its balance, absolute ones say what helps.
+#[test]
+fn an_arm_on_a_hinge_is_placed_by_springs() {
+    let text = |formulation: &str| {
+        format!(
+            r#"
+bodies:
+  arm: {{ mass: 0, inertia: 0, points: {{ O: [0, 0], tip: [0.5, 0] }} }}
+  block: {{ mass: 2, coordinates: [y] }}
+joints: {{ hinge: {{ revolute: [ground, arm.O] }} }}
+effects:
+  hanger: {{ spring_damper: {{ between: [ground, block], along: y, stiffness: 100 }} }}
+  twist: {{ torsional_spring_damper: {{ on: hinge, stiffness: 20 }} }}
+  pull: {{ torque: {{ on: arm, value: 30 N*(block.y - arm.angle*1 m) }} }}
+  push: {{ force: {{ on: block, value: [0, "-30 N/m*(block.y - arm.angle*1 m)"] }} }}
+initial: {{ block.y: 0.3, block.vy: 0 }}
+outputs: {{ y: block.y, a: arm.angle }}
+simulation: {{ duration: 2, step: 1e-3, output_step: 0.05, formulation: {formulation} }}
+"#
+        )
+    };
+    // 30 (y - a) = 20 a, so that a = 0.6 y; the block feels 100 y + 30 (y - a) = 112 y.
+    let bounds = nominal(&read(&text("joint")));
+    let exact = |t: f64| 0.3 * (56f64.sqrt() * t).cos();
+    // Of order two: ω³ h² t/12 is 7e-5 of the amplitude, and the damped scheme has as much again.
+    assert!(distance_from(&bounds.times, curve(&bounds, "y"), exact) < 5e-5);
+    let ratio = curve(&bounds, "a").iter().zip(curve(&bounds, "y")).map(|(a, y)| (a - 0.6 * y).abs());
+    assert!(ratio.fold(0.0, f64::max) < 1e-10);
+    if let Err(error) = study::run(&read(&text("absolute")), Options::default()) {
+        assert!(error.to_string().contains("joints place its body only in part"), "{error}");
+    }
+}
+
 #[test]
 fn what_nothing_places_is_refused_with_its_name() {
     let message = |effects: &str| {

@@ -257,9 +257,9 @@ impl Ensemble for Motions<'_> {
     fn rounding(&self, output: usize) -> f64 {
         let length = self.simulator.system.length;
         let duration = self.schedule.output_step * self.schedule.rows as f64;
-        // Accelerations are second differences over steps. What has no size of its own, as a force, has no rounding that could be
-        // told.
+        // Accelerations are second differences over steps, and forces are what these do to all masses.
         let step = self.schedule.first_step();
+        let force = self.simulator.system.mass_of_bodies * length / (duration * step);
         AT_REST
             * match self.simulator.system.outputs[output].dimension {
                 Some(Dimension::ANGLE) => 1.0,
@@ -268,6 +268,8 @@ impl Ensemble for Motions<'_> {
                 Some(Dimension::VELOCITY) => length / duration,
                 Some(Dimension::ANGULAR_ACCELERATION) => 1.0 / (duration * step),
                 Some(Dimension::ACCELERATION) => length / (duration * step),
+                Some(Dimension::FORCE) => force,
+                Some(Dimension::TORQUE) => force * length,
                 _ => 0.0,
             }
     }
