@@ -3,6 +3,8 @@
 //! This is the one way to the terminal. Texts hold names from files, which could hold what a terminal obeys; they are made harmless here.
 //! Styles are therefore not in a text as the terminal's own sequences but as marks, which become those afterwards.
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
@@ -63,6 +65,8 @@ pub(super) struct Console {
     closed: bool,
     /// Whether something could not be written.
     failed: bool,
+    /// What has been written of files, where it is to be written once.
+    written: Option<RefCell<BTreeSet<String>>>,
 }
 
 impl Console {
@@ -103,11 +107,19 @@ impl Console {
         self.report(&format!("{YELLOW}warning{YELLOW:#}: {message}\n"));
     }
 
+    /// From now on writes no errors and warnings of a file that it has written: the file is read many times.
+    pub fn without_repetition(&mut self) {
+        self.written = Some(RefCell::default());
+    }
+
     /// Writes errors and warnings of a file to standard error.
     pub fn diagnostics(&self, diagnostics: &Diagnostics) {
         let color = anstream::AutoStream::choice(&io::stderr()) != anstream::ColorChoice::Never;
         // They are harmless, and have colours of their own.
-        let _ = anstream::stderr().lock().write_all(diagnostics.render(color).as_bytes());
+        let text = diagnostics.render(color);
+        if self.written.as_ref().is_none_or(|written| written.borrow_mut().insert(text.clone())) {
+            let _ = anstream::stderr().lock().write_all(text.as_bytes());
+        }
     }
 
     /// Writes text to standard error; if that is closed, nobody can be told.

@@ -37,7 +37,11 @@ pub(super) fn statistics(summary: &Summary) -> String {
         ]);
     }
     let shares = match (found.quantiles.first(), found.quantiles.last()) {
-        (Some(low), Some(high)) => format!("; statistical: from the {}-quantile to the {}-quantile", low, high),
+        (Some(low), Some(high)) => {
+            // 99.865 % is 0.99865, as it is written, and not 0.9986499999999999.
+            let [low, high] = [low, high].map(|share| (share * 1e12).round() / 1e12);
+            format!("; statistical: from the {low}-quantile to the {high}-quantile")
+        }
         _ => String::new(),
     };
     format!(

@@ -81,6 +81,7 @@ pub(super) fn sweep(args: SweepArgs, console: &mut Console) -> Result<Status, Fa
         return Err(Failure::Wrong(format!("{runs} runs are more than the {MOST_RUNS} of a sweep")));
     }
     let settings = Settings { threads: args.run.threads.number(), yes: args.yes, quiet: true, ..Settings::default() };
+    console.without_repetition();
     let mut status = Status::Done;
     let mut points = Vec::with_capacity(runs);
     let mut name = String::new();

@@ -6,6 +6,7 @@ use crate::grammar::Symbol;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
+use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Value};
 
@@ -178,23 +179,21 @@ pub fn fit_time(model: &mut Description) {
     simulation.stepping = Stepping::Fixed(simulation.output_step);
 }
 
-/// Reports what an analysis does not have: reduced outputs but of a motion, and Taylor bounds of modes.
-pub fn check_requests(reader: &mut Reader, fields: &Fields) {
+/// Reports what an analysis does not have: what is one number a motion but of positions over the time, requirements of modes, forces
+/// in kinematics, and Taylor bounds of modes. The entries are those of outputs and requirements.
+pub fn check_requests(reader: &mut Reader, fields: &Fields, entries: [&[Entry]; 2]) {
     let analysis = reader.model.analysis;
-    let message = || format!("it is taken from the steps of a motion, and `analysis: {}` has none", analysis.name());
+    let over_time = matches!(analysis, Analysis::Motion | Analysis::Kinematics);
     let help = "with `analysis: motion` it can be asked for";
-    if analysis != Analysis::Motion && !reader.model.requirements.is_empty() {
-        reader.error(
-            fields.key_span("requirements"),
-            format!("a requirement is refused: {}", message()),
-            help.to_owned(),
-        );
-    } else if analysis != Analysis::Motion && !reader.model.reduced.is_empty() {
-        reader.error(
-            fields.key_span("outputs"),
-            format!("a reduced output is refused: {}", message()),
-            help.to_owned(),
-        );
+    if !over_time && !reader.model.reduced.is_empty() {
+        let message = format!("a reduced output is one number a motion, and `analysis: {}` has none", analysis.name());
+        reader.error(fields.key_span("outputs"), message, help.to_owned());
+    } else if matches!(analysis, Analysis::Modes(_)) && !reader.model.requirements.is_empty() {
+        let message = "a requirement is of a motion or of an equilibrium, not of modes";
+        reader.error(fields.key_span("requirements"), message, help.to_owned());
+    }
+    if analysis == Analysis::Kinematics {
+        check_reduced_without_forces(reader, entries);
     }
     if matches!(reader.model.analysis, Analysis::Modes(_)) && reader.model.bounds.taylor.is_some() {
         let message = "modes have no Taylor bounds: which eigenvalue is which may change over the box";
@@ -212,15 +211,36 @@ pub fn check_outputs(reader: &mut Reader, entries: &[Entry]) {
         let Some(scalar) = entry.value.scalar() else { continue };
         let Ok(formula) = symdiff::Formula::parse(&scalar.text) else { continue };
         for (name, span) in formula.names() {
-            let what = match reader.symbol(name) {
-                Some(Symbol::Reaction { .. }) => "a reaction",
-                Some(Symbol::Energy(_)) => "an energy",
-                Some(Symbol::Sensor { measure, .. }) if !measure.is_motion() => "a force",
-                _ => continue,
-            };
-            let message = format!("`{}` is {what}, and kinematics knows no forces", clip(name));
-            let help = "with `analysis: motion`, and masses, it can be asked for".to_owned();
-            reader.error(scalar.place(&entry.value.span, span), message, help);
+            report_force(reader, name, scalar.place(&entry.value.span, span));
         }
     }
+}
+
+/// Reports reduced outputs and requirements that name what kinematics does not know.
+fn check_reduced_without_forces(reader: &mut Reader, [outputs, requirements]: [&[Entry]; 2]) {
+    let model = &reader.model;
+    let reduced = model.reduced.iter().map(|own| (&own.name, &own.sources, outputs));
+    let required = model.requirements.iter().map(|own| (&own.name, &own.slacks, requirements));
+    let mut named: Vec<(String, Span)> = Vec::new();
+    for (own, formulas, entries) in reduced.chain(required) {
+        let Some(entry) = entries.iter().find(|entry| entry.key == *own) else { continue };
+        let names = formulas.iter().flat_map(symdiff::Formula::names);
+        named.extend(names.map(|(name, _)| (name.to_owned(), entry.value.span.clone())));
+    }
+    named.dedup();
+    for (name, at) in named {
+        report_force(reader, &name, at);
+    }
+}
+
+/// Reports a name that kinematics does not know.
+fn report_force(reader: &mut Reader, name: &str, at: Span) {
+    let what = match reader.symbol(name) {
+        Some(Symbol::Reaction { .. }) => "a reaction",
+        Some(Symbol::Energy(_)) => "an energy",
+        Some(Symbol::Sensor { measure, .. }) if !measure.is_motion() => "a force",
+        _ => return,
+    };
+    let message = format!("`{}` is {what}, and kinematics knows no forces", clip(name));
+    reader.error(at, message, "with `analysis: motion`, and masses, it can be asked for".to_owned());
 }

@@ -295,7 +295,7 @@ fn describe(
     let section = fields.get("statistics").map(|node| (node, fields.key_span("statistics")));
     statistics::read(&mut reader, section);
     states::check(&mut reader, &fields, effect_entries);
-    analysis::check_requests(&mut reader, &fields);
+    analysis::check_requests(&mut reader, &fields, [output_entries, requirement_entries]);
     missing_sections(&mut reader, &fields, robot.is_some(), body_entries, output_entries);
     reader.warn_of_lengths();
     let is_count = |name: &str| parts.is_some_and(|parts| parts.is_count(name));

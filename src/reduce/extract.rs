@@ -82,6 +82,27 @@ pub fn narrow(description: &mut Description, left: &[usize]) {
     description.bounds.methods_mut().into_iter().for_each(|(_, method)| method.narrow(left));
 }
 
+/// By parameter, whether a requirement of numbers of a motion names it, which no equation may: `stroke <= room`.
+pub fn required(description: &Description) -> Vec<bool> {
+    let of_numbers = description.requirements.iter().filter(|own| own.times.is_none());
+    let named = Dependencies::by(description, of_numbers.flat_map(|own| &own.slacks)).parameters;
+    let mut required = vec![false; description.parameters.len()];
+    named.into_iter().for_each(|parameter| required[parameter] = true);
+    with_earlier(description, &mut required);
+    required
+}
+
+/// Adds the parameters that those depend on.
+fn with_earlier(description: &Description, parameters: &mut [bool]) {
+    // Each parameter depends on earlier ones only.
+    for index in (0..parameters.len()).rev() {
+        if let (true, ParameterValue::Formula(formula)) = (parameters[index], &description.parameters[index].value) {
+            let earlier = Dependencies::by(description, [formula]).parameters;
+            earlier.into_iter().for_each(|earlier| parameters[earlier] = true);
+        }
+    }
+}
+
 impl Kept {
     fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, outputs: &[usize]) -> Self {
         let mut has = |part: Part| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
@@ -123,12 +144,8 @@ impl Kept {
         let starts = d.initial.iter().chain(&d.guess).filter(|value| kept.starts(value));
         named.parameters.extend(Dependencies::by(d, starts.flat_map(StartValue::formulas)).parameters);
         named.parameters.iter().for_each(|&parameter| kept.parameters[parameter] = true);
-        // Each parameter depends on earlier ones only.
-        for index in (0..d.parameters.len()).rev() {
-            if let (true, ParameterValue::Formula(formula)) = (kept.parameters[index], &d.parameters[index].value) {
-                Dependencies::by(d, [formula]).parameters.iter().for_each(|&earlier| kept.parameters[earlier] = true);
-            }
-        }
+        required(d).into_iter().zip(&mut kept.parameters).for_each(|(required, kept)| *kept |= required);
+        with_earlier(d, &mut kept.parameters);
         kept
     }
 

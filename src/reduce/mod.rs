@@ -18,7 +18,7 @@ use crate::model::Description;
 
 use couplings::{Couplings, Part};
 
-pub use extract::narrow;
+pub use extract::{narrow, required};
 pub use welds::Weld;
 
 /// Which reductions are applied; all by default.

@@ -153,7 +153,7 @@ pub fn run(description: &Description, options: Options) -> Result<(Bounds, Summa
         let (bounds, summary, _) = reduced::run(&model, &options, false)?;
         Ok((bounds, summary))
     });
-    Ok(reduced::shown(description, found?))
+    Ok(reduced::shown(description, &model, found?))
 }
 
 /// The same, and keeps the surrogates, to be evaluated anywhere in the box. `None` where there is none over the whole box: with
@@ -165,7 +165,7 @@ pub fn run_keeping(description: &Description, options: Options) -> Result<(Bound
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
     let model = reduced::expanded(description);
     let (bounds, summary, kept) = pool.install(|| reduced::run(&model, &options, true))?;
-    let (bounds, summary) = reduced::shown(description, (bounds, summary));
+    let (bounds, summary) = reduced::shown(description, &model, (bounds, summary));
     Ok((bounds, summary, kept))
 }
 

@@ -17,7 +17,7 @@ use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
 use crate::model::{Analysis, Description, Formulation, ParameterValue};
 use crate::numerics::ParameterBox;
-use crate::reduce::{Choices, Reduction, Subsystem, narrow};
+use crate::reduce::{Choices, Reduction, Subsystem, narrow, required};
 use crate::results::{
     Bounds, Contribution, ContributionSummary, ErrorSummary, OutputBounds, ParameterSummary, SubsystemSummary, Summary,
 };
@@ -32,13 +32,16 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Compiles. A parameter that the subsystem names, but on which no equation of it depends, gets its nominal value.
+    /// Compiles. A parameter that the subsystem names, but on which no equation of it depends, nor a requirement, gets its nominal value.
     ///
     /// # Errors
     /// Where it cannot be built or assembled.
     pub fn new(mut subsystem: Subsystem) -> Result<Self, RunError> {
         let simulator = formulation::compiled(&subsystem.description)?;
-        let unused = simulator.system.unused_parameters();
+        let required = required(&subsystem.description);
+        let is_required: Vec<bool> = subsystem.description.uncertain().map(|(index, _)| required[index]).collect();
+        let mut unused = simulator.system.unused_parameters();
+        unused.retain(|&number| !is_required[number]);
         if unused.is_empty() {
             return Ok(Self { subsystem, simulator });
         }

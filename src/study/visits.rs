@@ -29,6 +29,7 @@ impl Motions<'_> {
         let (times, outputs, count) = (self.times(), self.simulator.system.outputs.len(), samples.len());
         let rows = times.len();
         let mut values = vec![f64::NAN; rows * outputs * count];
+        let mut reduced = vec![f64::NAN; self.channels().len() * count];
         let mut stops: Vec<Stop> = Vec::new();
         let mut visited = 0;
         for (block, samples) in samples.chunks(BLOCK).enumerate() {
@@ -38,12 +39,15 @@ impl Motions<'_> {
             }
             let found: Vec<Result<Visit, SimulationError>> = samples
                 .par_iter()
-                .map(|sample| self.simulator.visit(sample, (self.schedule, self.tolerance)))
+                .map(|sample| self.simulator.visit(sample, (self.schedule, self.tolerance), self.channels()))
                 .collect();
             for (place, visit) in found.into_iter().enumerate() {
                 let (visit, sample) = (visit?, block * BLOCK + place);
                 for (line, value) in visit.values.into_iter().enumerate() {
                     values[line * count + sample] = value;
+                }
+                for (channel, value) in visit.reduced.into_iter().enumerate() {
+                    reduced[channel * count + sample] = value;
                 }
                 stops.extend(visit.stop.map(|stop| Stop { sample, ..stop }));
             }
@@ -58,8 +62,13 @@ impl Motions<'_> {
             _ => 0,
         };
         reduce(0..rows, &values);
+        if visited < count {
+            reduced.clear();
+        }
+        self.keep_reduced(samples, &reduced);
         Ok(Simulated {
             effort: Effort::default(),
+            reduced,
             stop: stop.map(|stop| (stopped_at(&stop), samples[stop.sample].clone())),
             stopped: stops.iter().map(|stop| stop.sample).collect(),
             missing,

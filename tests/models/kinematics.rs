@@ -1,6 +1,6 @@
 //! Motions that follow from motors, against closed forms.
 
-use mbint::inner::results::Method;
+use mbint::inner::results::{Method, Verdict};
 use mbint::inner::study::{self, Options};
 
 use crate::common::{nominal, read, run};
@@ -73,4 +73,41 @@ fn a_mechanism_that_locks_says_when() {
     assert!(summary.failure.unwrap().contains("locks"));
     let last = *bounds.times.last().unwrap();
     assert!((locks - 0.011..=locks).contains(&last), "{last} {locks}");
+}
+
+#[test]
+fn what_is_one_number_a_motion_is_bounded_between_coarse_rows() {
+    // A row every 0.2 rad: the greatest speed lies between rows.
+    let text = include_str!("../../docs/examples/kinematics.yaml").replace("output_step: 0.01", "output_step: 0.02");
+    let text = text.replace(
+        "a: slider.ax }",
+        "a: slider.ax, stroke: { range: x }, fastest: { max: v }, top: { time_of_max: v } }",
+    );
+    let text =
+        format!("{text}requirements: {{ slow: v <= 1.1 m/s, near: {{ output: x, max: 0.401 m, from: 0.1 }} }}\n");
+    let (_, summary) = study::run(&read(&text), Options::default()).unwrap();
+    let fine = |r: f64, l: f64| -> f64 {
+        (0..=63_000).map(|place| slider(r, l, 10.0, 1e-5 * f64::from(place))[1]).fold(0.0, f64::max)
+    };
+    // The shortest rod and the longest crank are the fastest.
+    let (least, most) = (fine(0.099, 0.3015), fine(0.101, 0.2985));
+    let ends = |name: &str| {
+        let own = summary.reduced.iter().find(|own| own.name == name).unwrap();
+        let band = own.bands.iter().find(|band| band.method == "chebyshev").unwrap();
+        assert!(!band.unresolved, "{name}");
+        [band.lower, band.upper, band.error]
+    };
+    for (name, lower, upper, small) in [("stroke", 0.198, 0.202, 1e-4), ("fastest", least, most, 1e-3)] {
+        let [found_lower, found_upper, error] = ends(name);
+        assert!((found_lower - lower).abs() <= error + 1e-9, "{name}: {found_lower} {lower} {error}");
+        assert!((found_upper - upper).abs() <= error + 1e-9, "{name}: {found_upper} {upper} {error}");
+        assert!(error < small, "{name}: {error}");
+    }
+    let [slow, near] = &summary.requirements[..] else { panic!() };
+    assert_eq!((slow.verdict, near.verdict), (Verdict::Holds, Verdict::Violated));
+    assert!((slow.margin - (1.1 - most)).abs() <= slow.error + 1e-9, "{} {}", slow.margin, slow.error);
+    // From 0.1 s on x is greatest where the crank is stretched again, at the end of the turn.
+    let nearest = near.nearest.as_ref().unwrap();
+    let end = slider(0.101, 0.3015, 10.0, 0.2 * std::f64::consts::PI)[0];
+    assert!((nearest.margin - (0.401 - end)).abs() < 2e-5, "{} {end}", nearest.margin);
 }

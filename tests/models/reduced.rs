@@ -265,3 +265,27 @@ fn the_tutorials_four_bar_is_decided() {
     let tightened = run(&["b=260 mm ± 0.5 mm", "d=300 mm ± 0.3 mm"]);
     assert_eq!(tightened.requirements[0].verdict, Verdict::Holds);
 }
+
+#[test]
+fn an_uncertain_limit_that_no_equation_knows_counts() {
+    // x = k, at most room = 1.5 m ± 0.1 m: at worst 1.2 m beside 1.3 m (2 · 0.65 m).
+    let text = "
+parameters:
+  k: { value: 1, tolerance: 0.2 }
+  room: { value: 0.7, unit: m, tolerance: 0.05 }
+  twice: 2*room
+bodies: { block: { mass: 1, coordinates: [x] } }
+initial: { block.x: k*(1 m), block.vx: 0 }
+outputs: { x: block.x, most: { max: x } }
+requirements: { far: most <= twice }
+simulation: { duration: 0.1, step: 0.01, output_step: 0.01 }
+bounds: { taylor: { order: 2 } }
+";
+    // Taylor bounds are of the rows; what is one number a motion has others.
+    let summary = summary(&read(text));
+    let far = &summary.requirements[0];
+    assert_eq!(far.verdict, Verdict::Holds, "{far:?}");
+    assert!((far.margin - 0.1).abs() < 1e-9 + far.error && far.error < 1e-9, "{far:?}");
+    let nearest = far.nearest.as_ref().unwrap();
+    assert!((nearest.margin - 0.1).abs() < 1e-9 && nearest.settings.len() == 2, "{nearest:?}");
+}

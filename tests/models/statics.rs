@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use mbint::inner::results::{Bounds, Method};
+use mbint::inner::results::{Bounds, Method, Verdict};
 use mbint::inner::study::{self, Options};
 
 use crate::common::{load, nominal, read, run};
@@ -204,4 +204,22 @@ fn the_guides_example_is_what_it_says() {
     }
     let page = include_str!("../../docs/guides/statics.md");
     assert!(page.contains(include_str!("../../docs/examples/statics.yaml")), "the page shows the example");
+}
+
+#[test]
+fn an_equilibrium_meets_requirements_with_their_closed_forms_margin() {
+    let text = format!(
+        "{}requirements: {{ high: angle >= -0.5 rad, low: {{ output: angle, max: -0.35 rad }} }}\n",
+        hinged("joint", "{ value: 30, tolerance: 10% }", -0.3)
+    );
+    let (bounds, summary) = study::run(&read(&text), Options::default()).unwrap();
+    let names: Vec<&str> = bounds.outputs.iter().map(|output| output.name.as_str()).collect();
+    assert_eq!(names, ["angle", "fx", "fy", "stability"]);
+    assert_eq!(summary.analysis.unwrap().values.len(), 4);
+    let [high, low] = &summary.requirements[..] else { panic!() };
+    assert_eq!((high.verdict, low.verdict), (Verdict::Holds, Verdict::Violated));
+    assert!((high.margin - (angle_of(27.0) + 0.5)).abs() <= high.error + 1e-9, "{} {}", high.margin, high.error);
+    assert!(high.error < 1e-5, "{}", high.error);
+    let nearest = low.nearest.as_ref().unwrap();
+    assert!((nearest.margin - (-0.35 - angle_of(33.0))).abs() < 1e-9, "{}", nearest.margin);
 }

@@ -5,7 +5,8 @@
 
 use super::Visit;
 use crate::numerics::Sample;
-use crate::simulate::ensemble::Stop;
+use crate::simulate::control::Schedule;
+use crate::simulate::ensemble::{Channel, Reduction, Stop};
 use crate::simulate::error::{SimulationError, assembly_error};
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::Assembly;
@@ -17,13 +18,42 @@ const NEAR: f64 = 0.05;
 const MOST_HALVINGS: u32 = 16;
 
 impl Simulator {
-    pub(super) fn visit_kinematics(&self, sample: &Sample, times: &[f64]) -> Result<Visit, SimulationError> {
+    /// Every row; where outputs are reduced to one number, every step between rows too.
+    pub(super) fn visit_kinematics(
+        &self,
+        sample: &Sample,
+        schedule: &Schedule,
+        channels: &[Channel],
+    ) -> Result<Visit, SimulationError> {
         let mut visit = Visit::default();
-        let stop = self.walk(sample, times, &mut |assembly| {
-            let outputs = self.start.outputs.iter();
-            visit.values.extend(outputs.map(|&register| assembly.tile().lane(register)[0]));
+        let (mut times, mut rows) = (Vec::new(), Vec::new());
+        for row in 0..schedule.rows {
+            if !channels.is_empty() {
+                let steps = schedule.steps_to(row).map(|(_, end)| end);
+                times.extend(steps.filter(|&end| end < schedule.time(row)));
+            }
+            rows.push(times.len());
+            times.push(schedule.time(row));
+        }
+        let mut reduction = Reduction::new(channels, self.start.outputs.len(), 1);
+        let mut place = 0;
+        let stop = self.walk(sample, &times, &mut |assembly| {
+            let outputs = self.start.outputs.iter().map(|&register| assembly.tile().lane(register)[0]);
+            if !channels.is_empty() {
+                let mut values = reduction.buffer();
+                values.iter_mut().zip(outputs.clone()).for_each(|(value, output)| *value = output);
+                reduction.push(times[place], values, &[true]);
+            }
+            if rows.binary_search(&place).is_ok() {
+                visit.values.extend(outputs);
+            }
+            place += 1;
         })?;
-        visit.stop = stop;
+        visit.reduced = reduction.finish();
+        visit.stop = stop.map(|stop| {
+            visit.reduced.fill(f64::NAN);
+            Stop { row: rows.partition_point(|&row| row < stop.row), ..stop }
+        });
         Ok(visit)
     }
 

@@ -11,7 +11,7 @@ mod modes;
 mod statics;
 
 use super::control::{Controller, Schedule};
-use super::ensemble::Stop;
+use super::ensemble::{Channel, Stop};
 use super::error::SimulationError;
 use super::simulator::Simulator;
 use crate::model::Analysis;
@@ -24,23 +24,28 @@ pub struct Visit {
     pub values: Vec<f64>,
     /// Where it stopped, if it did; it is no sample's number yet.
     pub stop: Option<Stop>,
+    /// What the outputs are reduced to, channel by channel; NaN where it stopped.
+    pub reduced: Vec<f64>,
 }
 
 impl Simulator {
-    /// Goes to every configuration of a sample, in the rows of a schedule. Only a motion takes its steps, and its tolerance.
+    /// Goes to every configuration of a sample, in the rows of a schedule. Only a motion takes its steps, and its tolerance; kinematics
+    /// does where outputs are reduced to one number by channels.
     ///
     /// # Errors
     /// Where it cannot be assembled, or has no equilibrium.
-    pub fn visit(&self, sample: &Sample, steps: (&Schedule, Option<Controller>)) -> Result<Visit, SimulationError> {
+    pub fn visit(
+        &self,
+        sample: &Sample,
+        steps: (&Schedule, Option<Controller>),
+        channels: &[Channel],
+    ) -> Result<Visit, SimulationError> {
         if let Some(vibrations) = &self.vibrations {
             return self.visit_modes(vibrations, sample, steps);
         }
         match self.system.analysis {
-            Analysis::Kinematics => {
-                let times: Vec<f64> = (0..steps.0.rows).map(|row| steps.0.time(row)).collect();
-                self.visit_kinematics(sample, &times)
-            }
-            _ => self.visit_equilibrium(sample),
+            Analysis::Kinematics => self.visit_kinematics(sample, steps.0, channels),
+            _ => self.visit_equilibrium(sample, channels),
         }
     }
 }

@@ -32,7 +32,7 @@ impl Simulator {
         };
         let (states, stop) = self.states(sample, steps)?;
         let lines = self.system.outputs.len();
-        let mut visit = Visit { values: Vec::new(), stop };
+        let mut visit = Visit { stop, ..Visit::default() };
         for (state, nominal) in states.iter().zip(nominal) {
             match self.followed(vibrations, state, nominal, sample, states.len() == 1) {
                 Some(place) => visit.values.extend(vibrations.tell(state, &place, nominal)),

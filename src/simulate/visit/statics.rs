@@ -2,11 +2,12 @@
 
 use super::Visit;
 use crate::numerics::Sample;
+use crate::simulate::ensemble::{Channel, Reduction};
 use crate::simulate::error::SimulationError;
 use crate::simulate::simulator::Simulator;
 
 impl Simulator {
-    pub(super) fn visit_equilibrium(&self, sample: &Sample) -> Result<Visit, SimulationError> {
+    pub(super) fn visit_equilibrium(&self, sample: &Sample, channels: &[Channel]) -> Result<Visit, SimulationError> {
         let Some(equilibrium) = &self.equilibrium else { return Ok(Visit::default()) };
         let state = self.equilibrium_of(equilibrium, sample)?;
         let mut values = equilibrium.at(&state, sample).outputs();
@@ -14,6 +15,8 @@ impl Simulator {
         if let Some(last) = values.last_mut() {
             *last = equilibrium.stability(&state, sample).smallest;
         }
-        Ok(Visit { values, stop: None })
+        let mut reduction = Reduction::new(channels, values.len(), 1);
+        reduction.push(0.0, values.clone(), &[true]);
+        Ok(Visit { values, stop: None, reduced: reduction.finish() })
     }
 }

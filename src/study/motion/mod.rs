@@ -265,7 +265,8 @@ impl Posed {
             (0..rows).step_by(every).map(|row| Schedule::time_of(duration, output_step, row)).collect();
         let schedule = Schedule::fixed(duration, output_step, output_step);
         let outputs = self.simulator.system.outputs.len();
-        let found: Vec<_> = samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None))).collect();
+        let found: Vec<_> =
+            samples.par_iter().map(|sample| self.simulator.visit(sample, (&schedule, None), &[])).collect();
         for (&sample, visit) in running.iter().zip(found) {
             let visit = match visit {
                 Err(error) if sample == 0 => return Err(error.into()),

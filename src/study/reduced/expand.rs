@@ -34,13 +34,21 @@ fn place(outputs: &mut Vec<Output>, name: &str, formula: &Formula) -> usize {
     })
 }
 
-/// Results with the model's own outputs only.
-pub fn shown(description: &Description, (mut bounds, mut summary): (Bounds, Summary)) -> (Bounds, Summary) {
-    let own = description.outputs.len();
-    // An analysis without a motion adds outputs of its own, and has nothing reduced.
-    if bounds.outputs.len() > own && !description.analysis.visits() {
-        bounds.outputs.truncate(own);
-        bounds.contributions.truncate(own);
+/// Results with the model's own outputs, and what its analysis adds: without those behind its own, of all those of the expanded model.
+pub fn shown(
+    description: &Description,
+    expanded: &Description,
+    (mut bounds, mut summary): (Bounds, Summary),
+) -> (Bounds, Summary) {
+    let hidden = description.outputs.len()..expanded.outputs.len();
+    if !hidden.is_empty() {
+        bounds.outputs.drain(hidden.clone());
+        if !bounds.contributions.is_empty() {
+            bounds.contributions.drain(hidden.clone());
+        }
+        if let Some(analysis) = summary.analysis.as_mut().filter(|analysis| !analysis.values.is_empty()) {
+            analysis.values.drain(hidden);
+        }
         summary.errors = ErrorSummary::of(&bounds);
         summary.contributions = ContributionSummary::of(&bounds);
     }

@@ -116,8 +116,14 @@ impl<'s> Reduction<'s> {
         }
     }
 
-    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped.
+    /// After the last step: the values, channel by channel, lane by lane; NaN of lanes that stopped. What is at one time only is
+    /// constant.
     pub fn finish(&mut self) -> Vec<f64> {
+        if let ([time], [values]) = (&self.times[..], &self.values[..]) {
+            let (time, values) = (time + 1.0, values.clone());
+            self.times.push(time);
+            self.values.push(values);
+        }
         // What waits for a step after it has none.
         let first = if self.begun { self.times.len() - 2 } else { 0 };
         for place in first..self.times.len().saturating_sub(1) {
