@@ -386,7 +386,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
     let failure = mbint::inner::study::run(&clamped(0.99), mbint::inner::study::Options::default()).unwrap_err().to_string();
     println!("{failure}");
-    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives x, y and angle of all its nodes)"));
+    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)"));
 }
 
 /// Joint coordinates do not carry what bends.
