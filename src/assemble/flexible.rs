@@ -32,7 +32,7 @@ use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
 use crate::elements::effects::Section;
 use crate::grammar::PointRef;
 use crate::model::{Coordinate, Description, LineMass, StartValue, TimeOrder};
-use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Vector};
+use crate::multibody::{ANGLE, BuildError, Context, DEGREES_OF_FREEDOM, EULER, MaterialPoint, Vector};
 
 /// m over μL/420.
 const MASS: [[f64; 4]; 4] =
@@ -116,7 +116,30 @@ impl<'g> Mechanism<'g, '_> {
                 applied.add_torque_pair(0, at, body.rotate(torque));
             }
         }
-        Ok(applied.generalised(self))
+        let mut inertia = applied.generalised(self);
+        for element in self.elements()? {
+            self.add_stretch(&element, &mut inertia);
+        }
+        Ok(inertia)
+    }
+
+    /// M regular along p, where nothing moves: as of a body with a third of the trace of J.
+    fn add_stretch(&self, element: &Element<'g>, inertia: &mut [Scalar<'g>]) {
+        let Some(section) = element.section else { return };
+        let square = element.length * element.length;
+        let across = MASS[1][1] / 420.0 * (element.mass * element.length * square);
+        let trace = self.g.sum(section.components()) + 2.0 * across;
+        for end in &element.ends {
+            let body = &self.bodies[end.body];
+            let coordinates = EULER..DEGREES_OF_FREEDOM;
+            let (p, change) = (&body.position[coordinates.clone()], &body.acceleration[coordinates.clone()]);
+            let along = 4.0 / 3.0 * trace * self.g.dot(p, change);
+            for (index, &p) in body.index[coordinates].iter().zip(p) {
+                if let Some(row) = *index {
+                    inertia[row] += along * p;
+                }
+            }
+        }
     }
 
     /// T of all beams, J.

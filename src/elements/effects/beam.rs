@@ -14,13 +14,13 @@
 //! The element turns with its chord (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1 (1991), ch. 7). Its
 //! cubic bends by small angles against that and is longer than the chord by ½ ∫ v'²: e is how much it is stretched, on
 //! average, so bending does not stretch it, and tension stiffens it. L is its length, τ Kelvin and Voigt's damping, φ between −π
-//! and π. With shear, 4 and 2 become (4 + Φ)/(1 + Φ) and (2 − Φ)/(1 + Φ), Φ = 12 EI/(GA L²) (Przemieniecki, *Theory of Matrix Structural
+//! and π. With shear, its bow is b ((φ₁ + φ₂)/2)² + L (φ₂ − φ₁)²/24 with b of there, and 4 and 2 become (4 + Φ)/(1 + Φ) and (2 − Φ)/(1 + Φ), Φ = 12 EI/(GA L²) (Przemieniecki, *Theory of Matrix Structural
 //! Analysis* (1968), ch. 5). A massless one is an effect; of those with mass (`flexible`) a flexible body is made.
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
-use super::spatial_beam::SpatialBeam;
+use super::spatial_beam::{SpatialBeam, bow_of_shear, shear_number};
 use super::{ForceElement, Forces, LineMass, Section, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
@@ -118,7 +118,7 @@ impl ForceElement for Beam {
         let (free, damping) = (forces.value(&self.length)?, forces.value(&self.damping)?);
         let (axial, bending) = (forces.value(&self.axial_stiffness)?, forces.value(&self.bending_stiffness)?);
         let shears = self.shear_stiffness.as_ref().map(|shear| forces.value(shear)).transpose()?;
-        let shear_number = shears.map(|shear| 12.0 * bending / (shear * free * free));
+        let shear_number = shears.map(|shear| shear_number(bending, shear, free));
         let (axial, bending) = (axial / free, bending / free);
         let [a, b] = self.between.map(|point| forces.point(point));
         let (line, growth) = (b.position - a.position, b.velocity - a.velocity);
@@ -132,8 +132,17 @@ impl ForceElement for Beam {
         let [first, second] = ends;
         let [first, second] = [first?, second?];
         // ∂e/∂φ₁, ∂e/∂φ₂
-        let thirtieth = 1.0 / 30.0 * free;
-        let gradient = [(first, second), (second, first)].map(|(own, other)| thirtieth * (4.0 * own.angle - other.angle));
+        let gradient = match shear_number {
+            None => {
+                let thirtieth = 1.0 / 30.0 * free;
+                [(first, second), (second, first)].map(|(own, other)| thirtieth * (4.0 * own.angle - other.angle))
+            }
+            Some(number) => {
+                let slope = 0.5 * bow_of_shear(number) * (first.angle + second.angle);
+                let bend = 1.0 / 12.0 * (second.angle - first.angle);
+                [free * (slope - bend), free * (slope + bend)]
+            }
+        };
         // A form of second degree is half of its gradient times what it is of.
         let bow = 0.5 * sum_of_products(gradient, [first.angle, second.angle]);
         let stretch = length - free + bow;

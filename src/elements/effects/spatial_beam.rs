@@ -5,14 +5,16 @@
 //!
 //! ```text
 //! d = r_B − r_A,   ℓ = |d|,   c = d/ℓ                        ψ = θ = 4 f τ,   f = atan|τ|/|τ| = 1 − τ²/3 + τ⁴/5 − …
-//! e = ℓ − L + L (c_y² + c_z²)/10 + L (ψ_y² + ψ_z²)/24        how much longer the bent element is, m
+//! e = ℓ − L + b_y c_y² + b_z c_z² + L (ψ_y² + ψ_z²)/24        by how much its sections are apart, m
 //! V = ½ (EA/L) e² + ½ (k_y c_y² + k_z c_z²) + ½ (GJ ψ_x² + EI_y ψ_y² + EI_z ψ_z²)/L          J
 //! k_y = 12 EI_z/(L (1 + Φ_z)),   k_z = 12 EI_y/(L (1 + Φ_y)),   Φ = 12 EI/(GA L²), zero without shear
+//! b = L (1/10 − Φ²/2)/(1 + Φ)²
 //! ```
 //!
 //! c_y and c_z are the mean slopes of the sections against the chord: with EI ψ/L they are the stiffness matrix of Timoshenko's
-//! beam (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 5), and e is that of the element in the plane
-//! ([`super::beam`]). The middle frame turns by δμ = ½ (δα + δβ) − ½ τ × (δβ − δα), with δα and δβ the rotations of the ends in its
+//! beam (Przemieniecki, *Theory of Matrix Structural Analysis* (1968), ch. 5). Without shear e is that of the element in the plane
+//! ([`super::beam`]); a part c/(1 + Φ) of the slope bends, and the sections shear by γ = c Φ/(1 + Φ), which brings them nearer by
+//! L γ²/2. The middle frame turns by δμ = ½ (δα + δβ) − ½ τ × (δβ − δα), with δα and δβ the rotations of the ends in its
 //! axes, and δτ = ¼ (1 + τ²)(δβ − δα) (conformal rotation vector: Milenković, *Coordinates suitable for angular motion synthesis in
 //! robots* (1982)). So, with n = ∂V/∂d, m = ∂V/∂ψ and k = d × n,
 //!
@@ -134,7 +136,7 @@ impl<'g> SpatialBeam<'g> {
         let pull = tension * self.length;
         let zero = length.builder().number(0.0);
         let [about_y, about_z] = std::array::from_fn(|axis| {
-            self.slope_stiffness()[axis] * felt.slopes[axis] + 0.2 * pull * shape.slopes[axis]
+            self.slope_stiffness()[axis] * felt.slopes[axis] + 2.0 * tension * self.bows()[axis] * shape.slopes[axis]
         });
         let across = Vector::from([zero, about_y, about_z]);
         let force = tension * chord + (across - across.dot(chord) * chord) / length;
@@ -158,11 +160,21 @@ impl<'g> SpatialBeam<'g> {
         Measured { length, tension, moments: [felt_at(first, torques[0]), -felt_at(second, torques[1])] }
     }
 
-    /// The bilinear form of which e has the square: L (c_y² + c_z²)/10 + L (ψ_y² + ψ_z²)/24.
+    /// The bilinear form of which e has the square: b_y c_y² + b_z c_z² + L (ψ_y² + ψ_z²)/24.
     fn bow(&self, a: &Shape<'g>, b: &Shape<'g>) -> Scalar<'g> {
-        let slanted = a.slopes[0] * b.slopes[0] + a.slopes[1] * b.slopes[1];
+        let [y, z] = self.bows();
+        let slanted = y * a.slopes[0] * b.slopes[0] + z * a.slopes[1] * b.slopes[1];
         let turned = a.rotation[1] * b.rotation[1] + a.rotation[2] * b.rotation[2];
-        self.length * (0.1 * slanted + 1.0 / 24.0 * turned)
+        slanted + 1.0 / 24.0 * self.length * turned
+    }
+
+    /// b_y, b_z
+    fn bows(&self) -> [Scalar<'g>; 2] {
+        let [about_y, about_z] = self.bending;
+        [about_z, about_y].map(|bending| match self.shear {
+            None => 0.1 * self.length,
+            Some(shear) => bow_of_shear(shear_number(bending, shear, self.length)) * self.length,
+        })
     }
 
     /// k_y c_y² + k_z c_z² + (GJ ψ_x² + EI_y ψ_y² + EI_z ψ_z²)/L
@@ -176,9 +188,8 @@ impl<'g> SpatialBeam<'g> {
     fn slope_stiffness(&self) -> [Scalar<'g>; 2] {
         let [about_y, about_z] = self.bending;
         [about_z, about_y].map(|bending| {
-            let stiffness = 12.0 * bending;
-            let sheared = self.shear.map_or(self.length, |shear| self.length + stiffness / (shear * self.length));
-            stiffness / sheared
+            let stiffness = 12.0 * bending / self.length;
+            self.shear.map_or(stiffness, |shear| stiffness / (1.0 + shear_number(bending, shear, self.length)))
         })
     }
 
@@ -187,6 +198,16 @@ impl<'g> SpatialBeam<'g> {
         let [about_y, about_z] = self.bending;
         Vector::from([self.torsional, about_y, about_z]) / self.length
     }
+}
+
+/// Φ = 12 EI/(GA L²)
+pub(super) fn shear_number<'g>(bending: Scalar<'g>, shear: Scalar<'g>, length: Scalar<'g>) -> Scalar<'g> {
+    12.0 * bending / (shear * length * length)
+}
+
+/// b/L, by Φ.
+pub(super) fn bow_of_shear(number: Scalar<'_>) -> Scalar<'_> {
+    (0.1 - 0.5 * number * number) / (1.0 + number).powi(2)
 }
 
 impl<'g> Shape<'g> {
