@@ -61,6 +61,27 @@ fn a_cantilever_bends_by_the_textbook() {
     }
 }
 
+/// P L³/3EI + P L/GA, and P L²/2EI: of one element already.
+#[test]
+fn a_cantilever_that_shears_bends_by_the_textbook() {
+    for elements in [1, 3] {
+        let bounds = nominal(&read(&format!(
+            "
+analysis: statics
+bodies:
+  rod:
+    beam: {{ length: 1, mass_per_length: 1, axial_stiffness: 1e4, bending_stiffness: 1, shear_stiffness: 20, elements: {elements} }}
+joints: {{ clamp: {{ fixed: [ground, rod.start] }} }}
+effects: {{ load: {{ force: {{ on: rod.end, value: [0, -1e-4] }} }} }}
+outputs: {{ y: rod.end.y, angle: rod.end.angle }}
+"
+        )));
+        let wanted = -1e-4 * (1.0 / 3.0 + 1.0 / 20.0);
+        let (y, angle) = (last(&bounds, "y"), last(&bounds, "angle"));
+        assert!((y / wanted - 1.0).abs() < 1e-6 && (angle + 0.5e-4).abs() < 1e-10, "{elements}: {y:e} {angle:e}");
+    }
+}
+
 /// x, y and angle of the tip of the elastica under P L²/EI, stretched by ε = N/EA: θ'' = P (1 + ε) cos θ, θ(0) = 0, θ'(1) = 0 by
 /// shooting.
 fn elastica(load: f64, axial: f64) -> [f64; 3] {

@@ -65,6 +65,19 @@ fn inertia_of_beams_agrees_with_lagrange() {
     }
 }
 
+/// An element of the plane that shears.
+#[test]
+fn beams_that_shear_have_their_potential() {
+    let mut m = two_bodies();
+    m.effect(Beam { flexible: None, shear_stiffness: Some(formula("9")), ..heavy_beam(&m, "3") });
+    let system = m.build();
+    for seed in 0..4 {
+        let state = State::random(&system, seed);
+        let (power, rate) = (power(&system, &state), potential_rate(&system, &state));
+        assert!(power.abs() > 1e-3 && (power + rate).abs() <= 1e-6 * (1.0 + power.abs()), "{power} is not {}", -rate);
+    }
+}
+
 /// An element of space between frames askew, with uneven stiffness about y and z.
 fn spatial_beam(m: &Model, stiffness: [&str; 4], shear: Option<&str>) -> Beam {
     let [axial, about_z, about_y, torsional] = stiffness.map(formula);
