@@ -14,19 +14,25 @@
 //!
 //! So d'Alembert's forces on the ends are −Σ m_kl ë_l, with L ẗ = L (θ̈ n − θ̇² t), and their moments L n · (…); M is their slope
 //! by the accelerations. For small bending it is the consistent mass matrix of Euler and Bernoulli's beam (Przemieniecki, *Theory of
-//! Matrix Structural Analysis* (1968), ch. 11); sections have no inertia of rotation. Gravity acts on r(s):
+//! Matrix Structural Analysis* (1968), ch. 11); in the plane, sections
+//! have no inertia of rotation. Gravity acts on r(s):
 //!
 //! ```text
 //! ∫ r ds = L/2 (r_A + r_B) + L²/12 (t_A − t_B)
 //! ```
+//!
+//! In space ẗ = ω̇ × t + ω × (ω × t), the moments are t × L (…), and half of the element's sections turn with each end: with I in its
+//! axes, i_y = μ EI_y/EA, i_z = μ EI_z/EA, i_x = i_y + i_z (a section of one material), T gains ¼ L ω · I ω.
 
 use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
+use crate::elements::effects::Section;
+use crate::grammar::PointRef;
 use crate::model::{Coordinate, Description, LineMass, StartValue, TimeOrder};
-use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Vector};
+use crate::multibody::{ANGLE, BuildError, Context, DEGREES_OF_FREEDOM, EULER, MaterialPoint, Vector};
 
 /// m over μL/420.
 const MASS: [[f64; 4]; 4] =
@@ -41,6 +47,8 @@ struct Element<'g> {
     length: Scalar<'g>,
     /// μ
     mass: Scalar<'g>,
+    /// In space: ½ L I of each end, kg m².
+    section: Option<Vector<'g>>,
 }
 
 impl<'g> Mechanism<'g, '_> {
@@ -66,7 +74,18 @@ impl<'g> Mechanism<'g, '_> {
         let axes = beam.between.map(|point| self.bodies[point.body].rotate(axis));
         let length = self.formula(beam.length, Context::Parameters)?;
         let mass = self.formula(beam.mass_per_length, Context::Parameters)?;
-        Ok(Element { ends, axes, length, mass })
+        let section = beam.section.map(|section| self.half_of_sections(section, length * mass)).transpose()?;
+        Ok(Element { ends, axes, length, mass, section })
+    }
+
+    /// ½ L I from the mass of an element.
+    fn half_of_sections(&self, section: Section, mass: Scalar<'g>) -> Result<Vector<'g>, BuildError> {
+        let axial = self.formula(section.axial_stiffness, Context::Parameters)?;
+        let [about_y, about_z] = section
+            .bending_stiffness
+            .map(|bending| Ok::<_, BuildError>(0.5 * mass * self.formula(bending, Context::Parameters)? / axial));
+        let (about_y, about_z) = (about_y?, about_z?);
+        Ok([about_y + about_z, about_y, about_z].into())
     }
 
     /// Generalised inertial forces of all beams, n: their part of M w, with what depends on velocities.
@@ -77,6 +96,10 @@ impl<'g> Mechanism<'g, '_> {
                 let (point, axis) = (&element.ends[end], element.axes[end]);
                 let body = &self.bodies[point.body];
                 let position = body.acceleration_of(point.arm);
+                if element.section.is_some() {
+                    let (omega, alpha) = (body.angular_velocity(), body.angular_acceleration());
+                    return [position, alpha.cross(axis) + omega.cross(omega.cross(axis))];
+                }
                 let (rate, gain) = (body.angular_velocity()[2], body.angular_acceleration()[2]);
                 let (across, square) = (axis.perpendicular(), rate * rate);
                 let (along, beside) = (square * axis, gain * across);
@@ -85,9 +108,38 @@ impl<'g> Mechanism<'g, '_> {
             let [first, turning_first, second, turning_second] = element.momenta(&accelerations);
             for (end, force, turning) in [(0, first, turning_first), (1, second, turning_second)] {
                 element.push_by(&mut applied, end, force, element.length * turning);
+                let Some(section) = element.section else { continue };
+                let at = element.ends[end].body;
+                let body = &self.bodies[at];
+                let (omega, alpha) = (body.angular_velocity_in_body(), body.angular_acceleration_in_body());
+                let torque = section.weighting(alpha) + omega.cross(section.weighting(omega));
+                applied.add_torque_pair(0, at, body.rotate(torque));
             }
         }
-        Ok(applied.generalised(self))
+        let mut inertia = applied.generalised(self);
+        for element in self.elements()? {
+            self.add_stretch(&element, &mut inertia);
+        }
+        Ok(inertia)
+    }
+
+    /// M regular along p, where nothing moves: as of a body with a third of the trace of J.
+    fn add_stretch(&self, element: &Element<'g>, inertia: &mut [Scalar<'g>]) {
+        let Some(section) = element.section else { return };
+        let square = element.length * element.length;
+        let across = MASS[1][1] / 420.0 * (element.mass * element.length * square);
+        let trace = self.g.sum(section.components()) + 2.0 * across;
+        for end in &element.ends {
+            let body = &self.bodies[end.body];
+            let coordinates = EULER..DEGREES_OF_FREEDOM;
+            let (p, change) = (&body.position[coordinates.clone()], &body.acceleration[coordinates.clone()]);
+            let along = 4.0 / 3.0 * trace * self.g.dot(p, change);
+            for (index, &p) in body.index[coordinates].iter().zip(p) {
+                if let Some(row) = *index {
+                    inertia[row] += along * p;
+                }
+            }
+        }
     }
 
     /// T of all beams, J.
@@ -96,11 +148,18 @@ impl<'g> Mechanism<'g, '_> {
         for element in self.elements()? {
             let velocities = element.end_values(|end| {
                 let point = &element.ends[end];
-                let rate = self.bodies[point.body].angular_velocity()[2];
-                [point.velocity, rate * element.axes[end].perpendicular()]
+                let omega = self.bodies[point.body].angular_velocity();
+                let axis = element.axes[end];
+                let turning =
+                    if element.section.is_some() { omega.cross(axis) } else { omega[2] * axis.perpendicular() };
+                [point.velocity, turning]
             });
             let momenta = element.momenta(&velocities);
             parts.extend(velocities.into_iter().zip(momenta).map(|(velocity, momentum)| 0.5 * velocity.dot(momentum)));
+            for end in element.section.iter().flat_map(|_| &element.ends) {
+                let omega = self.bodies[end.body].angular_velocity_in_body();
+                parts.extend(element.section.map(|section| 0.5 * omega.dot(section.weighting(omega))));
+            }
         }
         Ok(self.g.sum(parts))
     }
@@ -132,18 +191,13 @@ impl<'g> Mechanism<'g, '_> {
             let is_free = |order| [first, second].iter().any(|&body| !is_given_at_start(description, body, order));
             let (position, velocity) = (is_free(TimeOrder::Position), is_free(TimeOrder::Velocity));
             let element = self.element(beam)?;
-            let line = element.ends[1].position - element.ends[0].position;
-            let across = element.axes[0].perpendicular();
-            let along = line.dot(element.axes[0]);
-            let angles = [first, second].map(|body| self.bodies[body].position[ANGLE]);
-            let rows = [
-                ("x", ResidualUnit::Length, along - element.length),
-                ("y", ResidualUnit::Length, line.dot(across)),
-                ("angle", ResidualUnit::Angle, angles[1] - angles[0]),
-            ];
+            let rows = match element.section {
+                Some(_) => self.straight_in_space(beam.between, element.length),
+                None => self.straight_in_plane(&element, [first, second]),
+            };
             let joint = beam.body.to_owned();
             let node = &description.bodies[second].name;
-            conditions.extend(rows.map(|(name, unit, value)| StartCondition {
+            conditions.extend(rows.into_iter().map(|(name, unit, value)| StartCondition {
                 info: ConstraintInfo { name: format!("{node}.{name}"), joint: joint.clone(), unit },
                 of: ConditionOf::Beam,
                 value: value.expr(),
@@ -156,12 +210,48 @@ impl<'g> Mechanism<'g, '_> {
     }
 }
 
+/// Something that is zero where an element is straight, by its name.
+type Straight<'g> = (&'static str, ResidualUnit, Scalar<'g>);
+
+impl<'g> Mechanism<'g, '_> {
+    fn straight_in_plane(&self, element: &Element<'g>, bodies: [usize; 2]) -> Vec<Straight<'g>> {
+        let line = element.ends[1].position - element.ends[0].position;
+        let across = element.axes[0].perpendicular();
+        let along = line.dot(element.axes[0]);
+        let angles = bodies.map(|body| self.bodies[body].position[ANGLE]);
+        vec![
+            ("x", ResidualUnit::Length, along - element.length),
+            ("y", ResidualUnit::Length, line.dot(across)),
+            ("angle", ResidualUnit::Angle, angles[1] - angles[0]),
+        ]
+    }
+
+    /// The second frame is as far along x of the first as the beam is long, and turned by nothing.
+    fn straight_in_space(&self, between: [PointRef; 2], length: Scalar<'g>) -> Vec<Straight<'g>> {
+        let pair = self.pair(between);
+        let place = pair.first.orientation.matrix().transposed() * pair.offset();
+        let turn = 2.0 * pair.relative().vector_part();
+        let lengths = [("x", place[0] - length), ("y", place[1]), ("z", place[2])];
+        let angles = ["rotation about x", "rotation about y", "rotation about z"].into_iter().zip(turn.components());
+        let lengths = lengths.map(|(name, value)| (name, ResidualUnit::Length, value));
+        lengths.into_iter().chain(angles.map(|(name, value)| (name, ResidualUnit::Angle, value))).collect()
+    }
+}
+
 /// Whether `initial` names all coordinates of a body, or all their velocities.
 fn is_given_at_start(description: &Description, body: usize, wanted: TimeOrder) -> bool {
     let named = |coordinate: &Coordinate| {
-        description.initial.iter().any(|value| {
-            matches!(value, StartValue::Coordinate { body: of, coordinate: c, order, .. }
-                if (*of, c, *order) == (body, coordinate, wanted))
+        description.initial.iter().any(|value| match value {
+            StartValue::Coordinate { body: of, coordinate: c, order, .. } => {
+                (*of, c, *order) == (body, coordinate, wanted)
+            }
+            StartValue::Orientation { body: of, .. } => {
+                *of == body && wanted == TimeOrder::Position && !coordinate.is_length()
+            }
+            StartValue::AngularVelocity { body: of, .. } => {
+                *of == body && wanted == TimeOrder::Velocity && !coordinate.is_length()
+            }
+            _ => false,
         })
     };
     description.bodies[body].coordinates.iter().all(named)
@@ -187,9 +277,15 @@ impl<'g> Element<'g> {
 
     /// What does F · δr + G · δt for every motion of an end.
     fn push_by(&self, applied: &mut AppliedForces<'g>, end: usize, force: Vector<'g>, turning: Vector<'g>) {
-        let across = self.axes[end].perpendicular();
-        let (zero, moment) = (self.length.builder().number(0.0), across.dot(turning));
         applied.add_force(&self.ends[end], force);
-        applied.add_torque_pair(0, self.ends[end].body, [zero, zero, moment].into());
+        let axis = self.axes[end];
+        let moment = match self.section {
+            Some(_) => axis.cross(turning),
+            None => {
+                let zero = self.length.builder().number(0.0);
+                [zero, zero, axis.perpendicular().dot(turning)].into()
+            }
+        };
+        applied.add_torque_pair(0, self.ends[end].body, moment);
     }
 }

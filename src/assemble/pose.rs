@@ -20,7 +20,7 @@ use symdiff::{Formula, Scalar};
 use super::mechanism::{Mechanism, Owner, dof};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
-use crate::model::Standing;
+use crate::model::{LineMass, Standing};
 use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, RotationCoordinates};
 
 /// A frame against another, in numbers.
@@ -170,17 +170,26 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
                     LinkKind::Axis(self.across(index, twist)?)
                 }
             };
-            let [here, there] = between.map(|point| local(m, point));
-            let link = Link { here, there, other: between[1].body, kind };
-            let kind = match kind {
-                LinkKind::Axis(pose) => LinkKind::Axis(pose.inverse()),
-                kind => kind,
-            };
-            let back = Link { here: there, there: here, other: between[0].body, kind };
-            self.links[between[0].body].push(link);
-            self.links[between[1].body].push(back);
+            self.link(between, kind);
+        }
+        for LineMass { between, length, .. } in &m.line_masses {
+            let length = self.nominal(length)?;
+            let across = Pose::at(length * Vector3::x(), UnitQuaternion::identity());
+            self.link(*between, LinkKind::Axis(across));
         }
         Ok(())
+    }
+
+    /// Notes what is between two points at both of their bodies.
+    fn link(&mut self, between: [PointRef; 2], kind: LinkKind) {
+        let [here, there] = between.map(|point| local(self.mechanism, point));
+        let back = match kind {
+            LinkKind::Axis(pose) => LinkKind::Axis(pose.inverse()),
+            kind => kind,
+        };
+        let [first, second] = between.map(|point| point.body);
+        self.links[first].push(Link { here, there, other: second, kind });
+        self.links[second].push(Link { here: there, there: here, other: first, kind: back });
     }
 
     fn nominal(&self, formula: &Formula) -> Result<f64, BuildError> {

@@ -1,4 +1,4 @@
-//! `beam` among `bodies:`: a flexible body of the plane. It becomes bodies without mass, its nodes, and an element with mass
+//! `beam` among `bodies:`: a flexible body. It becomes bodies without mass, its nodes, and an element with mass
 //! between each two.
 
 use crate::grammar::{Coordinate, PointRef};
@@ -45,10 +45,17 @@ pub fn nodes(beam: &str, elements: usize) -> impl Iterator<Item = String> {
     })
 }
 
+/// What a beam has in space alone.
+const OF_SPACE: [&str; 2] = ["bending_stiffness_y", "torsional_stiffness"];
+
 /// Reads a beam whose nodes were declared as the bodies from `first` on.
 pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
+    let spatial = reader.model.space.spatial;
     for node in &mut reader.model.bodies[first..=first + elements] {
-        node.coordinates = vec![Coordinate::X, Coordinate::Y, Coordinate::Angle];
+        node.coordinates = match spatial {
+            true => [&[Coordinate::X, Coordinate::Y, Coordinate::Z], &Coordinate::ORIENTATION[..]].concat(),
+            false => vec![Coordinate::X, Coordinate::Y, Coordinate::Angle],
+        };
     }
     let Some(body) = reader.fields::<file::Body>(&entry.value, entry.key_span.clone()) else { return };
     for key in RIGID.into_iter().filter(|key| body.get(key).is_some()) {
@@ -57,22 +64,31 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
         reader.error(body.key_span(key), format!("a beam has no `{key}`"), help.to_owned());
     }
     let (Some(node), at) = (body.get("beam"), body.key_span("beam")) else { return };
-    if reader.model.space.spatial {
-        let help = "in space, bend it at joints between rigid pieces, with a `bushing` or a spring in each".to_owned();
-        reader.error(at.clone(), "a beam bends in the plane, but the model is spatial", help);
-    }
     let Some(fields) = reader.fields::<file::FlexibleBeam>(node, at) else { return };
     if let Some(node) = fields.get("elements") {
         reader.count(node, 1, MOST);
     }
-    let mut number = |key: &str, dimension: Dimension| {
+    for key in OF_SPACE.into_iter().filter(|key| !spatial && fields.get(key).is_some()) {
+        let help = "in a model with `space: spatial` it bends about y and twists, too".to_owned();
+        reader.error(fields.key_span(key), format!("a beam of the plane has no `{key}`"), help);
+    }
+    let positive = |value: f64| value > 0.0;
+    let mut needed = |key: &str, dimension: Dimension| {
         let node = reader.required(&fields, key)?;
-        reader.formula_that(node, Context::Constant, dimension, |value| value > 0.0, "must be positive")
+        reader.formula_that(node, Context::Constant, dimension, positive, "must be positive")
     };
-    let length = number("length", Dimension::LENGTH);
-    let mass_per_length = number("mass_per_length", Dimension::MASS.per(Dimension::LENGTH));
-    let axial_stiffness = number("axial_stiffness", Dimension::FORCE);
-    let bending_stiffness = number("bending_stiffness", Dimension::TORQUE.times(Dimension::LENGTH));
+    let of_bending = Dimension::TORQUE.times(Dimension::LENGTH);
+    let length = needed("length", Dimension::LENGTH);
+    let mass_per_length = needed("mass_per_length", Dimension::MASS.per(Dimension::LENGTH));
+    let axial_stiffness = needed("axial_stiffness", Dimension::FORCE);
+    let bending_stiffness = needed("bending_stiffness", of_bending);
+    let torsional_stiffness = spatial.then(|| needed("torsional_stiffness", of_bending));
+    let mut number = |key: &str, dimension: Dimension| {
+        let node = fields.get(key)?;
+        reader.formula_that(node, Context::Constant, dimension, positive, "must be positive")
+    };
+    let bending_stiffness_y = number("bending_stiffness_y", of_bending);
+    let shear_stiffness = number("shear_stiffness", Dimension::FORCE);
     let damping = match fields.get("damping") {
         Some(node) => {
             let dimension = Dimension::TIME;
@@ -93,6 +109,9 @@ pub fn read(reader: &mut Reader, entry: &Entry, first: usize, elements: usize) {
             length: share.clone(),
             axial_stiffness: axial_stiffness.clone(),
             bending_stiffness: bending_stiffness.clone(),
+            bending_stiffness_y: bending_stiffness_y.clone(),
+            torsional_stiffness: torsional_stiffness.clone().flatten(),
+            shear_stiffness: shear_stiffness.clone(),
             damping: damping.clone(),
             flexible: Some(Flexible { body: entry.key.clone(), mass_per_length: mass.clone() }),
         };

@@ -50,6 +50,11 @@ impl<'g> Vector<'g> {
         }))
     }
 
+    /// `other`, component by component times this.
+    pub fn weighting(self, other: Self) -> Self {
+        Self(std::array::from_fn(|axis| self.0[axis] * other.0[axis]))
+    }
+
     /// Rotated about z by a right angle, counter-clockwise: (−y, x, 0).
     pub fn perpendicular(self) -> Self {
         let [x, y, _] = self.0;

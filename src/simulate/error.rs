@@ -287,8 +287,8 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
         ClosureRow::Condition(condition) => {
             let info = &system.start.conditions[condition].info;
             let (how, names) = match worst.of_velocities {
-                false => ("straight", "x, y and angle"),
-                true => ("as a rigid body", "vx, vy and angular_velocity"),
+                false => ("straight", "all coordinates"),
+                true => ("as a rigid body", "all velocities"),
             };
             let of = &info.joint;
             let owner = match system.start.conditions[condition].of {

@@ -61,6 +61,27 @@ fn a_cantilever_bends_by_the_textbook() {
     }
 }
 
+/// P L³/3EI + P L/GA, and P L²/2EI: of one element already.
+#[test]
+fn a_cantilever_that_shears_bends_by_the_textbook() {
+    for elements in [1, 3] {
+        let bounds = nominal(&read(&format!(
+            "
+analysis: statics
+bodies:
+  rod:
+    beam: {{ length: 1, mass_per_length: 1, axial_stiffness: 1e4, bending_stiffness: 1, shear_stiffness: 20, elements: {elements} }}
+joints: {{ clamp: {{ fixed: [ground, rod.start] }} }}
+effects: {{ load: {{ force: {{ on: rod.end, value: [0, -1e-4] }} }} }}
+outputs: {{ y: rod.end.y, angle: rod.end.angle }}
+"
+        )));
+        let wanted = -1e-4 * (1.0 / 3.0 + 1.0 / 20.0);
+        let (y, angle) = (last(&bounds, "y"), last(&bounds, "angle"));
+        assert!((y / wanted - 1.0).abs() < 1e-6 && (angle + 0.5e-4).abs() < 1e-10, "{elements}: {y:e} {angle:e}");
+    }
+}
+
 /// x, y and angle of the tip of the elastica under P L²/EI, stretched by ε = N/EA: θ'' = P (1 + ε) cos θ, θ(0) = 0, θ'(1) = 0 by
 /// shooting.
 fn elastica(load: f64, axial: f64) -> [f64; 3] {
@@ -386,7 +407,7 @@ simulation: {{ duration: 0.5, step: 1e-3, output_step: 1e-3 }}
     assert!((back as f64 * 1e-3 / period - 1.0).abs() < 0.03, "{back} {period}");
     let failure = mbint::inner::study::run(&clamped(0.99), mbint::inner::study::Options::default()).unwrap_err().to_string();
     println!("{failure}");
-    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives x, y and angle of all its nodes)"));
+    assert!(failure.contains("beam `rod` (it starts straight unless `initial` gives all coordinates of all its nodes)"));
 }
 
 /// Joint coordinates do not carry what bends.

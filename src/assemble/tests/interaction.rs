@@ -61,6 +61,9 @@ fn what_takes_nothing_has_its_potential() {
         length: formula("0.7"),
         axial_stiffness: formula("k"),
         bending_stiffness: formula("3"),
+        bending_stiffness_y: None,
+        torsional_stiffness: None,
+        shear_stiffness: None,
         damping: formula("0"),
         flexible: None,
     };

@@ -16,7 +16,7 @@ use super::numbers::{
 };
 
 /// Coordinates of a lump: x, y, z, p.
-const SIZE: usize = 7;
+pub const SIZE: usize = 7;
 
 fn names(point: &str, letters: &str) -> Vec<String> {
     letters.split(' ').map(|letter| format!("{point}.{letter}")).collect()
@@ -27,7 +27,7 @@ fn values(system: &System, state: &State, names: &[String]) -> Vector3<f64> {
 }
 
 /// Made-up values with p on its sphere and ṗ along it.
-fn on_sphere(system: &System, seed: u64) -> State {
+pub fn on_sphere(system: &System, seed: u64) -> State {
     let mut state = State::random(system, seed);
     for body in 0..system.q.len() / SIZE {
         let p = &system.q[SIZE * body + 3..SIZE * (body + 1)];
@@ -43,12 +43,12 @@ fn on_sphere(system: &System, seed: u64) -> State {
 }
 
 /// Torque about a body's origin that generalised forces on its p stand for: ½ E.
-fn torque(p: &[f64], force: &[f64]) -> Vector3<f64> {
+pub fn torque(p: &[f64], force: &[f64]) -> Vector3<f64> {
     let (e, f) = (Vector3::from_column_slice(&p[1..4]), Vector3::from_column_slice(&force[1..4]));
     0.5 * (p[0] * f - force[0] * e + e.cross(&f))
 }
 
-fn two_lumps() -> Model {
+pub fn two_lumps() -> Model {
     let mut m = Model::spatial();
     m.interval("d", [0.7, 0.8, 0.9]);
     let turned = |angles: [&str; 3]| Some(Rotation::RollPitchYaw(vector(angles)));
@@ -261,7 +261,7 @@ fn reactions_are_what_the_multipliers_do() {
 }
 
 /// Σ Q v of the effects alone: without what the same bodies feel by inertia.
-fn power(with: &System, state: &State) -> f64 {
+pub fn power(with: &System, state: &State) -> f64 {
     let inertial = two_lumps().build();
     let named: std::collections::HashMap<&str, f64> =
         state.0.iter().filter_map(|(&symbol, &value)| Some((with.graph.symbol_name(symbol)?, value))).collect();
@@ -273,7 +273,7 @@ fn power(with: &System, state: &State) -> f64 {
 }
 
 /// dV/dt along a motion, by finite differences.
-fn potential_rate(system: &System, state: &State) -> f64 {
+pub fn potential_rate(system: &System, state: &State) -> f64 {
     let h = 1e-5;
     let potential = output(system, "potential_energy");
     let ends = [h, -h].map(|h| state.later(system, h).value(&system.graph, potential));

@@ -82,15 +82,15 @@ impl ForceElement for Bushing {
         let entrained = omega[0].cross(offset);
         let rate = second.velocity - first.velocity - entrained;
         let displacement = inward * offset;
-        let elastic = weighted(stiffness.straight, displacement);
+        let elastic = stiffness.straight.weighting(displacement);
         let doubled = displacement.dot(elastic);
         let rate = inward * rate;
-        let mut pull = elastic + weighted(damping.straight, rate);
+        let mut pull = elastic + damping.straight.weighting(rate);
 
-        let twisted = weighted(stiffness.torsional, e);
+        let twisted = stiffness.torsional.weighting(e);
         let elastic = 2.0 * conjugate(q[0], e, twisted);
         let spin = inward * relative_omega;
-        let mut torque = elastic + weighted(damping.torsional, spin);
+        let mut torque = elastic + damping.torsional.weighting(spin);
 
         let halved = e.dot(twisted);
         let mut potential = 0.5 * doubled + 2.0 * halved;
@@ -160,11 +160,6 @@ impl<'g> Law<'g> {
 /// The torque q₀ y + e × y that does the work y · d(2 e).
 fn conjugate<'g>(q0: Scalar<'g>, e: Vector<'g>, y: Vector<'g>) -> Vector<'g> {
     q0 * y + e.cross(y)
-}
-
-/// Component by component.
-fn weighted<'g>(weights: Vector<'g>, a: Vector<'g>) -> Vector<'g> {
-    Vector::from(std::array::from_fn(|i| weights[i] * a[i]))
 }
 
 /// A vector along given axes.

@@ -8,6 +8,7 @@ mod forces;
 mod impact;
 mod positive_part;
 mod registry;
+mod spatial_beam;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
@@ -118,7 +119,7 @@ pub enum Scope {
     EveryBody,
 }
 
-/// Mass along the line between two points of bodies of the plane, which bends with them.
+/// Mass along the line between two points of bodies, which bends with them.
 #[derive(Clone, Copy, Debug)]
 pub struct LineMass<'a> {
     /// The flexible body that it is a part of.
@@ -131,6 +132,17 @@ pub struct LineMass<'a> {
     pub length: &'a Formula,
     /// kg/m
     pub mass_per_length: &'a Formula,
+    /// In space: by what its sections have inertia of rotation.
+    pub section: Option<Section<'a>>,
+}
+
+/// Stiffness of a section: of one material, its radii of gyration are √(EI/EA).
+#[derive(Clone, Copy, Debug)]
+pub struct Section<'a> {
+    /// EA, N
+    pub axial_stiffness: &'a Formula,
+    /// EI about y and z, N m²
+    pub bending_stiffness: [&'a Formula; 2],
 }
 
 /// What pushes a joint's coordinate.

@@ -20,7 +20,7 @@ grammar! {
         held: Option<Held>,
         /// Named points in the body's frame, m.
         points: Option<IndexMap<String, PointFile>>,
-        /// Instead of all that: a beam of the plane with mass, which bends. Its nodes `start`, `node1`, ..., `end` are bodies.
+        /// Instead of all that: a beam with mass, which bends. Its nodes `start`, `node1`, ..., `end` are bodies.
         beam: Option<FlexibleBeam>,
     }
 
@@ -32,8 +32,14 @@ grammar! {
         mass_per_length: Number,
         /// EA, N
         axial_stiffness: Number,
-        /// EI, N*m^2
+        /// EI, N*m^2; in space that about z of the nodes.
         bending_stiffness: Number,
+        /// In space: EI about y, N*m^2; by default that about z.
+        bending_stiffness_y: Option<Number>,
+        /// In space, and needed there: GJ, N*m^2
+        torsional_stiffness: Option<Number>,
+        /// GA of shear, with the section's shear coefficient in it, N; by default it does not shear.
+        shear_stiffness: Option<Number>,
         /// Kelvin and Voigt's: stress by strain rate over stress by strain, s; by default 0.
         damping: Option<Number>,
         /// Between nodes, each of the same length; by default 4.
