@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Motion of an MJCF by MuJoCo: `motion.py robot.xml [actuator=control ...] > robot.csv`, with PyPI's `mujoco` 4.0.
 
-Integrator implicitfast at 1e-5 s, contacts off, 1 s from rest in the file's configuration, rows 0.05 s apart: t, then
+Integrator implicitfast at 1e-5 s and at 2e-5 s, of which the error of first order is extrapolated away; contacts and limits off, 1 s from rest in the file's configuration, rows 0.05 s apart: t, then
 hinges' and slides' positions less those of the file's configuration, places of free bodies, and for balls roll, pitch and
 yaw of their bodies; SI units, angles in rad. Controls are formulas of t.
 """
@@ -10,17 +10,13 @@ import math
 import sys
 
 import mujoco
-import numpy
 
-STEP, DURATION, ROWS = 1e-5, 1.0, 20
+STEPS, DURATION, ROWS = (1e-5, 2e-5), 1.0, 20
 
 model = mujoco.MjModel.from_xml_path(sys.argv[1])
 model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-model.opt.timestep = STEP
 model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-if "limits" not in sys.argv:
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
-data = mujoco.MjData(model)
+model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_LIMIT
 controls = {}
 for argument in sys.argv[2:]:
     if "=" in argument:
@@ -33,7 +29,7 @@ def rpy(matrix):
     return [math.atan2(r[2, 1], r[2, 2]), math.asin(max(-1.0, min(1.0, -r[2, 0]))), math.atan2(r[1, 0], r[0, 0])]
 
 
-def row():
+def row(data):
     mujoco.mj_kinematics(model, data)
     values = [data.time]
     for joint in range(model.njnt):
@@ -59,11 +55,22 @@ for joint in range(model.njnt):
     else:
         names.append(name)
 print(",".join(names))
-mujoco.mj_forward(model, data)
-every = round(DURATION / STEP / ROWS)
-for step in range(round(DURATION / STEP) + 1):
-    if step % every == 0:
-        print(",".join(f"{value:.12g}" for value in row()))
-    for actuator, formula in controls.items():
-        data.ctrl[actuator] = eval(formula, {"t": data.time, "sin": math.sin, "cos": math.cos})
-    mujoco.mj_step(model, data)
+
+
+def motion(step):
+    model.opt.timestep = step
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    every = round(DURATION / step / ROWS)
+    rows = []
+    for count in range(round(DURATION / step) + 1):
+        if count % every == 0:
+            rows.append(row(data))
+        for actuator, formula in controls.items():
+            data.ctrl[actuator] = eval(formula, {"t": data.time, "sin": math.sin, "cos": math.cos})
+        mujoco.mj_step(model, data)
+    return rows
+
+
+for fine, coarse in zip(*(motion(step) for step in STEPS)):
+    print(",".join(f"{2 * x - y:.10g}" for x, y in zip(fine, coarse)))
