@@ -6,7 +6,7 @@
 use std::collections::HashSet;
 
 use super::robot::{Body, Joint, Kind, Robot};
-use super::tree::{Sections, keys, list, map, text, value, values};
+use super::tree::{Sections, in_unit, keys, lengths, list, map, text, values};
 use crate::grammar::motions::is_motion;
 use crate::model::robots::algebra::{self, Pose, Value, Vector};
 use crate::model::robots::masses::{self, Part};
@@ -42,13 +42,22 @@ impl<'r> Source<'r> {
         if self.named.contains(&number.name) { Value::Text(number.name.clone()) } else { Value::Number(number.value) }
     }
 
+    /// A mass, a length or a moment of inertia over its unit: what is made of them has its unit when it is whole.
+    fn plain(&self, number: &Number) -> Value {
+        let units = number.unit.split('*').map(|unit| format!("/ 1 {unit}")).collect::<Vec<_>>().join(" ");
+        match self.value(number) {
+            Value::Text(name) => Value::Text(format!("({name} {units})")),
+            value => value,
+        }
+    }
+
     /// Whether a number is a parameter, or not zero.
     pub fn acts(&self, number: &Number) -> bool {
         number.value != 0.0 || self.named.contains(&number.name)
     }
 
     fn vector(&self, numbers: &[Number; 3]) -> Vector {
-        numbers.each_ref().map(|number| self.value(number))
+        numbers.each_ref().map(|number| self.plain(number))
     }
 
     /// A frame at a point of a body, in the body that holds it.
@@ -60,7 +69,7 @@ impl<'r> Source<'r> {
 
 /// A point with its frame.
 pub fn point(span: &Span, pose: &Pose) -> Node {
-    let position = values(span, &pose.position);
+    let position = lengths(span, &pose.position);
     if pose.rotation.iter().skip(1).all(Value::is_zero) {
         return keys(span, [("position", position)]);
     }
@@ -148,11 +157,14 @@ fn rigid(source: &Source, index: usize, points: Vec<(String, Node)>) -> Node {
     } else {
         let [[xx, xy, xz], [_, yy, yz], [.., zz]] = [x, y, z];
         let elements = [("xx", xx), ("yy", yy), ("zz", zz), ("xy", xy), ("xz", xz), ("yz", yz)];
-        keys(span, elements.map(|(key, element)| (key, value(span, &element))))
+        keys(span, elements.map(|(key, element)| (key, in_unit(span, &element, "1 kg * 1 m^2"))))
     };
-    let center = values(span, &center);
+    let center = lengths(span, &center);
     let points = map(span, points);
-    keys(span, [("mass", value(span, &mass)), ("inertia", inertia), ("center_of_mass", center), ("points", points)])
+    keys(
+        span,
+        [("mass", in_unit(span, &mass, "1 kg")), ("inertia", inertia), ("center_of_mass", center), ("points", points)],
+    )
 }
 
 /// The mass of a body, where it is part of another.
@@ -160,11 +172,11 @@ fn part_of(source: &Source, index: usize, holder: usize) -> Option<Part> {
     let (held_by, pose) = &source.holders[index];
     let mass = source.robot.bodies[index].mass.as_ref().filter(|_| *held_by == holder)?;
     let pose = pose.then(&source.vector(&mass.center), &mass.rotation);
-    let (total, nominal) = (source.value(&mass.mass), mass.mass.value);
+    let (total, nominal) = (source.plain(&mass.mass), mass.mass.value);
     let [xx, yy, zz, xy, xz, yz] = mass.inertia.each_ref().map(|number| match (&total, mass.of_geoms) {
         // A body of another density.
         (Value::Text(_), true) => algebra::mul(&total, &Value::Number(number.value / nominal)),
-        _ => source.value(number),
+        _ => source.plain(number),
     });
     let tensor = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
     Some(Part { mass: total, center: pose.position, inertia: algebra::rotate_tensor(&pose.rotation, &tensor) })

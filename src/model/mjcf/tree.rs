@@ -30,6 +30,18 @@ pub fn values<const N: usize>(span: &Span, numbers: &[Value; N]) -> Node {
     list(span, numbers.iter().map(|number| value(span, number)))
 }
 
+/// A number in SI; a formula, which is a pure number, times its unit.
+pub fn in_unit(span: &Span, number: &Value, unit: &str) -> Node {
+    match number {
+        Value::Number(_) => value(span, number),
+        Value::Text(formula) => text(span, format!("{formula} * {unit}")),
+    }
+}
+
+pub fn lengths<const N: usize>(span: &Span, numbers: &[Value; N]) -> Node {
+    list(span, numbers.iter().map(|number| in_unit(span, number, "1 m")))
+}
+
 /// The sections of a model's tree.
 pub struct Sections(pub Vec<Entry>);
 
