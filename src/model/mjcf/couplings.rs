@@ -3,8 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::document::{Attribute, Item};
-use super::read::Names;
-use super::robot::{Actuator, At, Body, Coupling, Equality, Law, Length, Robot, Tendon};
+use super::robot::{Actuator, At, Body, Coupling, Equality, Law, Length, Names, Robot, Tendon};
 use super::values::Values;
 use crate::model::robots::algebra::{self, Pose, Value};
 use crate::model::robots::names;

@@ -1,8 +1,9 @@
-//! MJCF text → elements with places, included files in their places, every name checked against [`format`](super::format).
+//! MJCF text → elements with places, included files in their places, every name checked against [`table`](super::table).
 
 use std::path::{Component, Path, PathBuf};
 
-use super::format::{self, Fate, Rule};
+use super::format::{Fate, Rule};
+use super::table;
 use crate::model::robots::xml::{self, Element, NAMESPACE, Places};
 use crate::model::text_file;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
@@ -119,7 +120,7 @@ impl Reader<'_> {
             if child.tag_name().namespace() != element.tag_name().namespace() {
                 continue;
             }
-            if child.tag_name().name() == "include" && format::rule("include", within).is_some() {
+            if child.tag_name().name() == "include" && table::rule("include", within).is_some() {
                 self.include(child, places, within, found);
                 continue;
             }
@@ -150,9 +151,9 @@ impl Reader<'_> {
     /// An element with everything in it, unless it is ignored or refused.
     fn item(&mut self, element: Element, places: Places, within: &str) -> Option<Item> {
         let (tag, span) = (element.tag_name().name(), places.tag(element));
-        let Some(rule) = format::rule(tag, within) else {
+        let Some(rule) = table::rule(tag, within) else {
             let message = format!("`<{within}>` has no element `<{}>`", clip(tag));
-            self.unknown(span, message, tag, format::elements_of(within));
+            self.unknown(span, message, tag, table::elements_of(within));
             return None;
         };
         match rule.fate {

@@ -1,4 +1,4 @@
-//! Which elements and attributes of MJCF there are, and what becomes of each.
+//! How the table of MJCF's elements is written.
 
 /// What becomes of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,19 +38,4 @@ impl Rule {
         let found = self.refused.iter().find(|(names, ..)| names.split_whitespace().any(|name| name == attribute));
         found.map(|&(_, harmless, why)| (harmless, why))
     }
-}
-
-/// The rule of an element in another.
-pub fn rule(tag: &str, within: &str) -> Option<&'static Rule> {
-    rules().find(|rule| rule.tag == tag && rule.within.split(' ').any(|known| known == within))
-}
-
-/// Elements that may stand in another.
-pub fn elements_of(within: &str) -> impl Iterator<Item = &'static str> {
-    rules().filter(move |rule| rule.within.split(' ').any(|known| known == within)).map(|rule| rule.tag)
-}
-
-/// All of them.
-pub fn rules() -> impl Iterator<Item = &'static Rule> {
-    super::elements::SECTIONS.iter().chain(super::elements::BODIES).chain(super::elements::COUPLINGS)
 }

@@ -1,11 +1,11 @@
 //! Elements → [`Robot`]: bodies with their frames, joints and masses. What couples and drives them is in `couplings`.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use super::couplings;
 use super::document::{Attribute, Item};
 use super::geoms::{self, Solid};
-use super::robot::{Body, Joint, Kind, Mass, Robot, Site};
+use super::robot::{Body, Joint, Kind, Mass, Names, Robot, Site};
 use super::values::Values;
 use crate::model::robots::algebra::{self, Pose, Quaternion};
 use crate::model::robots::masses::Part;
@@ -81,16 +81,6 @@ fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
         }
     }
     gravity
-}
-
-/// What names of the file stand for.
-#[derive(Default)]
-pub struct Names {
-    taken: HashSet<String>,
-    pub bodies: HashMap<String, usize>,
-    pub joints: HashMap<String, usize>,
-    /// Body and place among its sites.
-    pub sites: HashMap<String, (usize, usize)>,
 }
 
 /// What is around an element.

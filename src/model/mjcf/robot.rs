@@ -1,5 +1,7 @@
 //! What an MJCF says, typed, defaults applied: bodies, joints and what couples and drives them, lengths in m, angles in rad.
 
+use std::collections::{HashMap, HashSet};
+
 use crate::model::robots::algebra::Quaternion;
 use crate::model::robots::numbers::Number;
 use crate::syntax::source::Span;
@@ -155,6 +157,16 @@ pub struct Actuator {
     pub law: Law,
     pub control: Option<[f64; 2]>,
     pub force: Option<[f64; 2]>,
+}
+
+/// What names of the file stand for.
+#[derive(Default)]
+pub struct Names {
+    pub taken: HashSet<String>,
+    pub bodies: HashMap<String, usize>,
+    pub joints: HashMap<String, usize>,
+    /// Body and place among its sites.
+    pub sites: HashMap<String, (usize, usize)>,
 }
 
 impl Robot {

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::format::{Fate, rules};
+use super::format::Fate;
+use super::table::rules;
 
 const MARK: &str = "<!-- table: made from the reader's own by `MBINT_UPDATE_DOCS=1 cargo test --lib mjcf` -->\n";
 
