@@ -78,8 +78,9 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
             .or_else(|| angular_motion(table, owner, member, part))
             .or_else(|| reaction(table, owner, member, Some(part)))
             .or_else(|| of_beam(table, name))
+            .or_else(|| deviation(table, name))
             .or_else(|| of_instance(table, name)),
-        _ => of_instance(table, name),
+        _ => deviation(table, name).or_else(|| of_instance(table, name)),
     }
 }
 
@@ -125,7 +126,7 @@ pub(super) fn place(table: &impl SymbolTable, name: &str) -> Option<PointRef> {
     Some(PointRef { body, point: Some(point) })
 }
 
-/// `s2.deviation`: how far a parameter is from the value that it follows.
+/// `s2.deviation`: how far a parameter is from the value that it follows. `body.arm.mass`: a number of a robot's file.
 fn deviation(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
     table.parameter(name).map(Symbol::Parameter)
 }

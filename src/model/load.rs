@@ -11,7 +11,7 @@ use super::scenes::{Scenes, Variant};
 use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{
-    analysis, bodies, bounds, effects, joints, motion_times, parameters, requests, requirements, space, states,
+    analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, space, states,
     statistics, tables, teeth,
 };
 use crate::grammar::Lengths;
@@ -115,6 +115,9 @@ pub fn read(path: &Path, overrides: &[Override]) -> Reading {
         // A model of nothing but the robot; what is wrong is wrong in the robot's file.
         return read_str(&name, &urdf::model_of(path), overrides);
     }
+    if mjcf::is_mjcf(path) {
+        return read_str(&name, &mjcf::model_of(path), overrides);
+    }
     let text = if from_input { text_of(std::io::stdin().lock(), MAX_BYTES) } else { read_text(path, MAX_BYTES) };
     match text {
         Ok(text) => read_str(&name, &text, overrides),
@@ -148,6 +151,13 @@ pub fn read_str(name: &str, text: &str, overrides: &[Override]) -> Reading {
     }
     let Some(root) = yaml::parse(text, &mut diagnostics) else {
         return Reading { description: None, scenes: Vec::new(), diagnostics };
+    };
+    let root = match root.get("mjcf") {
+        None => root,
+        Some(_) => match mjcf::write_out(&mut blank(name, &mut diagnostics), &root, Path::new(name), &placed) {
+            Some(root) if !diagnostics.has_errors() => root,
+            _ => return Reading { description: None, scenes: Vec::new(), diagnostics },
+        },
     };
     let written = parts::write_out(&mut blank(name, &mut diagnostics), &root, text, &placed);
     let (root, parts) = match written {
@@ -359,6 +369,10 @@ fn no_robot(reader: &mut Reader, fields: &Fields) {
             message,
             "the effect `stop` limits a joint of the model's own".to_owned(),
         );
+    }
+    if fields.get("controls").is_some() {
+        let message = "`controls` are those of a robot's actuators, but the model names no `mjcf`";
+        reader.error(fields.key_span("controls"), message, "an effect acts by a formula of its own".to_owned());
     }
     if fields.get("base").is_some() {
         let message = "`base` says how a robot stands, but the model names no `urdf`";

@@ -15,7 +15,7 @@ use symdiff::Formula;
 use self::spec::Spec;
 use super::description::{Parameter, ParameterValue};
 use super::overrides::Override;
-use super::urdf;
+use super::{mjcf, urdf};
 use crate::grammar::Symbol;
 use crate::grammar::dimension::Kind;
 use crate::grammar::formulas::{Written, evaluate};
@@ -29,6 +29,11 @@ use crate::syntax::yaml::{Entry, Node};
 
 /// Most parameters: every name of a formula is looked for among them.
 const MOST: usize = 20_000;
+
+/// Whether a name is that of a number of a robot's file.
+fn is_of_robot(name: &str) -> bool {
+    urdf::is_number(name) || mjcf::is_number(name)
+}
 
 /// A parameter between its text and its value.
 pub(super) struct Draft {
@@ -45,14 +50,14 @@ pub(super) struct Draft {
 /// Reads the parameters; after this, formulas of them can be checked and evaluated.
 pub fn read(reader: &mut Reader, entries: &[Entry], overrides: &[(Override, Span)]) {
     let mut entries = entries;
-    let mut own = entries.iter().enumerate().filter(|(_, entry)| !urdf::is_number(&entry.key));
+    let mut own = entries.iter().enumerate().filter(|(_, entry)| !is_of_robot(&entry.key));
     if let Some((first, entry)) = own.nth(MOST) {
         reader.error(entry.key_span.clone(), format!("the model has more than {MOST} parameters"), None);
         entries = &entries[..first];
     }
     let replaced = find_overrides(reader, entries, overrides);
     for entry in entries {
-        if !urdf::is_number(&entry.key) {
+        if !is_of_robot(&entry.key) {
             reader.name(entry, "a parameter");
         }
         // NaN until it is known: no file can write that.
@@ -259,7 +264,7 @@ pub fn unused(reader: &Reader, entries: &[Entry], is_count: impl Fn(&str) -> boo
         Diagnostic::warning(entry.key_span.clone(), message)
     };
     // What a robot's numbers do is in its bodies.
-    entries.iter().filter(|entry| !urdf::is_number(&entry.key)).filter(unused).map(warning).collect()
+    entries.iter().filter(|entry| !is_of_robot(&entry.key)).filter(unused).map(warning).collect()
 }
 
 /// Names of the parameters that vary, but that nothing refers to, directly or through others.

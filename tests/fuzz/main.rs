@@ -49,6 +49,11 @@ fn robots(few: u32) {
     fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::robot);
 }
 
+fn mjcf(few: u32) {
+    let corpus = Corpus::of(&["models", "tests/bad_models", "tests/reference/mjcf"], "xml");
+    fuzz(few, edits().prop_map(move |edits| corpus.apply(&edits)), targets::mjcf);
+}
+
 fn formulas(few: u32) {
     fuzz(few, formula(), targets::formula);
 }
@@ -67,6 +72,11 @@ mod few {
     #[test]
     fn robots() {
         super::robots(1000);
+    }
+
+    #[test]
+    fn mjcf() {
+        super::mjcf(1000);
     }
 
     #[test]
@@ -91,6 +101,12 @@ mod many {
     #[ignore = "10 s: as many inputs as the gate tries"]
     fn robots() {
         super::robots(5000);
+    }
+
+    #[test]
+    #[ignore = "10 s: as many inputs as the gate tries"]
+    fn mjcf() {
+        super::mjcf(5000);
     }
 
     #[test]

@@ -11,7 +11,17 @@ pub fn model(text: &str) {
 
 /// Reads a URDF by itself, and renders what is wrong with it.
 pub fn robot(text: &str) {
-    let path = std::env::temp_dir().join(format!("mbint-fuzz-{}.urdf", std::process::id()));
+    by_itself(text, "urdf");
+}
+
+/// Reads an MJCF by itself, and renders what is wrong with it.
+pub fn mjcf(text: &str) {
+    by_itself(text, "xml");
+}
+
+/// Reads a robot's file by itself.
+fn by_itself(text: &str, ending: &str) {
+    let path = std::env::temp_dir().join(format!("mbint-fuzz-{}.{ending}", std::process::id()));
     std::fs::write(&path, text).expect("the folder for temporary files can be written");
     report(&model::read(&path, &[]));
     // What cannot be removed is written over.

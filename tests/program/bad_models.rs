@@ -1,5 +1,5 @@
 //! Every file in `tests/bad_models` says at its top what is wrong with it: `# error: 13:13 unknown body `crnk``, each
-//! perhaps with `# help: …`, in a URDF `<!-- error: … -->`. Message and place must both be found, and nothing else.
+//! perhaps with `# help: …`, in a URDF or MJCF `<!-- error: … -->`. Message and place must both be found, and nothing else.
 //!
 //! `{effects}` stands for the list of all effects, which grows.
 //!
@@ -61,7 +61,9 @@ fn bad_models() -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = fs::read_dir(root().join("tests/bad_models"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml" || extension == "urdf"))
+        .filter(|path| {
+            path.extension().is_some_and(|extension| ["yaml", "urdf", "xml"].iter().any(|known| extension == *known))
+        })
         .collect();
     paths.sort();
     paths

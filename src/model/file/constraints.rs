@@ -47,9 +47,11 @@ fn of_model(root: &mut Map<String, Value>) {
             "outputs": { "type": "object", "minProperties": 1 }
         }
     });
-    root.insert("if".to_owned(), json!({ "not": { "required": ["urdf"] } }));
+    root.insert("if".to_owned(), json!({ "not": { "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }] } }));
     root.insert("then".to_owned(), alone);
-    root.insert("dependentRequired".to_owned(), json!({ "limits": ["urdf"], "base": ["urdf"] }));
+    root.insert("dependentRequired".to_owned(), json!({ "base": ["urdf"], "controls": ["mjcf"] }));
+    let robot = json!({ "anyOf": [{ "required": ["urdf"] }, { "required": ["mjcf"] }] });
+    root.insert("dependentSchemas".to_owned(), json!({ "limits": robot }));
     root.insert("examples".to_owned(), json!([example()]));
     let Some(properties) = root.get_mut("properties").and_then(Value::as_object_mut) else { return };
     insert(&mut properties["base"], "default", json!("fixed"));

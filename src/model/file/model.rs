@@ -20,6 +20,10 @@ grammar! {
         urdf: Option<String>,
         /// Whether the robot's root link is fixed to the ground, which is the default.
         base: Option<BaseName>,
+        /// A robot to begin with: an MJCF file (MuJoCo's XML), beside this one. Its bodies are bodies, its numbers parameters.
+        mjcf: Option<String>,
+        /// What the actuators of the `mjcf` are told, by name: numbers, or formulas of t and the motion.
+        controls: Option<IndexMap<String, Number>>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,
         /// Files of assemblies, beside this one or below.

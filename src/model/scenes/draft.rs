@@ -200,12 +200,13 @@ impl Draft {
 
     /// A parameter's new value; its unit and description stay, what is said of its deviation does not.
     fn parameters(&mut self, reader: &mut Reader, node: &Node, key_span: Span) {
+        let has_robot = self.has_robot();
         for entry in reader.entries(node, "parameters") {
             let Some(parameters) = self.section("parameters", key_span.clone(), node) else { return };
             let known = parameters.iter().position(|known| known.key == entry.key);
             match known {
                 // A number of the URDF is there without being named.
-                _ if urdf::is_number(&entry.key) => replace(parameters, entry.clone()),
+                _ if has_robot && urdf::is_number(&entry.key) => replace(parameters, entry.clone()),
                 Some(place) => parameters[place] = overridden(&parameters[place], entry),
                 None => {
                     let names = parameters.iter().map(|known| known.key.as_str());

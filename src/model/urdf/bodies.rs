@@ -6,11 +6,12 @@
 //!
 //! The other links are frames at points of it, named after them.
 
-use super::algebra::{self, Value, Vector};
-use super::source::{Pose, Source, formula, formulas};
+use super::source::{Source, formula, formulas};
 use crate::grammar::Coordinate;
 use crate::model::description::{Body, Inertia};
 use crate::model::names::Reader;
+use crate::model::robots::algebra::{self, Pose, Value, Vector};
+use crate::model::robots::masses::{Part, center, inertia};
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What a body without mass gets that cannot be left out (kg, kg m²), and the least radius of gyration squared, m².
@@ -24,13 +25,6 @@ pub struct Group {
     pub links: Vec<usize>,
     /// Index into the model's bodies; absent where it is left out.
     pub body: Option<usize>,
-}
-
-/// Mass, centre of mass and inertia about it of a link, in the frame of its body.
-struct Part {
-    mass: Value,
-    center: Vector,
-    inertia: [Vector; 3],
 }
 
 /// The body of links that are welded together.
@@ -97,39 +91,6 @@ fn parts(source: &Source, group: &Group, of_link: &[(usize, Pose)]) -> Vec<Part>
         }
     });
     part.collect()
-}
-
-fn center(parts: &[Part], mass: &Value) -> Vector {
-    match parts {
-        [] => algebra::vector([0.0; 3]),
-        [part] => part.center.clone(),
-        parts => std::array::from_fn(|i| {
-            let moments: Vec<Value> = parts.iter().map(|part| algebra::mul(&part.mass, &part.center[i])).collect();
-            algebra::div(&algebra::sum(&moments), mass)
-        }),
-    }
-}
-
-/// Of all parts about their centre of mass.
-fn inertia(parts: &[Part], center: &Vector) -> [Vector; 3] {
-    let steiner = |part: &Part| {
-        let d: Vector = std::array::from_fn(|i| algebra::sub(&part.center[i], &center[i]));
-        algebra::steiner(&part.mass, &d)
-    };
-    let shifts: Vec<[Vector; 3]> = if parts.len() > 1 { parts.iter().map(steiner).collect() } else { Vec::new() };
-    std::array::from_fn(|i| {
-        std::array::from_fn(|k| {
-            let terms: Vec<Value> = parts
-                .iter()
-                .enumerate()
-                .flat_map(|(index, part)| {
-                    let shift = shifts.get(index).map_or_else(|| algebra::number(0.0), |shift| shift[i][k].clone());
-                    [part.inertia[i][k].clone(), shift]
-                })
-                .collect();
-            algebra::sum(&terms)
-        })
-    })
 }
 
 /// What has to be added to a tensor that turns the equations singular, or nearly; uncertain ones are as they are said to be.

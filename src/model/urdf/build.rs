@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
-use super::algebra;
 use super::bodies::{Group, body};
 use super::joints::{joint, mimic};
-use super::robot::{Joint as UrdfJoint, Kind, Number};
-use super::source::{Built, Pose, Source, coordinate, point};
+use super::robot::{Joint as UrdfJoint, Kind};
+use super::source::{Built, Source, coordinate, point};
 use crate::grammar::{JointCoordinate, PointRef};
 use crate::model::description::{RobotTree, TreeJoint, TreeLink};
 use crate::model::names::Reader;
+use crate::model::robots::algebra::{self, Pose};
+use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// Adds bodies and joints to the model.

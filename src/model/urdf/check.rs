@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
-use super::algebra;
 use super::format::{Absent, Attribute, ROBOT, Rule, Shape};
-use super::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
+use crate::model::robots::algebra;
+use crate::model::robots::xml::{EXPAND, Element, NAMESPACE, Places, children, plain};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};

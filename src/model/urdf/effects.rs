@@ -7,13 +7,14 @@
 use crate::grammar::{FrictionMode, JointCoordinate, OnJoint, Quantity, Value};
 use symdiff::Formula;
 
-use super::robot::{Joint, Kind, Limits, Number};
+use super::robot::{Joint, Kind, Limits};
 use super::source::{Built, Source, coordinate, formula};
 use crate::elements::effects::joint_friction::FrictionJoint;
 use crate::elements::effects::{DryFriction, EffectKind, Impact, JointFriction, Stop};
 use crate::model::description::Effect;
 use crate::model::file;
 use crate::model::names::Reader;
+use crate::model::robots::numbers::Number;
 use crate::model::scenes::{self, LeftOut};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;

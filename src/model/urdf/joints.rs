@@ -2,13 +2,13 @@
 
 use symdiff::Formula;
 
-use super::algebra::{self, Value};
 use super::robot::Kind;
 use super::source::{Built, Source, coordinate, formula, point};
 use crate::elements::joints::{Equation, Gear, JointKind, Planar, Prismatic, Revolute};
 use crate::grammar::{Axis, Direction, PointRef, Rotating};
 use crate::model::description::Joint;
 use crate::model::names::Reader;
+use crate::model::robots::algebra::{self, Value};
 
 /// Adds a joint that moves, with the frame it is at on its parent.
 pub fn joint(reader: &mut Reader, source: &Source, built: &Built, index: usize) -> Option<usize> {

@@ -1,17 +1,16 @@
 //! `urdf:`, a robot's file as the beginning of a model; or alone, as a model with gravity.
 //!
-//! XML (`xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`uncertain`) → bodies, joints and effects
-//! (`build`, `effects`, `start`), with formulas (`algebra`) where a number is a parameter. A number is one where something names it;
+//! XML (`robots::xml`, `check`, `read`) → [`Robot`](robot::Robot), one tree (`tree`) → parameters (`robots::numbers`) → bodies, joints and effects
+//! (`build`, `effects`, `start`), with formulas (`robots::algebra`) where a number is a parameter. A number is one where something names it;
 //! all others stay numbers.
 
-mod algebra;
 mod bodies;
-mod budget;
 mod build;
 mod check;
 mod effects;
 mod format;
 mod joints;
+mod number_names;
 mod read;
 mod robot;
 mod source;
@@ -19,17 +18,17 @@ mod start;
 #[cfg(test)]
 mod tests;
 mod tree;
-mod uncertain;
 mod visual;
-mod xml;
 
 use std::collections::HashSet;
 use std::path::Path;
 
+use self::number_names::FORMAT;
+pub use self::number_names::is_number;
 use self::robot::Robot;
 use self::source::{Built, Source};
-pub use self::uncertain::is_number;
 use super::overrides::Override;
+use super::robots::numbers;
 use super::scenes::LeftOut;
 use super::text_file;
 use crate::grammar::reader::Fields;
@@ -102,12 +101,12 @@ impl Urdf {
         // A drone or a brick by itself: fixed, nothing of it would be left.
         let loose = || is_urdf(model) && robot.is_rigid() && robot.has_mass();
         let floating = base.unwrap_or_else(loose);
-        Some(Self { robot, floating, words: uncertain::words(root, overrides) })
+        Some(Self { robot, floating, words: numbers::words(root, overrides) })
     }
 
     /// The model's parameters, with those of the robot.
     pub fn parameters(&self, reader: &mut Reader, written: &[Entry]) -> Vec<Entry> {
-        uncertain::entries(reader, &self.robot, &self.words, written)
+        numbers::entries(reader, &FORMAT, self.robot.numbers(), &self.words, written)
     }
 
     /// Adds the robot's bodies and joints to the model, behind those that it has.

@@ -1,17 +1,18 @@
 //! URDF text → [`Robot`].
 //!
-//! The text is parsed for places ([`xml`](super::xml)) and checked ([`check`](super::check)); urdf-rs reads the values; and
+//! The text is parsed for places ([`xml`](crate::model::robots::xml)) and checked ([`check`](super::check)); urdf-rs reads the values; and
 //! what is left to check is what values mean together: names, masses, axes, and that links and joints are one tree.
 
 use std::collections::{HashMap, HashSet};
 
 use urdf_rs::JointType;
 
-use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Number, Origin, Robot};
+use super::robot::{Inertial, Joint, Kind, Limits, Link, Mimic, Origin, Robot};
 use super::visual::Visuals;
-use super::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
 use super::{check, tree};
-use crate::grammar::names;
+use crate::model::robots::names;
+use crate::model::robots::numbers::Number;
+use crate::model::robots::xml::{EXPAND, Element, NAMESPACE, Places, child, children, parse, plain};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
@@ -19,7 +20,7 @@ use crate::syntax::suggest::{self, clip};
 /// Reads the text, which begins at an offset of the sources; reports everything that is wrong with it.
 pub fn read(text: &str, start: usize, diagnostics: &mut Diagnostics) -> Option<Robot> {
     let before = diagnostics.errors();
-    let document = parse(text, start, diagnostics)?;
+    let document = parse(text, start, "a URDF", diagnostics)?;
     let root = document.root_element();
     let places = Places { start };
     let mut reader = Reader { places, diagnostics };
@@ -126,21 +127,13 @@ impl Reader<'_> {
         Some(robot)
     }
 
-    /// A name as formulas can have it: `_` for what cannot stand there.
+    /// A name as formulas can have it.
     fn name(&mut self, element: Element, what: &str, written: &str, taken: &mut HashSet<String>) -> Option<String> {
         if written.trim().is_empty() {
             self.error(self.places.tag(element), format!("a {what} needs a `name`"), None);
             return None;
         }
-        let mut name: String = written.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
-        if name.starts_with(|c: char| c.is_numeric()) {
-            name.insert(0, '_');
-        }
-        while names::is_reserved(&name) || name == names::GROUND || taken.contains(&name) {
-            name.push('_');
-        }
-        taken.insert(name.clone());
-        Some(name)
+        Some(names::in_formulas(written, taken))
     }
 
     fn origin(&self, within: Element, pose: &urdf_rs::Pose, prefix: &str) -> Origin {

@@ -1,21 +1,8 @@
 //! What a URDF says, typed: links, joints, and every number with its place and the name it has as a parameter.
 
 use crate::model::description::Visual;
+use crate::model::robots::numbers::Number;
 use crate::syntax::source::Span;
-
-/// A number of the file.
-#[derive(Clone, Debug)]
-pub struct Number {
-    /// As a parameter, e.g. `link.forearm.mass`.
-    pub name: String,
-    /// SI.
-    pub value: f64,
-    pub unit: &'static str,
-    /// Where it stands, or where it would.
-    pub span: Span,
-    /// What an attribute of mbint's own says of it, and where.
-    pub uncertain: Option<(String, Span)>,
-}
 
 /// Where a frame is in the frame around it: m, rad about the fixed x, y, z.
 #[derive(Clone, Debug)]

@@ -4,11 +4,12 @@ use std::collections::HashSet;
 
 use symdiff::Formula;
 
-use super::algebra::{self, Quaternion, Value, Vector};
-use super::robot::{Kind, Number, Robot};
+use super::robot::{Kind, Robot};
 use crate::grammar::{JointCoordinate, PointRef, Rotation};
 use crate::model::description::Point;
 use crate::model::names::Reader;
+use crate::model::robots::algebra::{Pose, Value, Vector};
+use crate::model::robots::numbers::Number;
 use crate::syntax::diagnostic::Diagnostic;
 
 /// What is read of a URDF, and how numbers are looked at.
@@ -33,25 +34,6 @@ impl Source<'_> {
     /// Of some links, kg.
     pub fn mass(&self, links: &[usize]) -> f64 {
         links.iter().filter_map(|&link| Some(self.robot.links[link].inertial.as_ref()?.mass.value)).sum()
-    }
-}
-
-/// A frame in another: position, and rotation into the other.
-#[derive(Clone)]
-pub struct Pose {
-    pub position: Vector,
-    pub rotation: Quaternion,
-}
-
-impl Pose {
-    pub fn identity() -> Self {
-        Self { position: algebra::vector([0.0; 3]), rotation: algebra::identity() }
-    }
-
-    /// A frame in this one, in the frame around it.
-    pub fn then(&self, xyz: &Vector, rotation: &Quaternion) -> Self {
-        let position = algebra::add(&self.position, &algebra::rotate(&self.rotation, xyz));
-        Self { position, rotation: algebra::product(&self.rotation, rotation) }
     }
 }
 

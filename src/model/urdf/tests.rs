@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use super::algebra::{self, Value};
 use super::read::read;
-use super::robot::{Number, Robot};
+use super::robot::Robot;
+use crate::model::robots::algebra::{self, Value};
+use crate::model::robots::numbers::Number;
 use crate::syntax::Diagnostics;
 
 fn robot(text: &str) -> Robot {

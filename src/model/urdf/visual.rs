@@ -1,7 +1,7 @@
 //! `<visual>`: what a link looks like. It is for pictures only: what cannot be read is left out.
 
-use super::xml::{Element, child, children, plain};
 use crate::model::description::{Shape, Visual};
+use crate::model::robots::xml::{Element, child, children, plain};
 
 /// What links of a robot look like.
 pub struct Visuals<'a, 'i> {

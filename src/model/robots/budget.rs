@@ -1,4 +1,4 @@
-//! Limits on the size of a URDF, checked in one pass over its bytes before anything is parsed.
+//! Limits on the size of a file of XML, checked in one pass over its bytes before anything is parsed.
 //!
 //! The parsers compare each attribute of an element with all its others and descend into nested elements, so that a
 //! small file could keep them busy for minutes, or exhaust their stack.

@@ -29,7 +29,8 @@ impl Value {
         matches!(self, Self::Number(value) if *value == 0.0)
     }
 
-    fn text(&self) -> String {
+    /// As a part of a formula.
+    pub fn text(&self) -> String {
         match self {
             // In full precision; a sign must not meet an operator.
             Self::Number(value) if *value < 0.0 => format!("({value:e})"),
@@ -122,6 +123,17 @@ pub fn product(p: &Quaternion, q: &Quaternion) -> Quaternion {
     })
 }
 
+/// About an axis of length one.
+pub fn turn(axis: [f64; 3], angle: f64) -> Quaternion {
+    let (cos, sin) = (math::cos(angle / 2.0), math::sin(angle / 2.0));
+    [cos, sin * axis[0], sin * axis[1], sin * axis[2]].map(Value::Number)
+}
+
+/// The opposite rotation.
+pub fn inverse([w, x, y, z]: &Quaternion) -> Quaternion {
+    [w.clone(), neg(x), neg(y), neg(z)]
+}
+
 /// About the fixed x, then y, then z.
 pub fn roll_pitch_yaw(angles: &Vector) -> Quaternion {
     let about = |axis: usize| {
@@ -177,4 +189,33 @@ pub fn steiner(mass: &Value, d: &Vector) -> [Vector; 3] {
             mul(mass, &if i == k { sum(&[square.clone(), across]) } else { across })
         })
     })
+}
+
+/// A frame in another: position, and rotation into the other.
+#[derive(Clone)]
+pub struct Pose {
+    pub position: Vector,
+    pub rotation: Quaternion,
+}
+
+impl Pose {
+    pub fn identity() -> Self {
+        Self { position: vector([0.0; 3]), rotation: identity() }
+    }
+
+    /// A frame in this one, in the frame around it.
+    pub fn then(&self, xyz: &Vector, rotation: &Quaternion) -> Self {
+        let position = add(&self.position, &rotate(&self.rotation, xyz));
+        Self { position, rotation: product(&self.rotation, rotation) }
+    }
+}
+
+/// The numbers, where all are.
+pub fn numbers<const N: usize>(values: &[Value; N]) -> Option<[f64; N]> {
+    let mut found = [0.0; N];
+    for (slot, value) in found.iter_mut().zip(values) {
+        let Value::Number(value) = value else { return None };
+        *slot = *value;
+    }
+    Some(found)
 }

@@ -20,19 +20,19 @@ const MOST_NODES: u32 = 1_000_000;
 
 pub type Element<'a, 'i> = Node<'a, 'i>;
 
-/// Parses the text, which begins at offset `start` of the sources.
-pub fn parse<'t>(text: &'t str, start: usize, diagnostics: &mut Diagnostics) -> Option<Document<'t>> {
+/// Parses the text of a format (`a URDF`), which begins at offset `start` of the sources.
+pub fn parse<'t>(text: &'t str, start: usize, format: &str, diagnostics: &mut Diagnostics) -> Option<Document<'t>> {
     if let Err((place, message)) = budget::check(text) {
         diagnostics.push(Diagnostic::error(Places { start }.span(place), message));
         return None;
     }
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options);
-    document.map_err(|error| diagnostics.push(syntax_error(text, start, &error))).ok()
+    document.map_err(|error| diagnostics.push(syntax_error(text, start, format, &error))).ok()
 }
 
 /// What the parser says, with what would be right where that is known.
-fn syntax_error(text: &str, start: usize, error: &roxmltree::Error) -> Diagnostic {
+fn syntax_error(text: &str, start: usize, format: &str, error: &roxmltree::Error) -> Diagnostic {
     let at = error.pos();
     let line = text.split_inclusive('\n').take(at.row.saturating_sub(1) as usize).map(str::len).sum::<usize>();
     let column: usize = text[line..].chars().take(at.col.saturating_sub(1) as usize).map(char::len_utf8).sum();
@@ -41,11 +41,12 @@ fn syntax_error(text: &str, start: usize, error: &roxmltree::Error) -> Diagnosti
     let length = text[offset..].chars().next().map_or(0, char::len_utf8);
     let (message, help) = match error {
         roxmltree::Error::DtdDetected => {
-            ("a URDF has no document type: `<!DOCTYPE` is refused".to_owned(), Some("take it out".to_owned()))
+            (format!("{format} has no document type: `<!DOCTYPE` is refused"), Some("take it out".to_owned()))
         }
-        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-            ("this is xacro, not yet URDF".to_owned(), Some(EXPAND.to_owned()))
-        }
+        roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => (
+            format!("this is xacro, not yet {}", format.rsplit(' ').next().unwrap_or_default()),
+            Some(EXPAND.to_owned()),
+        ),
         roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "mbint" => (
             "the prefix `mbint` is not declared".to_owned(),
             Some(format!("write `xmlns:mbint=\"{NAMESPACE}\"` in `<robot …>`")),

@@ -1,8 +1,7 @@
-//! Numbers of the URDF as parameters: those that something names, with what a model or the file's own attributes say.
+//! Numbers of a robot's file as parameters: those that something names, with what a model or the file's own attributes say.
 
 use std::collections::{HashMap, HashSet};
 
-use super::robot::{Number, Robot};
 use crate::grammar::unit::{Unit, number_and_unit};
 use crate::model::names::Reader;
 use crate::model::notation::{self, field};
@@ -11,9 +10,28 @@ use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
-/// Whether a name is that of a number of a URDF.
-pub fn is_number(name: &str) -> bool {
-    name.starts_with("link.") || name.starts_with("joint.")
+/// A number of the file.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// As a parameter, e.g. `link.forearm.mass`.
+    pub name: String,
+    /// SI.
+    pub value: f64,
+    /// Empty where what it is of decides.
+    pub unit: &'static str,
+    /// Where it stands, or where it would.
+    pub span: Span,
+    /// What an attribute of mbint's own says of it, and where.
+    pub uncertain: Option<(String, Span)>,
+}
+
+/// What its file is called in messages, and how its numbers are named.
+pub struct Format {
+    pub name: &'static str,
+    /// Examples of names.
+    pub forms: &'static str,
+    /// Whether a parameter's name is that of a number.
+    pub is_number: fn(&str) -> bool,
 }
 
 /// Every word of the model, and the parts of names with dots.
@@ -42,12 +60,18 @@ pub fn words(root: &Node, overrides: &[(Override, Span)]) -> HashSet<String> {
     words
 }
 
-/// The model's parameters, those of the URDF first that are named or have an attribute.
-pub fn entries(reader: &mut Reader, robot: &Robot, words: &HashSet<String>, written: &[Entry]) -> Vec<Entry> {
+/// The model's parameters, those of the robot first that are named or have an attribute.
+pub fn entries<'n>(
+    reader: &mut Reader,
+    format: &Format,
+    numbers: impl Iterator<Item = &'n Number>,
+    words: &HashSet<String>,
+    written: &[Entry],
+) -> Vec<Entry> {
     let by_key: HashMap<&str, &Entry> = written.iter().map(|entry| (entry.key.as_str(), entry)).collect();
     let mut entries = Vec::new();
     let mut known = HashSet::new();
-    for number in robot.numbers() {
+    for number in numbers {
         known.insert(number.name.as_str());
         let entry = by_key.get(number.name.as_str()).copied();
         if entry.is_some() || number.uncertain.is_some() || words.contains(&number.name) {
@@ -55,20 +79,17 @@ pub fn entries(reader: &mut Reader, robot: &Robot, words: &HashSet<String>, writ
         }
     }
     for entry in written {
-        if !is_number(&entry.key) {
+        if !(format.is_number)(&entry.key) {
             entries.push(entry.clone());
         } else if !known.contains(entry.key.as_str()) {
-            let message = format!("the URDF has no number `{}`", clip(&entry.key));
+            let message = format!("the {} has no number `{}`", format.name, clip(&entry.key));
             let help = suggest::nearest(&entry.key, known.iter().copied());
-            let help = help.map_or_else(|| FORMS.to_owned(), |near| format!("did you mean `{near}`?"));
+            let help = help.map_or_else(|| format.forms.to_owned(), |near| format!("did you mean `{near}`?"));
             reader.error(entry.key_span.clone(), message, help);
         }
     }
     entries
 }
-
-const FORMS: &str = "e.g. `link.NAME.mass`, `.com.x`, `.inertia.xx`, `joint.NAME.damping`, `.friction`, `.origin.z`, \
-                     `.origin.yaw`";
 
 fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> Entry {
     let mut fields = match (written, &number.uncertain) {
@@ -89,7 +110,7 @@ fn parameter(reader: &mut Reader, number: &Number, written: Option<&Entry>) -> E
     };
     let has = |key: &str| fields.iter().any(|field| field.key == key);
     let outside = fields.iter().find(|field| field.key == "interval").is_some_and(|field| !holds(&field.value, number));
-    let (value, unit) = (!has("value") && !outside, !has("unit"));
+    let (value, unit) = (!has("value") && !outside, !has("unit") && !number.unit.is_empty());
     if value {
         fields.push(field("value", scalar(format!("{:?}", number.value), value_span.clone(), None)));
     }

@@ -1,0 +1,110 @@
+//! `mjcf:`, a robot's file as the beginning of a model; or alone, as a model of a second.
+//!
+//! XML with its included files (`document`), every name checked against the table of the format (`table`, `elements`) →
+//! [`Robot`](robot::Robot) with defaults applied (`values`, `read`, `geoms`, `couplings`) → parameters (`robots::numbers`) →
+//! entries of the model's tree with the places of the MJCF (`build`, `start`, `effects`). All that comes after reads the
+//! tree as if it were written out.
+
+mod build;
+mod couplings;
+mod document;
+mod effects;
+mod elements;
+mod format;
+mod geoms;
+mod read;
+mod robot;
+mod start;
+mod table;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod values;
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use self::build::Source;
+use self::tree::{Sections, text};
+use self::values::Values;
+use super::overrides::Override;
+use super::robots::numbers::{self, Format};
+use crate::model::names::Reader;
+use crate::syntax::source::Span;
+use crate::syntax::yaml::{Entry, Node, Value};
+
+const FORMAT: Format = Format {
+    name: "MJCF",
+    forms: "e.g. `body.NAME.mass`, `.pos.x`, `.inertia.xx`, `joint.NAME.damping`, `.stiffness`, `actuator.NAME.kp`",
+    is_number,
+};
+
+/// Whether a name is that of a number of an MJCF.
+pub fn is_number(name: &str) -> bool {
+    let mut parts = name.split('.');
+    matches!(parts.next(), Some("body" | "joint" | "tendon" | "actuator")) && parts.count() >= 2
+}
+
+/// Whether a path is that of an MJCF and not of a model.
+pub fn is_mjcf(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| ["xml", "mjcf"].iter().any(|known| extension.eq_ignore_ascii_case(known)))
+}
+
+/// The model that an MJCF is by itself: a second, at rest in the file's configuration.
+pub fn model_of(path: &Path) -> String {
+    let file = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().replace('\'', "''"));
+    format!("mjcf: '{file}'\nsimulation: {{ duration: 1, step: 1e-3, output_step: 0.01 }}\n")
+}
+
+/// The model's tree with the robot that it names written out; nothing where it names none.
+pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(Override, Span)]) -> Option<Node> {
+    let Value::Mapping(entries) = &root.value else { return None };
+    let entry = entries.iter().find(|entry| entry.key == "mjcf")?;
+    let mut sections: Vec<Entry> = Vec::new();
+    let mut own = Vec::new();
+    for entry in entries {
+        let is_own = matches!(entry.key.as_str(), "mjcf" | "controls" | "limits");
+        if is_own { own.push(entry.clone()) } else { sections.push(entry.clone()) }
+    }
+    for key in ["urdf", "base"] {
+        if let Some(other) = sections.iter().find(|entry| entry.key == key) {
+            let message = format!("`{key}` and `mjcf` exclude each other");
+            reader.error(other.key_span.clone(), message, None);
+            return None;
+        }
+    }
+    let file = reader.scalar(&entry.value, "the path of an MJCF")?.text.clone();
+    let path = model.parent().map_or_else(|| file.clone().into(), |folder| folder.join(&file));
+    let at = (!is_mjcf(model)).then(|| entry.value.span.clone());
+    let document = document::read(&path, at, reader.diagnostics)?;
+    let mut values = Values::new(&document, reader.diagnostics);
+    let robot = read::robot(&document, &mut values)?;
+    let words = numbers::words(root, overrides);
+    let written = match sections.iter().find(|entry| entry.key == "parameters").map(|entry| &entry.value.value) {
+        Some(Value::Mapping(entries)) => entries.clone(),
+        _ => Vec::new(),
+    };
+    let parameters = numbers::entries(reader, &FORMAT, robot.numbers(), &words, &written);
+    let named: HashSet<String> =
+        parameters.iter().filter(|entry| is_number(&entry.key)).map(|entry| entry.key.clone()).collect();
+    let span = &entry.value.span;
+    let mut sections = Sections(sections);
+    if let Some(section) = sections.of("parameters", span) {
+        *section = parameters;
+    }
+    if !sections.0.iter().any(|entry| entry.key == "space") {
+        let node = text(span, "spatial");
+        sections.0.push(Entry { key: "space".to_owned(), key_span: span.clone(), value: node });
+    }
+    let source = Source::new(&robot, &named);
+    let limits = own.iter().find(|entry| entry.key == "limits");
+    let controls = match own.iter().find(|entry| entry.key == "controls").map(|entry| &entry.value.value) {
+        Some(Value::Mapping(entries)) => entries.as_slice(),
+        _ => &[],
+    };
+    build::bodies(&mut sections, &source);
+    effects::add(&mut sections, &source, limits, controls, reader.diagnostics);
+    start::start(&mut sections, &source);
+    start::outputs(&mut sections, &source);
+    Some(Node { span: root.span.clone(), value: Value::Mapping(sections.0) })
+}

@@ -1,0 +1,374 @@
+//! Elements → [`Robot`]: bodies with their frames, joints and masses. What couples and drives them is in `couplings`.
+
+use std::collections::HashSet;
+
+use super::couplings;
+use super::document::{Attribute, Item};
+use super::geoms::{self, Solid};
+use super::robot::{Body, Joint, Kind, Mass, Names, Robot, Site};
+use super::values::Values;
+use crate::model::robots::algebra::{self, Pose, Quaternion};
+use crate::model::robots::masses::Part;
+use crate::model::robots::names;
+use crate::model::robots::numbers::Number;
+use crate::syntax::diagnostic::Diagnostic;
+use crate::syntax::suggest::clip;
+
+const KINDS: [(&str, Kind); 4] =
+    [("hinge", Kind::Hinge), ("slide", Kind::Slide), ("ball", Kind::Ball), ("free", Kind::Free)];
+
+/// Reads everything; reports all that is wrong.
+pub fn robot<'i>(root: &'i Item, values: &mut Values<'i, '_>) -> Option<Robot> {
+    let before = values.diagnostics.errors();
+    let world = Body {
+        name: "ground".to_owned(),
+        span: root.span.clone(),
+        parent: 0,
+        position: [0, 1, 2].map(|_| fixed(values, root, 0.0)),
+        rotation: algebra::identity(),
+        mass: None,
+        joints: Vec::new(),
+        sites: Vec::new(),
+    };
+    let robot = Robot {
+        gravity: gravity(root, values),
+        bodies: vec![world],
+        joints: Vec::new(),
+        equalities: Vec::new(),
+        tendons: Vec::new(),
+        actuators: Vec::new(),
+    };
+    let mut reader = Reader { values, robot, names: Names::default(), touching: Vec::new() };
+    for item in root.of("worldbody") {
+        reader.inside(item, 0, &Around { pose: Pose::identity(), class: None }, &mut Contents::default());
+    }
+    let Reader { mut robot, names, touching, .. } = reader;
+    if let [first, _, ..] = touching.as_slice() {
+        let message = "contacts of geoms are ignored: bodies pass through each other and through the floor";
+        let help = "an effect `contact` says which surfaces touch".to_owned();
+        values.diagnostics.push(Diagnostic::warning(first.clone(), message).help(help));
+    }
+    if let Some(total) = values.settings.total_mass {
+        scale(&mut robot, total);
+    }
+    couplings::read(root, values, &mut robot, &names);
+    (values.diagnostics.errors() == before).then_some(robot)
+}
+
+/// A number that is no parameter.
+fn fixed(values: &Values, item: &Item, value: f64) -> Number {
+    values.number(item, None, String::new(), value, "")
+}
+
+fn gravity(root: &Item, values: &mut Values) -> [f64; 3] {
+    let mut gravity = [0.0, 0.0, -9.81];
+    for option in root.of("option") {
+        if let Some(found) = option.get("gravity").and_then(|found| values.exact(found)) {
+            gravity = found;
+        }
+        for flag in option.of("flag") {
+            let acts = [("enable", true), ("disable", false)];
+            if values.choice(flag, "gravity", &acts) == Some(false) {
+                gravity = [0.0; 3];
+            }
+            for name in ["spring", "damper", "passive"] {
+                if values.choice(flag, name, &acts) == Some(false) {
+                    let span = flag.get(name).map_or_else(|| flag.span.clone(), |found| found.span.clone());
+                    let help = "leave out what should not act: `without: [NAME]`".to_owned();
+                    values.error(span, format!("`{name}` cannot be disabled"), help);
+                }
+            }
+        }
+    }
+    gravity
+}
+
+/// What is around an element.
+struct Around {
+    /// Of `<frame>`s in the body.
+    pose: Pose,
+    class: Option<usize>,
+}
+
+/// What a body is made of.
+#[derive(Default)]
+struct Contents<'i> {
+    inertial: Option<&'i Item>,
+    parts: Vec<Part>,
+}
+
+struct Reader<'v, 'i, 'd> {
+    values: &'v mut Values<'i, 'd>,
+    robot: Robot,
+    names: Names,
+    /// Geoms that could touch something.
+    touching: Vec<crate::syntax::source::Span>,
+}
+
+impl<'i> Reader<'_, 'i, '_> {
+    /// What stands in a body or in a frame.
+    fn inside(&mut self, item: &'i Item, body: usize, around: &Around, contents: &mut Contents<'i>) {
+        for inner in &item.items {
+            match inner.tag.as_str() {
+                "body" => self.body(inner, body, around),
+                "frame" => {
+                    let (position, rotation) = self.values.frame(inner, None, &[]);
+                    let pose = around.pose.then(&algebra::vector(position), &rotation);
+                    let class = self.values.class_of(inner, around.class, "childclass");
+                    self.inside(inner, body, &Around { pose, class }, contents);
+                }
+                "inertial" => contents.inertial = Some(inner),
+                "joint" | "freejoint" => self.joint(inner, body, around),
+                "geom" => {
+                    let class = self.values.class_of(inner, around.class, "class");
+                    let mask =
+                        |name| self.values.get(inner, class, &["geom"], name).map_or("1", |found| found.value.trim());
+                    if mask("contype") != "0" || mask("conaffinity") != "0" {
+                        self.touching.push(inner.span.clone());
+                    }
+                    if body != 0
+                        && (self.values.settings.from_geoms.is_none_or(|from| from))
+                        && !ignores_geoms(self.values, item)
+                    {
+                        contents.parts.extend(geoms::part(self.values, inner, class, &around.pose));
+                    }
+                }
+                "site" => self.site(inner, body, around),
+                _ => {}
+            }
+        }
+    }
+
+    fn body(&mut self, item: &'i Item, parent: usize, around: &Around) {
+        let written = item.get("name").map(|name| name.value.clone());
+        let index = self.robot.bodies.len();
+        let plain = written.clone().unwrap_or_else(|| format!("body_{index}"));
+        let name = names::in_formulas(&plain, &mut self.names.taken);
+        if let Some(written) = written
+            && self.names.bodies.insert(written.clone(), index).is_some()
+        {
+            self.values.error(item.span.clone(), format!("a second body is called `{}`", clip(&written)), None);
+        }
+        let (position, rotation) = self.values.frame(item, None, &[]);
+        let pose = around.pose.then(&algebra::vector(position), &rotation);
+        let position = algebra::numbers(&pose.position).unwrap_or_default();
+        let number = |i: usize| {
+            let name = format!("body.{name}.pos.{}", ["x", "y", "z"][i]);
+            self.values.number(item, item.get("pos"), name, position[i], "m")
+        };
+        self.robot.bodies.push(Body {
+            span: item.span.clone(),
+            parent,
+            position: [0, 1, 2].map(number),
+            rotation: pose.rotation,
+            mass: None,
+            joints: Vec::new(),
+            sites: Vec::new(),
+            name,
+        });
+        let class = self.values.class_of(item, around.class, "childclass");
+        let mut contents = Contents::default();
+        self.inside(item, index, &Around { pose: Pose::identity(), class }, &mut contents);
+        self.robot.bodies[index].mass = self.mass(item, &contents, index);
+        let free = |&joint: &usize| self.robot.joints[joint].kind == Kind::Free;
+        let joints = &self.robot.bodies[index].joints;
+        if joints.iter().any(free) && (joints.len() > 1 || parent != 0) {
+            let help = "a free joint is the only one of a body in the world".to_owned();
+            self.values.error(item.span.clone(), "this body cannot have a free joint", help);
+        }
+    }
+
+    fn site(&mut self, item: &Item, body: usize, around: &Around) {
+        let class = self.values.class_of(item, around.class, "class");
+        let Some(written) = item.get("name") else { return };
+        let (position, rotation) = self.values.frame(item, class, &["site"]);
+        let pose = around.pose.then(&algebra::vector(position), &rotation);
+        let mut taken: HashSet<String> = self.robot.bodies[body].sites.iter().map(|site| site.name.clone()).collect();
+        let name = names::in_formulas(&written.value, &mut taken);
+        let place = self.robot.bodies[body].sites.len();
+        if self.names.sites.insert(written.value.clone(), (body, place)).is_some() {
+            self.values.error(
+                written.span.clone(),
+                format!("a second site is called `{}`", clip(&written.value)),
+                None,
+            );
+        }
+        let position = algebra::numbers(&pose.position).unwrap_or_default();
+        self.robot.bodies[body].sites.push(Site { name, position, rotation: pose.rotation });
+    }
+
+    fn joint(&mut self, item: &'i Item, body: usize, around: &Around) {
+        if body == 0 {
+            self.values.error(item.span.clone(), "the world does not move", None);
+            return;
+        }
+        let class = if item.tag == "joint" { self.values.class_of(item, around.class, "class") } else { None };
+        let get = |values: &Values<'i, '_>, name: &'static str| {
+            if item.tag == "joint" { values.get(item, class, &["joint"], name) } else { None }
+        };
+        let kind = match get(self.values, "type") {
+            _ if item.tag == "freejoint" => Kind::Free,
+            Some(found) => self.values.word(found, &KINDS).unwrap_or(Kind::Hinge),
+            None => Kind::Hinge,
+        };
+        let index = self.robot.joints.len();
+        let written = item.get("name").map(|name| name.value.clone());
+        let plain = written.clone().unwrap_or_else(|| format!("joint_{index}"));
+        let mut taken: HashSet<String> = self.robot.joints.iter().map(|joint| joint.name.clone()).collect();
+        let name = names::in_formulas(&plain, &mut taken);
+        if let Some(written) = written
+            && self.names.joints.insert(written.clone(), index).is_some()
+        {
+            self.values.error(item.span.clone(), format!("a second joint is called `{}`", clip(&written)), None);
+        }
+        let vector = |values: &mut Values<'i, '_>, name, or| {
+            get(values, name).and_then(|found| values.exact(found)).unwrap_or(or)
+        };
+        let position = vector(self.values, "pos", [0.0; 3]);
+        let axis = vector(self.values, "axis", [0.0, 0.0, 1.0]);
+        let length = axis.iter().map(|part: &f64| part * part).sum::<f64>().sqrt();
+        if length < 1e-10 {
+            self.values.error(item.span.clone(), format!("the axis of joint `{name}` has no direction"), None);
+        }
+        let (axis, at) = (axis.map(|part| part / length), algebra::vector(position));
+        let turned = algebra::rotate(&around.pose.rotation, &algebra::vector(axis));
+        let position = algebra::add(&around.pose.position, &algebra::rotate(&around.pose.rotation, &at));
+        let angle = if kind == Kind::Slide { 1.0 } else { self.values.settings.angle };
+        let scalar = |values: &mut Values<'i, '_>, name: &'static str| {
+            let found = get(values, name);
+            let value = found.and_then(|found| values.exact::<1>(found)).map_or(0.0, |[value]| value);
+            (found, value)
+        };
+        let units = match kind {
+            Kind::Slide => ["N*s/m", "N", "kg", "N/m", "m"],
+            _ => ["N*m*s/rad", "N*m", "kg*m^2", "N*m/rad", "rad"],
+        };
+        let number = |values: &mut Values<'i, '_>, key: &'static str, scale: f64, less: f64, unit| {
+            let (found, value) = scalar(values, key);
+            if value < 0.0 && key != "springref" {
+                let span = found.map_or_else(|| item.span.clone(), |found: &Attribute| found.span.clone());
+                values.error(span, format!("the {key} of joint `{name}` is negative"), None);
+            }
+            values.number(item, found, format!("joint.{name}.{key}"), value * scale - less, unit)
+        };
+        let reference = {
+            get(self.values, "ref").and_then(|found| self.values.exact::<1>(found)).map_or(0.0, |[value]| value * angle)
+        };
+        let damping = number(self.values, "damping", 1.0, 0.0, units[0]);
+        let friction = number(self.values, "frictionloss", 1.0, 0.0, units[1]);
+        let armature = number(self.values, "armature", 1.0, 0.0, units[2]);
+        let stiffness = number(self.values, "stiffness", 1.0, 0.0, units[3]);
+        let spring_at = number(self.values, "springref", angle, reference, units[4]);
+        let range = self.range(item, get(self.values, "range"), get(self.values, "limited"));
+        let range = range.filter(|_| matches!(kind, Kind::Hinge | Kind::Slide)).map(|ends| {
+            let end = |i: usize| {
+                let name = format!("joint.{name}.range.{}", ["lower", "upper"][i]);
+                self.values.number(item, get(self.values, "range"), name, ends[i] * angle - reference, units[4])
+            };
+            [0, 1].map(end)
+        });
+        self.robot.joints.push(Joint {
+            span: item.span.clone(),
+            kind,
+            body,
+            position: algebra::numbers(&position).unwrap_or_default(),
+            axis: algebra::numbers(&turned).unwrap_or_default(),
+            damping,
+            friction,
+            armature,
+            stiffness,
+            spring_at,
+            reference,
+            range,
+            name,
+        });
+        self.robot.bodies[body].joints.push(index);
+    }
+
+    /// A range that holds.
+    fn range(&mut self, item: &Item, range: Option<&Attribute>, limited: Option<&Attribute>) -> Option<[f64; 2]> {
+        let words = [("true", Some(true)), ("false", Some(false)), ("auto", None)];
+        let limited = limited.and_then(|found| self.values.word(found, &words)).flatten();
+        let ends = range.and_then(|found| self.values.exact::<2>(found));
+        let holds = limited.unwrap_or(self.values.settings.autolimits && ends.is_some());
+        let ends = ends.filter(|_| holds)?;
+        if ends[0] >= ends[1] {
+            let span = range.map_or_else(|| item.span.clone(), |found| found.span.clone());
+            self.values.error(span, "the ends of `range` are reversed", None);
+        }
+        Some(ends)
+    }
+
+    fn mass(&mut self, item: &Item, contents: &Contents, body: usize) -> Option<Mass> {
+        let name = self.robot.bodies[body].name.clone();
+        let prefix = format!("body.{name}");
+        let inertial = contents.inertial.filter(|_| self.values.settings.from_geoms != Some(true));
+        let (from, solid, rotation, of_geoms) = match inertial {
+            Some(inertial) => {
+                let (solid, rotation) = self.inertial(inertial)?;
+                (inertial, solid, rotation, false)
+            }
+            None => (item, geoms::solid(&contents.parts)?, algebra::identity(), true),
+        };
+        let solid = geoms::bounded(self.values, solid);
+        let number = |last: &str, value, unit| {
+            self.values.number(from, from.get("mass"), format!("{prefix}.{last}"), value, unit)
+        };
+        let centers = ["com.x", "com.y", "com.z"];
+        let moments = ["inertia.xx", "inertia.yy", "inertia.zz", "inertia.xy", "inertia.xz", "inertia.yz"];
+        Some(Mass {
+            mass: number("mass", solid.mass, "kg"),
+            center: [0, 1, 2].map(|i: usize| number(centers[i], solid.center[i], "m")),
+            rotation,
+            inertia: [0, 1, 2, 3, 4, 5].map(|i: usize| number(moments[i], solid.inertia[i], "kg*m^2")),
+            of_geoms,
+        })
+    }
+
+    /// What `<inertial>` says, with the rotation of its frame.
+    fn inertial(&mut self, item: &Item) -> Option<(Solid, Quaternion)> {
+        let (center, mut rotation) = self.values.frame(item, None, &[]);
+        let Some(mass) = item.get("mass") else {
+            self.values.error(item.span.clone(), "`<inertial>` needs `mass`", None);
+            return None;
+        };
+        let [mass] = self.values.exact(mass)?;
+        if mass < 0.0 {
+            self.values.error(item.span.clone(), "this mass is negative", None);
+            return None;
+        }
+        let inertia = match (item.get("diaginertia"), item.get("fullinertia")) {
+            (Some(found), None) => {
+                let [xx, yy, zz] = self.values.exact(found)?;
+                [xx, yy, zz, 0.0, 0.0, 0.0]
+            }
+            (None, Some(found)) => {
+                rotation = algebra::identity();
+                self.values.exact(found)?
+            }
+            (None, None) => {
+                self.values.error(item.span.clone(), "`<inertial>` needs `diaginertia` or `fullinertia`", None);
+                return None;
+            }
+            (Some(_), Some(found)) => {
+                self.values.error(found.span.clone(), "`diaginertia` and `fullinertia` exclude each other", None);
+                return None;
+            }
+        };
+        Some((Solid { mass, center, inertia }, rotation))
+    }
+}
+
+/// Whether a body's geoms say nothing of its inertia.
+fn ignores_geoms(values: &Values, body: &Item) -> bool {
+    values.settings.from_geoms.is_none() && body.of("inertial").next().is_some()
+}
+
+/// Scales all masses and inertias to a total.
+fn scale(robot: &mut Robot, total: f64) {
+    let sum: f64 = robot.bodies.iter().filter_map(|body| Some(body.mass.as_ref()?.mass.value)).sum();
+    for mass in robot.bodies.iter_mut().filter_map(|body| body.mass.as_mut()).filter(|_| sum > 0.0) {
+        mass.mass.value *= total / sum;
+        mass.inertia.iter_mut().for_each(|number| number.value *= total / sum);
+    }
+}

@@ -1,0 +1,48 @@
+//! Parts that make up one body:
+//!
+//! ```text
+//! m = Σ mᵢ,   m c = Σ mᵢ cᵢ,   J = Σ Rᵢ Jᵢ Rᵢᵀ + mᵢ (dᵢ² 1 − dᵢ dᵢᵀ),   dᵢ = cᵢ − c
+//! ```
+
+use super::algebra::{self, Value, Vector};
+
+/// Mass, centre of mass and inertia about it of a part, in the frame of its body.
+pub struct Part {
+    pub mass: Value,
+    pub center: Vector,
+    pub inertia: [Vector; 3],
+}
+
+/// The centre of mass of all parts, whose masses add up to `mass`.
+pub fn center(parts: &[Part], mass: &Value) -> Vector {
+    match parts {
+        [] => algebra::vector([0.0; 3]),
+        [part] => part.center.clone(),
+        parts => std::array::from_fn(|i| {
+            let moments: Vec<Value> = parts.iter().map(|part| algebra::mul(&part.mass, &part.center[i])).collect();
+            algebra::div(&algebra::sum(&moments), mass)
+        }),
+    }
+}
+
+/// Of all parts about their centre of mass.
+pub fn inertia(parts: &[Part], center: &Vector) -> [Vector; 3] {
+    let steiner = |part: &Part| {
+        let d: Vector = std::array::from_fn(|i| algebra::sub(&part.center[i], &center[i]));
+        algebra::steiner(&part.mass, &d)
+    };
+    let shifts: Vec<[Vector; 3]> = if parts.len() > 1 { parts.iter().map(steiner).collect() } else { Vec::new() };
+    std::array::from_fn(|i| {
+        std::array::from_fn(|k| {
+            let terms: Vec<Value> = parts
+                .iter()
+                .enumerate()
+                .flat_map(|(index, part)| {
+                    let shift = shifts.get(index).map_or_else(|| algebra::number(0.0), |shift| shift[i][k].clone());
+                    [part.inertia[i][k].clone(), shift]
+                })
+                .collect();
+            algebra::sum(&terms)
+        })
+    })
+}

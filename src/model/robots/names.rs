@@ -1,0 +1,18 @@
+//! Names of a robot's file in formulas.
+
+use std::collections::HashSet;
+
+use crate::grammar::names::{GROUND, is_reserved};
+
+/// A name as formulas can have it: `_` for what cannot stand there, and more of them for what is taken.
+pub fn in_formulas(written: &str, taken: &mut HashSet<String>) -> String {
+    let mut name: String = written.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+    if name.starts_with(|c: char| c.is_numeric()) {
+        name.insert(0, '_');
+    }
+    while is_reserved(&name) || name == GROUND || taken.contains(&name) {
+        name.push('_');
+    }
+    taken.insert(name.clone());
+    name
+}

@@ -1,0 +1,105 @@
+//! Robots from MJCF, against MuJoCo and closed forms.
+//!
+//! The CSV files were made by `tests/reference/mjcf/motion.py NAME.xml [ACTUATOR=CONTROL …]`: MuJoCo 4.0, implicitfast at 1e-5 s,
+//! the error of first order in the step extrapolated away.
+
+use std::path::{Path, PathBuf};
+
+use mbint::inner::model::{self, Description, Reading};
+
+use crate::common::{Findings, curve, distance, largest, load, nominal, rows};
+
+/// Files of the tests with what their actuators are told.
+const ROBOTS: [(&str, &str); 8] = [
+    ("actuators", "controls: { hold: 0.5*sin(3*t), turn: 0.8, push: 0.15*cos(5*t), spring: 0.3 }"),
+    ("ball_and_free", ""),
+    ("cart_pole", ""),
+    ("double_pendulum", ""),
+    ("frames", ""),
+    ("several_joints", ""),
+    ("spatial_arm", ""),
+    ("tendons", "controls: { muscle: -0.3*t }"),
+];
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/mjcf")
+}
+
+/// A model that names a file of a folder.
+fn model_of(folder: &Path, name: &str, yaml: &str) -> Reading {
+    let text = format!("mjcf: {name}.xml\n{yaml}\nsimulation: {{ duration: 1, step: 5e-4, output_step: 0.05 }}\n");
+    let path = folder.join("model.yaml");
+    model::read_str(&path.display().to_string(), &text, &[])
+}
+
+#[track_caller]
+fn description(reading: Reading) -> Description {
+    reading.description.unwrap_or_else(|| panic!("{}", reading.diagnostics))
+}
+
+#[test]
+fn robots_move_as_in_mujoco() {
+    let mut findings = Findings::default();
+    for (name, yaml) in ROBOTS {
+        let bounds = nominal(&description(model_of(&folder(), name, yaml)));
+        let path = folder().join(format!("{name}.csv"));
+        let (text, rows) = (std::fs::read_to_string(&path).unwrap(), rows(&path));
+        let names = text.lines().next().unwrap().split(',').enumerate().skip(1);
+        let apart = largest(names.map(|(column, output)| {
+            let exact: Vec<f64> = rows.iter().map(|row| row[column]).collect();
+            distance(curve(&bounds, output), &exact)
+        }));
+        println!("{name}: {apart:e}");
+        findings.check(apart < 1e-4, format_args!("{name}: {apart:e} from MuJoCo"));
+    }
+    findings.none();
+}
+
+/// An MJCF, and perhaps a model, in a folder of their own.
+struct Files(tempfile::TempDir);
+
+impl Files {
+    fn new(mjcf: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("robot.xml"), mjcf).unwrap();
+        Self(folder)
+    }
+
+    fn with(&self, yaml: &str) -> Reading {
+        model_of(self.0.path(), "robot", yaml)
+    }
+}
+
+const PENDULUM: &str = "<mujoco><worldbody><body name='arm'><joint name='hinge' axis='0 1 0' damping='0.1'/>\
+    <geom type='sphere' size='0.1' pos='0 0 -1' mass='2'/></body></worldbody></mujoco>";
+
+#[test]
+fn a_file_by_itself_is_a_model() {
+    let files = Files::new(PENDULUM);
+    let description = load(&files.0.path().join("robot.xml"));
+    assert_eq!(description.outputs[0].name, "hinge");
+    assert_eq!(description.bodies.len(), 2);
+}
+
+#[test]
+fn only_numbers_that_are_named_are_parameters() {
+    let files = Files::new(PENDULUM);
+    let none = description(files.with(""));
+    assert!(none.parameters.is_empty());
+    let found = description(files.with("parameters: { body.arm.mass: 5%, joint.hinge.damping: [0.05, 0.2] }"));
+    let mut names: Vec<&str> = found.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["body.arm.mass", "joint.hinge.damping"]);
+    assert_eq!(found.uncertain().count(), 2);
+}
+
+/// The mass of a body without damping does not change how it swings: its inertia is in proportion.
+#[test]
+fn inertias_of_geoms_follow_the_mass() {
+    let files = Files::new(&PENDULUM.replace("damping='0.1'", ""));
+    let angles = |mass: &str| {
+        let yaml = format!("parameters: {{ body.arm.mass: {mass} }}\ninitial: {{ hinge.angle: 1 }}");
+        curve(&nominal(&description(files.with(&yaml))), "hinge").to_vec()
+    };
+    assert!(distance(&angles("2"), &angles("7")) < 1e-9);
+}
