@@ -47,6 +47,49 @@ fn the_tolerance_is_met() {
     }
 }
 
+/// Eight parameters, at the time when some cranks have just passed their dead point: x is least with the fastest of them, after
+/// rows in which it was with the slowest. No sample of the surrogate is near that corner.
+#[test]
+fn an_end_that_moves_to_another_corner_is_followed() {
+    let text = "
+parameters:
+  l1: { value: 0.15, unit: m, tolerance: 1% }
+  l2: { value: 0.56, unit: m, tolerance: 1% }
+  m1: { value: 0.37, unit: kg, tolerance: 1% }
+  m2: { value: 0.77, unit: kg, tolerance: 1% }
+  m3: { value: 0.45, unit: kg, tolerance: 1% }
+  c: { value: 1, unit: N*s/m, tolerance: 1% }
+  k: { value: 5, unit: N/m, tolerance: 1% }
+  tau: { value: -0.5, unit: N*m, tolerance: 1% }
+bodies:
+  crank: { mass: m1, inertia: m1*l1^2/12, points: { A: [-l1/2, 0], B: [l1/2, 0] } }
+  rod: { mass: m2, inertia: m2*l2^2/12, points: { B: [-l2/2, 0], C: [l2/2, 0] } }
+  slider: { mass: m3, coordinates: [x] }
+joints:
+  pivot: { revolute: [ground, crank.A] }
+  pin: { revolute: [crank.B, rod.B] }
+  wrist: { revolute: [rod.C, slider] }
+effects:
+  drive: { torque: { on: crank, value: tau } }
+  spring: { spring_damper: { between: [ground, slider], along: x, stiffness: k, damping: c, free_length: l1 + l2 } }
+initial: { crank.angle: 0, crank.angular_velocity: 0 }
+outputs: { x: slider.x }
+simulation: { duration: 0.8, tolerance: 1e-3, output_step: 0.01 }
+";
+    let (bounds, summary) = run_methods(&within(read(text), 1e-3, 600), None);
+    let corners = text.replace("tolerance: 1e-3", "tolerance: 1e-6") + "bounds: { scan: { points: 2 } }";
+    let corners = run(&read(&corners));
+    let (found, corners) = (band(&bounds.outputs[0], Method::Chebyshev), band(&corners.outputs[0], Method::Scan));
+    // x ranges over 0.3 m.
+    for row in 0..bounds.times.len() {
+        let beyond = (found.lower[row] - corners.lower[row]).max(corners.upper[row] - found.upper[row]);
+        assert!(beyond < 3e-4, "a corner lies {beyond:.1e} m beyond the bounds at {} s", bounds.times[row]);
+        assert!(found.error.total[row] <= 3.1e-4, "{:.1e} m at {} s", found.error.total[row], bounds.times[row]);
+    }
+    let simulations = summary.methods.last().map_or(0, |method| method.simulations);
+    assert!(simulations < 250, "{simulations} simulations");
+}
+
 #[test]
 fn a_budget_is_kept_and_what_it_leaves_undone_is_flagged() {
     let description = within(model("slider_crank"), 1e-4, 60);

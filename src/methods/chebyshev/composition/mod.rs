@@ -194,7 +194,7 @@ impl<'r> Row<'r> {
             outputs.iter().map(|&output| values[output * stride..][..points.len()].to_vec()).collect()
         };
         let mut extents = vec![Extent::unknown(self.domain.dimension()); outputs];
-        let places = if range_search.climbs().is_some() { self.seeds(previous) } else { Vec::new() };
+        let places = if range_search.climbs().is_some() { self.seeds() } else { Vec::new() };
         let by_closure = |wanted: &[usize], points: &[Vec<f64>]| {
             let values = self.evaluate(points);
             wanted.iter().flat_map(|&output| values[output * points.len()..][..points.len()].to_vec()).collect()
@@ -316,7 +316,7 @@ impl<'r> Row<'r> {
     }
 
     /// The samples with the least and the largest values of each output, some apart from each other, and the best corners.
-    fn seeds(&self, previous: &Previous) -> Vec<Vec<f64>> {
+    fn seeds(&self) -> Vec<Vec<f64>> {
         let samples = self.surrogate.samples();
         let mut seeds: Vec<Vec<f64>> = Vec::new();
         for output in 0..self.ensemble.outputs() {
@@ -336,9 +336,8 @@ impl<'r> Row<'r> {
                 seeds.extend(chosen.into_iter().map(|sample| samples[sample].clone()));
             }
         }
-        if previous.is_empty() {
-            seeds.extend(self.best_corners());
-        }
+        // In every row: the row before knows the corner that was best there, and where the best changes to another, no sample may be near it.
+        seeds.extend(self.best_corners());
         seeds
     }
 
