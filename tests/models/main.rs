@@ -49,6 +49,7 @@ mod schemes;
 mod singular;
 mod slider_crank;
 mod snapshots;
+mod snapshots_questions;
 mod spatial_linkages;
 mod starts;
 mod statics;

@@ -243,3 +243,66 @@ outputs: { x1: a.x, x2: b.x, x3: c.x }
     close(middle.amplitude.nominal[0], 0.007_119_005_606_388_189, 1e-10);
     close(middle.phase.nominal[0], 0.557_649_985_064_347_9, 1e-9);
 }
+
+#[test]
+fn modes_that_veer_stay_on_their_branches() {
+    // Two oscillators with a weak spring between them: equal at k = 50, where their frequencies come near and part again.
+    let text = "
+analysis: modes
+parameters: { k: { value: 50, interval: [30, 70] } }
+bodies: { a: { mass: 2, coordinates: [x] }, b: { mass: 2, coordinates: [x] } }
+effects:
+  of_a: { spring_damper: { between: [ground, a], along: x, stiffness: k, damping: 0, free_length: 0 } }
+  of_b: { spring_damper: { between: [ground, b], along: x, stiffness: 50, damping: 0, free_length: 0 } }
+  weak: { spring_damper: { between: [a, b], along: x, stiffness: 6, damping: 0, free_length: 0 } }
+outputs: { a: a.x, b: b.x }
+bounds: { chebyshev: { order: 12 }, scan: { points: 41 } }
+";
+    let bounds = run(&read(text));
+    // Eigenvalues of [k + 6, −6; −6, 56] / 2.
+    let omega = |k: f64, sign: f64| {
+        let (middle, half) = (0.5 * (k + 50.0) + 6.0, 0.5 * (k - 50.0));
+        (0.5 * (middle + sign * half.hypot(6.0))).sqrt()
+    };
+    for (mode, sign) in [(1, -1.0), (2, 1.0)] {
+        close(frequency(&bounds, mode), omega(50.0, sign), 1e-11);
+        for method in [Method::Chebyshev, Method::Scan] {
+            let [lower, upper, error] = ends(&bounds, &format!("mode{mode}.frequency"), method);
+            assert!((TAU * lower - omega(30.0, sign)).abs() <= TAU * error + 1e-9, "{mode} {method:?} {lower} {error}");
+            assert!((TAU * upper - omega(70.0, sign)).abs() <= TAU * error + 1e-9, "{mode} {method:?} {upper} {error}");
+            assert!(error < 0.02 * (upper - lower), "{mode} {method:?} {error}");
+        }
+    }
+}
+
+#[test]
+fn a_response_over_the_box_has_its_closed_forms_bounds() {
+    let text = "
+analysis: modes
+modes: { responses: { push: { load: x, output: x, from: 0.4, to: 1.6, points: 9 } } }
+parameters: { k: { value: 50, unit: N/m, tolerance: 10% } }
+bodies: { mass: { mass: 2, coordinates: [x] } }
+effects: { spring: { spring_damper: { between: [ground, mass], along: x, stiffness: k, damping: 8, free_length: 0 } } }
+outputs: { x: mass.x }
+bounds: { chebyshev: { order: 8 }, scan: { points: 101 } }
+";
+    let bounds = run(&read(text));
+    assert_eq!(bounds.responses.len(), 9);
+    for point in &bounds.responses {
+        let omega = TAU * point.frequency;
+        // The dynamic stiffness k − m ω² + i c ω is least where k is nearest to m ω².
+        let amplitude = |k: f64| 1.0 / (k - 2.0 * omega * omega).hypot(8.0 * omega);
+        let most = amplitude((2.0 * omega * omega).clamp(45.0, 55.0));
+        let least = amplitude(45.0).min(amplitude(55.0));
+        let phase = |k: f64| -(8.0 * omega).atan2(k - 2.0 * omega * omega);
+        for (output, lower, upper) in [(&point.amplitude, least, most), (&point.phase, phase(45.0), phase(55.0))] {
+            for band in &output.bands {
+                let error = band.error.total[0] + 1e-9;
+                let place = (band.method, point.frequency, band.lower[0], band.upper[0], error);
+                assert!((band.lower[0] - lower).abs() <= error, "{} {place:?} {lower}", output.name);
+                assert!((band.upper[0] - upper).abs() <= error, "{} {place:?} {upper}", output.name);
+                assert!(error < 0.05 * (upper - lower), "{} {place:?}", output.name);
+            }
+        }
+    }
+}

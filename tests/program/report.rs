@@ -39,6 +39,15 @@ fn without_a_report_nothing_of_it_is_written_and_the_rest_is_the_same() {
 }
 
 #[test]
+fn a_report_of_modes_with_responses_has_the_mechanism() {
+    let place = Place::new();
+    fs::write(place.path().join("modes.yaml"), include_str!("../../docs/examples/modes.yaml")).unwrap();
+    assert!(place.command("run -q modes.yaml").status().unwrap().success());
+    let motion = fs::read_to_string(place.path().join("results/two_masses/motion.json")).unwrap();
+    assert!(motion.contains("\"drawing\"") && !motion.contains("internal error"), "{motion}");
+}
+
+#[test]
 fn a_folder_without_results_is_named() {
     let place = Place::new();
     let done = place.command("report nowhere").output().unwrap();

@@ -8,6 +8,7 @@ use super::{methods, parse_override};
 use crate::cli::Failure;
 use crate::model::{Override, read_overlay};
 use crate::results::Method;
+use crate::syntax::Diagnostics;
 
 /// Most threads: more than any machine has that mbint runs on; a larger number is a typing error.
 const MOST_THREADS: i64 = 1024;
@@ -111,7 +112,12 @@ impl SetArgs {
 pub(in crate::cli) fn overlaid(with: &[PathBuf], set: &[Override]) -> Result<Vec<Override>, Failure> {
     let mut laid: Vec<Override> = Vec::new();
     for path in with {
-        laid.extend(read_overlay(path).map_err(|wrong| Failure::Wrong(wrong.to_string()))?);
+        let wrong = |wrong: Diagnostics| {
+            // The terminal writes the first `error: ` itself.
+            let text = wrong.to_string();
+            Failure::Wrong(text.strip_prefix("error: ").unwrap_or(&text).to_owned())
+        };
+        laid.extend(read_overlay(path).map_err(wrong)?);
     }
     for all in [&laid[..], set] {
         let twice = |&(i, setting): &(usize, &Override)| all[..i].iter().any(|earlier| earlier.name == setting.name);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::drawing::asked::{Asked, AskedBody, Values};
 use super::drawing::drawing;
 use super::{RunError, formulation};
-use crate::model::{Analysis, Description, Stepping};
+use crate::model::{Analysis, Description, ModesRequest, Stepping};
 use crate::numerics::{ParameterBox, Sample, SparseWork, SurrogateWork};
 use crate::results::{Drawing, Motion, MotionPolynomials, MovingSample, MovingVisual, ParameterSummary, Poses};
 use crate::simulate::{
@@ -83,7 +83,9 @@ impl Posed {
         let mut asked = Asked::default();
         let bodies = description.bodies.iter().enumerate();
         let bodies: Vec<AskedBody> = bodies.map(|(index, body)| asked.body(description, index, body)).collect();
-        let whole = Description { outputs: asked.0, ..description.clone() };
+        // Responses are between outputs that are not asked here.
+        let modes = ModesRequest { responses: Vec::new(), ..description.modes };
+        let whole = Description { outputs: asked.0, modes, ..description.clone() };
         let simulator = formulation::compiled(&whole)?;
         let parameters = &simulator.system.parameters;
         let domain = ParameterBox {
