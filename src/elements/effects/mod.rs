@@ -8,6 +8,7 @@ mod forces;
 mod impact;
 mod positive_part;
 mod registry;
+mod saturation;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
@@ -42,6 +43,8 @@ effects! {
     beam::Beam,
     belt::Belt,
     state::State,
+    pid::Pid,
+    dc_motor::DcMotor,
 }
 
 /// Something that an effect measures, and what it is.
