@@ -134,6 +134,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
         self.applied.add_potential(self.m, coefficients, energy);
     }
 
+    fn state(&self, place: usize) -> Scalar<'g> {
+        self.m.v[self.m.states[&(self.effect, place)]]
+    }
+
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>) {
         self.applied.add_state_rate(self.m.states[&(self.effect, place)], rate);
     }

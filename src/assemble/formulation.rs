@@ -72,7 +72,8 @@ impl Mechanism<'_, '_> {
         let of_joints = |formula: &Formula| {
             formula.names().all(|(name, _)| {
                 let known = d.symbol(name);
-                matches!(known, Some(Symbol::JointCoordinate { .. } | Symbol::Parameter(_) | Symbol::Time))
+                let of_time = matches!(known, Some(Symbol::Time | Symbol::Trajectory { .. }));
+                of_time || matches!(known, Some(Symbol::JointCoordinate { .. } | Symbol::Parameter(_)))
             })
         };
         let acts_on_bodies = |kind: &JointKind| {

@@ -52,7 +52,7 @@ impl Inventory {
 }
 
 fn is_of_time(description: &Description, formula: &Formula) -> bool {
-    formula.names().any(|(name, _)| matches!(description.symbol(name), Some(Symbol::Time)))
+    formula.names().any(|(name, _)| matches!(description.symbol(name), Some(Symbol::Time | Symbol::Trajectory { .. })))
 }
 
 /// Freedoms that a body lacks: held at a value, moved with t.

@@ -1,5 +1,6 @@
 //! What names in formulas stand for, and where that is known.
 
+use crate::elements::Trajectory;
 use crate::grammar::{Symbol, TimeOrder};
 use crate::model::Description;
 use crate::multibody::{BuildError, Context};
@@ -19,6 +20,11 @@ impl<'d> Names<'d> {
         self.0.symbol(name)
     }
 
+    /// A function of the time.
+    pub fn trajectory(self, index: usize) -> &'d Trajectory {
+        &self.0.trajectories[index]
+    }
+
     /// What a name stands for, where that is known in the context.
     pub fn known(self, name: &str, context: Context) -> Result<Symbol, BuildError> {
         let known = self.symbol(name).filter(|&symbol| least_context(symbol) <= context);
@@ -30,7 +36,7 @@ impl<'d> Names<'d> {
 fn least_context(symbol: Symbol) -> Context {
     match symbol {
         Symbol::Parameter(_) => Context::Parameters,
-        Symbol::Time => Context::Time,
+        Symbol::Time | Symbol::Trajectory { .. } => Context::Time,
         Symbol::Coordinate { order, .. }
         | Symbol::Point { order, .. }
         | Symbol::AngularMotion { order, .. }

@@ -57,6 +57,7 @@ impl<'g> Mechanism<'g, '_> {
         match symbol {
             Symbol::Parameter(index) => self.parameters[index],
             Symbol::Time => self.time,
+            Symbol::Trajectory { trajectory, order } => self.trajectory(trajectory, order),
             Symbol::Coordinate { body, coordinate, order } => self.bodies[body].motion(order)[dof(coordinate)],
             Symbol::AngularMotion { body, axis, order, in_body } => {
                 let body = &self.bodies[body];
@@ -90,6 +91,14 @@ impl<'g> Mechanism<'g, '_> {
             Symbol::Energy(EnergyKind::Potential) => g.sum(self.potentials.iter().copied()),
             Symbol::Energy(EnergyKind::Total) => self.kinetic_energy() + g.sum(self.potentials.iter().copied()),
         }
+    }
+
+    /// A trajectory or its derivative, exactly: kinks are those of its timing. Its formulas are of parameters, as the reader saw to.
+    fn trajectory(&self, trajectory: usize, order: TimeOrder) -> Scalar<'g> {
+        let number = |formula: &Formula| self.formula(formula, Context::Parameters);
+        let value =
+            self.names.trajectory(trajectory).value(self.time, number).unwrap_or_else(|_| self.g.number(f64::NAN));
+        (0..order as usize).fold(value, |value, _| value.derivative(self.time))
     }
 
     fn reaction(&self, joint: usize, component: ReactionComponent) -> Scalar<'g> {

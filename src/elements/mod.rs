@@ -3,6 +3,8 @@
 pub mod effects;
 mod glyph;
 pub mod joints;
+mod trajectory;
 
 pub use glyph::Glyph;
 pub use joints::JointKind;
+pub use trajectory::{Timing, Trajectory, Waypoint};

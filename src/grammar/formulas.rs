@@ -214,6 +214,11 @@ impl<S: SymbolTable> Reader<'_, S> {
             let dimension = found.map(|(_, dimension)| dimension);
             return dimension.map_or(Kind::Any, Kind::motion);
         }
+        if let Symbol::Trajectory { trajectory, order } = symbol {
+            let dimension = self.model.trajectory_dimension(trajectory);
+            let per_time = |dimension: Dimension, _| dimension.per(Dimension::TIME);
+            return dimension.map_or(Kind::Any, |value| Kind::motion((0..order as usize).fold(value, per_time)));
+        }
         names::kind(symbol, &self.kinds)
     }
 

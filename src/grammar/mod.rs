@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows what a model is: names are those of a [`SymbolTable`], which the model fills as it is read.
 
+mod any_unit;
 pub(crate) mod declared;
 pub(crate) mod dimension;
 pub(crate) mod display_unit;

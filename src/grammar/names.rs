@@ -72,6 +72,7 @@ pub fn symbol(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
             .or_else(|| joint_motion(table, owner, member))
             .or_else(|| reaction(table, owner, member, None))
             .or_else(|| measure(table, owner, member))
+            .or_else(|| trajectory(table, owner, member))
             .or_else(|| deviation(table, name))
             .or_else(|| state(table, name)),
         (owner, Some(member), Some(part), None) => point_motion(table, owner, member, part)
@@ -181,7 +182,19 @@ fn word(table: &impl SymbolTable, word: &str) -> Option<Symbol> {
     if let Some((_, kind)) = ENERGIES.iter().find(|(energy, _)| *energy == word) {
         return Some(Symbol::Energy(*kind));
     }
-    table.parameter(word).map(Symbol::Parameter).or_else(|| state(table, word))
+    let value = |trajectory| Symbol::Trajectory { trajectory, order: TimeOrder::Position };
+    let parameter = table.parameter(word).map(Symbol::Parameter);
+    parameter.or_else(|| state(table, word)).or_else(|| table.trajectory(word).map(value))
+}
+
+/// What of a trajectory has a name of its own: its derivatives.
+pub(super) const OF_TRAJECTORY: [(&str, TimeOrder); 2] =
+    [("rate", TimeOrder::Velocity), ("acceleration", TimeOrder::Acceleration)];
+
+fn trajectory(table: &impl SymbolTable, owner: &str, member: &str) -> Option<Symbol> {
+    let trajectory = table.trajectory(owner)?;
+    let &(_, order) = OF_TRAJECTORY.iter().find(|(name, _)| *name == member)?;
+    Some(Symbol::Trajectory { trajectory, order })
 }
 
 /// What has a value is called like it.
@@ -279,9 +292,11 @@ fn measure_of(table: &impl SymbolTable, effect: usize, member: &str) -> Option<S
 pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, NameError> {
     let refusal = match (context, symbol) {
         (Context::Output, _) | (_, Symbol::Parameter(_)) => None,
-        (Context::Constant, Symbol::Time) => Some("only parameters can stand here: this value cannot change in time"),
+        (Context::Constant, Symbol::Time | Symbol::Trajectory { .. }) => {
+            Some("only parameters can stand here: this value cannot change in time")
+        }
         (Context::Constant, _) => Some("only parameters can stand here: this value cannot change with the motion"),
-        (_, Symbol::Time) => None,
+        (_, Symbol::Time | Symbol::Trajectory { .. }) => None,
         (Context::Time, _) => Some("only parameters and t can stand here: this value does not follow the motion"),
         (_, Symbol::Reaction { .. }) => Some("reactions are known only when the motion is; only outputs may use them"),
         (_, Symbol::Energy(_)) => Some("only outputs may use energies"),
@@ -319,8 +334,8 @@ pub fn allowed(name: &str, symbol: Symbol, context: Context) -> Result<Symbol, N
     }
 }
 
-/// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations and of
-/// what effects measure are the reader's.
+/// The dimension of what a name stands for; `parameters` has those of the parameters. Those of reactions of equations,
+/// trajectories and of what effects measure are the reader's.
 pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
     Kind::motion(match symbol {
         Symbol::Parameter(index) => return parameters.get(index).copied().unwrap_or(Kind::Any),
@@ -334,6 +349,6 @@ pub fn kind(symbol: Symbol, parameters: &[Kind]) -> Kind {
         Symbol::Reaction { component, .. } if component.is_torque() => Dimension::TORQUE,
         Symbol::Energy(_) => Dimension::TORQUE,
         Symbol::Reaction { .. } => Dimension::FORCE,
-        Symbol::Sensor { .. } => return Kind::Any,
+        Symbol::Sensor { .. } | Symbol::Trajectory { .. } => return Kind::Any,
     })
 }

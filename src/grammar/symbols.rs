@@ -25,6 +25,10 @@ pub trait SymbolTable {
     fn effect(&self, name: &str) -> Option<usize>;
     /// The effect of a name, which may have a value by its name alone.
     fn state(&self, name: &str) -> Option<usize>;
+    /// The trajectory of a name.
+    fn trajectory(&self, name: &str) -> Option<usize>;
+    /// The dimension of a trajectory's value, where it is known.
+    fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension>;
     /// What an effect measures.
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)>;
     /// Where a link of the robot is.
@@ -201,6 +205,13 @@ pub enum Symbol {
         effect: usize,
         /// Which of its sensors.
         measure: Sensor,
+    },
+    /// `trajectory`, `trajectory.rate`, `trajectory.acceleration`: a function of the time.
+    Trajectory {
+        /// Index of the trajectory.
+        trajectory: usize,
+        /// Its value or a derivative.
+        order: TimeOrder,
     },
     /// `energy`, `kinetic_energy`, `potential_energy`, J.
     Energy(EnergyKind),

@@ -1,7 +1,7 @@
 //! What to say of a name in a formula that stands for nothing.
 
 use super::motions::{ANGULAR_MOTIONS, JOINT_MOTIONS, MOTIONS, is_motion};
-use super::names::{Context, ENERGIES, NameError, motions};
+use super::names::{Context, ENERGIES, NameError, OF_TRAJECTORY, motions};
 use super::quantity::Dimension;
 use super::symbols::{Sensor, SymbolTable};
 use crate::syntax::suggest;
@@ -109,6 +109,11 @@ fn unknown_member(table: &impl SymbolTable, name: &str, owner: &str, rest: &str,
             let measures = table.effect(owner).map_or(Vec::new(), |effect| table.measures(effect));
             no_measure(owner, rest, &measures)
         }
+        (None, false) if table.trajectory(owner).is_some() => NameError {
+            message: format!("trajectory `{}` has no `{}`", suggest::clip(owner), suggest::clip(rest)),
+            part: after..name.len(),
+            help: Some(format!("it has {}", suggest::list(&OF_TRAJECTORY.map(|(name, _)| name)))),
+        },
         (None, false) if known(name) => NameError {
             message: format!("`{name}` is a node of a beam, not a number"),
             part: 0..name.len(),

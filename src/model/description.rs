@@ -14,8 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use symdiff::Formula;
 
-use crate::elements::JointKind;
 use crate::elements::effects::EffectKind;
+use crate::elements::{JointKind, Trajectory};
 use crate::grammar::display_unit::DisplayUnit;
 use crate::grammar::quantity::Dimension;
 use crate::methods::BoundsRequest;
@@ -83,6 +83,8 @@ pub struct Description {
     pub ports: BTreeMap<String, String>,
     /// Effects that are states, or have some.
     pub states: BTreeSet<String>,
+    /// Functions of the time by their points.
+    pub trajectories: Vec<Trajectory>,
     /// Where parameters, bodies and joints are by name.
     pub places: Places,
 }
@@ -208,6 +210,7 @@ impl Description {
             instances: Vec::new(),
             ports: BTreeMap::new(),
             states: BTreeSet::new(),
+            trajectories: Vec::new(),
             places: Places::default(),
         }
     }

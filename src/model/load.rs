@@ -12,7 +12,7 @@ use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{
     analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, space, states,
-    statistics, tables, teeth,
+    statistics, tables, teeth, trajectories,
 };
 use crate::grammar::Lengths;
 use crate::grammar::declared::DeclaredStates;
@@ -272,6 +272,7 @@ fn describe(
     joints::declare(&mut reader, joint_entries);
     let robot = robot.map(|robot| robot.declare(&mut reader, parameter_entries));
     parameters::read(&mut reader, parameter_entries, overrides);
+    trajectories::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
     states::declare(&mut reader, state_entries, effect_entries);
     joints::read(&mut reader, joint_entries);

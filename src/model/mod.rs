@@ -39,6 +39,7 @@ mod teeth;
 #[cfg(test)]
 mod tests;
 mod text_file;
+mod trajectories;
 mod urdf;
 
 pub use crate::elements::JointKind;

@@ -69,6 +69,14 @@ impl SymbolTable for Description {
         self.states.contains(name).then(|| self.effect(name)).flatten()
     }
 
+    fn trajectory(&self, name: &str) -> Option<usize> {
+        self.trajectories.iter().position(|trajectory| trajectory.name == name)
+    }
+
+    fn trajectory_dimension(&self, trajectory: usize) -> Option<Dimension> {
+        self.trajectories[trajectory].dimension
+    }
+
     fn measures(&self, effect: usize) -> Vec<(Sensor, Dimension)> {
         self.effects[effect].kind.measures()
     }

@@ -58,6 +58,10 @@ impl Dependencies {
                     }
                 }
                 Some(Symbol::Sensor { effect, .. }) => self.parts.push(Part::Effect(effect)),
+                Some(Symbol::Trajectory { trajectory, .. }) => {
+                    let formulas = description.trajectories[trajectory].formulas();
+                    formulas.for_each(|formula| self.add(description, formula));
+                }
                 Some(Symbol::Energy(_)) => self.everything = true,
                 Some(Symbol::Time) | None => {}
             }

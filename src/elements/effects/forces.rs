@@ -63,6 +63,8 @@ pub trait Forces<'g> {
     fn weight(&mut self, field: Vector<'g>) -> Result<(), BuildError>;
     /// A potential energy, J, if it is one: where a coefficient depends on the motion, its gradient is not the force.
     fn potential(&mut self, coefficients: &[Scalar<'g>], energy: Scalar<'g>);
+    /// A state of the effect, by its place among them.
+    fn state(&self, place: usize) -> Scalar<'g>;
     /// How fast a state of the effect changes, by its place among them.
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>);
     /// Something that the effect measures, for outputs.

@@ -8,6 +8,7 @@ mod forces;
 mod impact;
 mod positive_part;
 mod registry;
+mod saturation;
 mod spatial_beam;
 
 use schemars::JsonSchema;
@@ -43,6 +44,8 @@ effects! {
     beam::Beam,
     belt::Belt,
     state::State,
+    pid::Pid,
+    dc_motor::DcMotor,
 }
 
 /// Something that an effect measures, and what it is.

@@ -8,16 +8,14 @@
 //! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
 
 use mbint_derive::Element;
-use symdiff::{Formula, Scalar};
+use symdiff::Formula;
 
+use super::saturation::saturated;
 use super::{ForceElement, Forces, TypedSensor, effort};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
 use crate::grammar::{Sensor, OnJoint};
 use crate::multibody::BuildError;
-
-/// ε over L.
-const CORNER: f64 = 0.01;
 
 /// A drive that controls a joint's coordinate, with a limit.
 #[derive(Clone, Debug, Element)]
@@ -71,11 +69,4 @@ impl ForceElement for Servo {
         forces.sensor(Sensor::of_effort(self.on.coordinate), effort);
         forces.effort(self.on, effort)
     }
-}
-
-fn saturated<'g>(x: Scalar<'g>, limit: Scalar<'g>) -> Scalar<'g> {
-    let corner = CORNER * limit;
-    let corner = corner * corner;
-    let [above, below] = [x + limit, x - limit].map(|distance| (distance * distance + corner).sqrt());
-    0.5 * (above - below)
 }

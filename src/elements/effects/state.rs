@@ -15,7 +15,6 @@ use symdiff::Formula;
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::formulas::Written;
 use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
@@ -92,9 +91,9 @@ impl Group for State {
     }
 
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>, _units: usize) -> Option<Self> {
-        let rate = reader.required(fields, "rate").and_then(|node| any_unit(reader, node, Context::Effect));
+        let rate = reader.required(fields, "rate").and_then(|node| reader.any_unit(node, Context::Effect));
         let initial = match fields.get("initial") {
-            Some(node) => any_unit(reader, node, Context::Constant),
+            Some(node) => reader.any_unit(node, Context::Constant),
             None => Some((Formula::number(0.0), None)),
         };
         let ((rate, change), (initial, own)) = (rate?, initial?);
@@ -115,24 +114,6 @@ impl Group for State {
     fn leaves_plane(_mapping: &Node) -> Option<&'static str> {
         None
     }
-}
-
-/// A formula or a number with its unit, of any dimension.
-fn any_unit<S: SymbolTable>(
-    reader: &mut Reader<'_, S>,
-    node: &Node,
-    context: Context,
-) -> Option<(Formula, Option<Dimension>)> {
-    let (formula, dimension) = match reader.written(node)? {
-        Written::Quantity { value, unit } => (Formula::number(unit.to_si(value)), Some(unit.dimension)),
-        Written::Formula(formula) => {
-            reader.check_names(node, &formula, 0, context).then_some(())?;
-            let dimension = reader.kind(node, &formula, 0).dimension();
-            (formula, dimension)
-        }
-    };
-    reader.require(node, &formula, |_| true, "");
-    Some((formula, dimension))
 }
 
 impl Element for State {

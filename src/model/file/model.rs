@@ -34,6 +34,8 @@ grammar! {
         instances: Option<IndexMap<String, InstanceFile>>,
         /// Functions given by their values: in formulas, `NAME(t)`.
         tables: Option<IndexMap<String, Table>>,
+        /// Functions of the time by points that they pass: `NAME`, `NAME.rate` and `NAME.acceleration` in formulas.
+        trajectories: Option<IndexMap<String, Trajectory>>,
         /// Bodies, rigid or beams. `ground` is there already, and may be given points.
         bodies: Option<IndexMap<String, Body>>,
         /// What constrains the bodies.
@@ -178,6 +180,16 @@ grammar! {
         cost: Option<CostFile>,
         /// What it is, for people.
         description: Option<String>,
+    }
+
+    /// A function of the time by points that it passes; it rests before the first and after the last.
+    Trajectory is "a trajectory" {
+        /// Pairs of a time and a value, times ascending; with timing `cubic` or `quintic` a third number is the rate there, else 0.
+        points: Vec<WaypointFile>,
+        /// How it moves from one point to the next.
+        timing: TimingName,
+        /// With timing `trapezoidal`: how long it takes to reach its full rate, and again to rest, s; by default a quarter of each move.
+        ramp: Option<Number>,
     }
 
     /// A function of one number by its values: a natural cubic spline through them, which goes on straight beyond its ends, or a

@@ -54,6 +54,25 @@ schema_only! {
         Floating,
     }
 
+    #[schemars(rename_all = "lowercase", inline)]
+    pub enum TimingName {
+        /// Polynomials of degree three: rates are given, accelerations jump.
+        Cubic,
+        /// Polynomials of degree five: rates are given, accelerations are 0 in every point.
+        Quintic,
+        /// From rest to rest: a constant rate between constant accelerations.
+        Trapezoidal,
+        /// The cubic spline at rest at both ends: rates and accelerations have no jumps between them.
+        Spline,
+    }
+
+    /// A time, a value, and perhaps the rate there.
+    #[schemars(untagged, inline)]
+    pub enum WaypointFile {
+        AtRest([Number; 2]),
+        WithRate([Number; 3]),
+    }
+
     /// A place in a body's frame, or a frame there.
     #[schemars(untagged, inline)]
     pub enum PointFile {
