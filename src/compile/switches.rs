@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use symdiff::{Binary, Expr, Graph, Lowered, Node, Tape, Unary, lower};
 
 use super::equations::time_derivative;
@@ -76,7 +76,12 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>)
     let roots: Vec<Expr> = system.force.iter().chain(&system.inertia).chain(&system.constraint).copied().collect();
     let mut found = Vec::new();
     let mut of_floor: FxHashMap<Expr, Expr> = FxHashMap::default();
+    let values = reachable_values(graph, &roots);
     for expr in graph.reachable(&roots) {
+        let kinks = |node| matches!(node, Node::Unary(Unary::Abs, _) | Node::Binary(Binary::Min | Binary::Max, ..));
+        if kinks(graph.node(expr)) && !values.contains(&expr) {
+            continue;
+        }
         found.push(match graph.node(expr) {
             Node::Unary(Unary::Abs | Unary::Sign, a) => a,
             Node::Binary(Binary::Select | Binary::SelectElse, condition, _) => condition,
@@ -105,6 +110,22 @@ fn arguments(system: &System, graph: &mut Graph) -> (Vec<Expr>, Vec<Vec<usize>>)
     let place = |of: Expr| of_floor.get(&of).and_then(|sine| found.binary_search(sine).ok());
     let jumps_with = found.iter().map(|&of| graph.reachable(&[of]).into_iter().filter_map(place).collect()).collect();
     (found, jumps_with)
+}
+
+/// What the roots are made of but for conditions, of which the sign alone counts: a kink in one is none of theirs.
+fn reachable_values(graph: &Graph, roots: &[Expr]) -> FxHashSet<Expr> {
+    let mut found = FxHashSet::default();
+    let mut rest = roots.to_vec();
+    while let Some(expr) = rest.pop() {
+        if !found.insert(expr) {
+            continue;
+        }
+        match graph.node(expr) {
+            Node::Binary(Binary::Select | Binary::SelectElse, _, value) => rest.push(value),
+            node => rest.extend(node.children()),
+        }
+    }
+    found
 }
 
 /// Whether an expression has kinks or jumps: an `abs`, `sign`, `min` or `max`, a condition.

@@ -13,7 +13,8 @@ use symdiff::Formula;
 
 use super::contact::{Shape, Touch};
 use super::impact::Push;
-use super::{ForceElement, Forces, Friction, Impact, TypedSensor, contact};
+use super::felt::SENSORS;
+use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
 use crate::elements::Glyph;
 use crate::grammar::{Axis, PointRef};
 use crate::multibody::BuildError;
@@ -49,7 +50,7 @@ pub struct ClearanceJoint {
 impl ForceElement for ClearanceJoint {
     const GLYPH: Glyph = Glyph::Pin;
     const RESISTS: bool = true;
-    const SENSORS: &'static [TypedSensor] = contact::SENSORS;
+    const SENSORS: &'static [TypedSensor] = SENSORS;
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let clearance = forces.prescribed(&self.clearance)?;
@@ -59,7 +60,9 @@ impl ForceElement for ClearanceJoint {
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
         let shape = Shape::Hollow(clearance);
-        Touch { between: self.between, shape, radius, axis, impact, friction }.apply(forces);
+        let pair = forces.pair(self.between);
+        let centre = pair.second.point.position;
+        Touch { shape, radius, axis, impact, friction }.act(forces, (&pair, centre)).measured(forces);
         Ok(())
     }
 }

@@ -1,9 +1,10 @@
-//! Contact of a surface on the first body with a circle, sphere, cylinder or mere point (radius r) on the second.
+//! Contact of a surface on the first body with circles, spheres, a cylinder or mere points (radius r) on the second.
 //!
 //! ```text
 //! plane through A, normal n:    gap = n · (r_B − r_A) − r
 //! round, radius R:              gap = |d| − R − r,     n = d/|d|,      d = r_B − r_A
 //! hollow, radius R > r:         gap = R − r − |d|,     n = −d/|d|
+//! edges, rounding ρ:            see `outline`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
 //!
@@ -18,10 +19,11 @@ use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::dry_friction::Resistance;
+use super::felt::{Felt, SENSORS};
 use super::impact::Push;
+use super::outline::{Outline, Points, placed};
 use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
-use crate::grammar::quantity::Dimension;
-use crate::grammar::{Axis, Checked, Direction, Fields, Sensor, PointRef, Reader, SymbolTable};
+use crate::grammar::{Axis, Checked, Direction, Fields, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Pair, Vector};
 
 /// ε over R − r.
@@ -51,6 +53,18 @@ pub struct Contact {
     /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
     #[quantity(unit = "m", constant, positive, above = radius)]
     pub hollow: Option<Formula>,
+    /// Instead of `plane`: points of a line of straight edges in x and y of the first point's frame; both of its sides are surfaces.
+    #[quantity(unit = "m", constant)]
+    pub path: Option<Points>,
+    /// Instead of `plane`: corners of a closed line of straight edges, in their order.
+    #[quantity(unit = "m", constant)]
+    pub polygon: Option<Points>,
+    /// How far the surface lies outside of a `path` or `polygon`.
+    #[quantity(unit = "m", constant, nonnegative, default = 0)]
+    pub rounding: Formula,
+    /// Points of the second point's frame that touch, each with the `radius`.
+    #[quantity(unit = "m", constant, otherwise = "the second point itself")]
+    pub corners: Option<Points>,
     /// In space: axis of two parallel cylinders, in the first point's frame.
     #[key(otherwise = "they are spheres")]
     pub axis: Option<Axis>,
@@ -61,13 +75,8 @@ pub struct Contact {
     pub friction: Option<Friction>,
 }
 
-/// What two surfaces measure.
-pub(super) const SENSORS: &[TypedSensor] = &[
-    (Sensor::GAP, Dimension::LENGTH),
-    (Sensor::RATE, Dimension::VELOCITY),
-    (Sensor::FORCE, Dimension::FORCE),
-    (Sensor::FRICTION, Dimension::FORCE),
-];
+/// Keys of the first body's surface.
+const SURFACES: [&str; 5] = ["plane", "circle", "hollow", "path", "polygon"];
 
 impl ForceElement for Contact {
     const RESISTS: bool = true;
@@ -77,37 +86,93 @@ impl ForceElement for Contact {
         let radius = forces.prescribed(&self.radius)?;
         let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(Vector::unit);
         let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
-        let shape = match (&self.plane, &self.circle, &self.hollow) {
-            (Some(normal), ..) => Shape::Plane(direction(normal)?),
-            (_, Some(outer), _) => Shape::Round(forces.prescribed(outer)?),
-            (.., Some(bore)) => Shape::Hollow(forces.prescribed(bore)? - radius),
-            (None, None, None) => return Ok(()),
+        let corners = self.corners.as_ref().map(|corners| placed(forces, corners)).transpose()?;
+        let surface = match (&self.plane, &self.circle, &self.hollow, &self.path, &self.polygon) {
+            (Some(normal), ..) => Surface::Whole(Shape::Plane(direction(normal)?)),
+            (_, Some(outer), ..) => Surface::Whole(Shape::Round(forces.prescribed(outer)?)),
+            (_, _, Some(bore), ..) => Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius)),
+            (.., Some(points), _) => Surface::Edges(self.outline(forces, points, false)?),
+            (.., Some(points)) => Surface::Edges(self.outline(forces, points, true)?),
+            _ => return Ok(()),
         };
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
-        Touch { between: self.between, shape, radius, axis, impact, friction }.apply(forces);
+        let pair = forces.pair(self.between);
+        let centre = pair.second.point.position;
+        let centres = corners.map_or_else(
+            || vec![centre],
+            |corners| corners.into_iter().map(|corner| centre + pair.outward_of_second(corner)).collect(),
+        );
+        let felt = centres.into_iter().map(|centre| match &surface {
+            &Surface::Whole(shape) => {
+                Touch { shape, radius, axis, impact, friction }.act(forces, (&pair, centre))
+            }
+            Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
+        });
+        if let Some(felt) = felt.reduce(Felt::and) {
+            felt.measured(forces);
+        }
         Ok(())
+    }
+}
+
+impl Contact {
+    fn outline<'g>(
+        &self,
+        forces: &dyn Forces<'g>,
+        points: &Points,
+        closed: bool,
+    ) -> Result<Outline<'g>, BuildError> {
+        let points = placed(forces, points)?;
+        let (rounding, radius) = (forces.prescribed(&self.rounding)?, forces.prescribed(&self.radius)?);
+        Ok(Outline::through(&points, closed, rounding, radius))
     }
 }
 
 impl Checked for Contact {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        let given = ["plane", "circle", "hollow"].into_iter().filter(|key| fields.get(key).is_some());
+        let given = SURFACES.into_iter().filter(|key| fields.get(key).is_some());
         match given.collect::<Vec<_>>().as_slice() {
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
-                reader.error(fields.at.clone(), "a contact needs `plane`, `circle` or `hollow`", help);
+                let message = "a contact needs `plane`, `circle`, `hollow`, `path` or `polygon`";
+                reader.error(fields.at.clone(), message, help);
             }
-            [_] => {}
-            [_, second, ..] => {
-                let message = "`plane`, `circle` and `hollow` exclude one another";
-                reader.error(fields.key_span(second), message, None);
+            [edges @ ("path" | "polygon")] => {
+                if ["rounding", "radius"].into_iter().all(|key| fields.get(key).is_none()) {
+                    let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
+                    let help = "surfaces are told apart to that depth".to_owned();
+                    reader.error(fields.key_span(edges), message, help);
+                }
+            }
+            [surface] => {
+                if fields.get("rounding").is_some() {
+                    let message = format!("`rounding` goes with `path` or `polygon`, not with `{surface}`");
+                    reader.error(fields.key_span("rounding"), message, None);
+                }
+            }
+            [first, second, ..] => {
+                reader.error(fields.key_span(second), format!("`{first}` and `{second}` exclude each other"), None);
+            }
+        }
+    }
+
+    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        for (key, points, least) in [("path", &self.path, 2), ("polygon", &self.polygon, 3)] {
+            if let Some(points) = points {
+                points.check_edges(reader, fields.key_span(key), (key, least));
             }
         }
     }
 }
 
-/// The first body's surface.
+/// What the first body's surface is made of.
+enum Surface<'g> {
+    Whole(Shape<'g>),
+    Edges(Outline<'g>),
+}
+
+/// The first body's surface, where it is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Shape<'g> {
     /// A unit normal, in the first frame.
@@ -121,7 +186,6 @@ pub(super) enum Shape<'g> {
 /// Two surfaces and what they do to one another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch<'g> {
-    pub between: [PointRef; 2],
     pub shape: Shape<'g>,
     /// r, m
     pub radius: Scalar<'g>,
@@ -143,18 +207,18 @@ struct Gap<'g> {
 }
 
 impl<'g> Touch<'g> {
-    /// Adds the forces.
-    pub fn apply(&self, forces: &mut dyn Forces<'g>) {
-        let pair = forces.pair(self.between);
-        let Gap { gap, normal, overlap } = self.gap(&pair);
-        let place = pair.second.point.position - self.radius * normal;
-        let [first, second] = self.between.map(|point| forces.point_at(point.body, place));
+    /// Adds the forces on a circle or point about `centre`, which belongs to the second body.
+    pub fn act(&self, forces: &mut dyn Forces<'g>, (pair, centre): (&Pair<'g>, Vector<'g>)) -> Felt<'g> {
+        let Gap { gap, normal, overlap } = self.gap(pair, centre);
+        let place = centre - self.radius * normal;
+        let [first, second] = [pair.first, pair.second].map(|frame| forces.point_at(frame.point.body, place));
         let velocity = second.velocity - first.velocity;
         let parting = normal.dot(velocity);
         let (depth, approach) = (-gap, -parting);
         forces.only_where(overlap);
         let push = self.impact.force(depth, approach).only_where(depth);
         let mut force = push * normal;
+        let mut felt_friction = None;
         if let Some(friction) = &self.friction {
             let sliding = velocity - parting * normal;
             let resistance = friction.by_speed(sliding.dot(sliding));
@@ -166,17 +230,17 @@ impl<'g> Touch<'g> {
                 // Along n turned clockwise: x on a floor.
                 normal.perpendicular().dot(drag)
             };
-            forces.sensor(Sensor::FRICTION, felt.only_where(overlap));
+            felt_friction = Some(felt.only_where(overlap));
         }
         forces.between(&first, &second, force);
         let push = push.only_where(overlap);
         let potential = self.impact.potential(depth).only_where(depth);
         forces.potential(&[self.impact.stiffness], potential);
-        forces.sensors([(Sensor::GAP, gap), (Sensor::RATE, parting), (Sensor::FORCE, push)]);
+        Felt { gap, rate: parting, force: push, friction: felt_friction }
     }
 
-    fn gap(&self, pair: &Pair<'g>) -> Gap<'g> {
-        let offset = pair.offset();
+    fn gap(&self, pair: &Pair<'g>, centre: Vector<'g>) -> Gap<'g> {
+        let offset = centre - pair.first.point.position;
         match self.shape {
             Shape::Plane(normal) => {
                 let normal = pair.outward(normal);

@@ -4,8 +4,10 @@
 //! what it refers to, its forces, what it costs.
 
 mod dry_friction;
+mod felt;
 mod forces;
 mod impact;
+mod outline;
 mod positive_part;
 mod registry;
 mod saturation;
