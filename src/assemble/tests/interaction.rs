@@ -27,7 +27,20 @@ fn what_takes_nothing_has_its_potential() {
     let between = m.between("a.P", "b.P");
     let contact = || {
         let (radius, impact) = (formula("0.9"), elastic("k"));
-        Contact { between, plane: None, circle: None, hollow: None, radius, axis: None, impact, friction: None }
+        Contact {
+            between,
+            plane: None,
+            circle: None,
+            hollow: None,
+            path: None,
+            polygon: None,
+            corners: None,
+            rounding: formula("0"),
+            radius,
+            axis: None,
+            impact,
+            friction: None,
+        }
     };
     let cable = Cable {
         between,
@@ -109,7 +122,20 @@ fn friction_takes_power() {
         let mut m = two_bodies();
         let between = m.between("a.P", "b.P");
         let (circle, radius, impact) = (Some(formula("3")), formula("0.9"), elastic("k"));
-        m.effect(Contact { between, plane: None, circle, hollow: None, radius, axis: None, impact, friction });
+        m.effect(Contact {
+            between,
+            plane: None,
+            circle,
+            hollow: None,
+            path: None,
+            polygon: None,
+            corners: None,
+            rounding: formula("0"),
+            radius,
+            axis: None,
+            impact,
+            friction,
+        });
         m.output("effect0.force");
         m.build()
     };
