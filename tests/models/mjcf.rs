@@ -9,7 +9,7 @@ use mbint::inner::model::{self, Description, Reading};
 
 use crate::common::{Findings, curve, distance, largest, load, nominal, rows};
 
-/// Files of the tests with what their actuators are told.
+/// Files of the tests with commands to their actuators.
 const ROBOTS: [(&str, &str); 8] = [
     ("actuators", "controls: { hold: 0.5*sin(3*t), turn: 0.8, push: 0.15*cos(5*t), spring: 0.3 }"),
     ("ball_and_free", ""),

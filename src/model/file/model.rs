@@ -22,7 +22,7 @@ grammar! {
         base: Option<BaseName>,
         /// A robot to begin with: an MJCF file (MuJoCo's XML), beside this one. Its bodies are bodies, its numbers parameters.
         mjcf: Option<String>,
-        /// What the actuators of the `mjcf` are told, by name: numbers, or formulas of t and the motion.
+        /// Commands to the actuators of the `mjcf`, by name: numbers, or formulas of t and the motion.
         controls: Option<IndexMap<String, Number>>,
         /// Named numbers; those with a tolerance or an interval are uncertain.
         parameters: Option<IndexMap<String, ParameterFile>>,

@@ -14,7 +14,7 @@ use crate::syntax::yaml::{Entry, Node, Value as Tree};
 const SLOW_TURN: &str = "0.05";
 const SLOW_SLIDE: &str = "0.01";
 
-/// Adds everything that acts; `limits` is the section of that name, `controls` what actuators are told.
+/// Adds everything that acts; `limits` is the section of that name, `controls` the actuators' commands.
 pub fn add(
     sections: &mut Sections,
     source: &Source,
