@@ -33,21 +33,27 @@ fn assert_same(a: &Bounds, b: &Bounds) {
     assert!(curve(b, "force").iter().any(|force| *force > 1.0), "no contact");
 }
 
+/// An edge from (−1, 0) to (1, 0), drawn either way, alone, as a side of a polygon, and as another path has it, is the same surface.
+#[track_caller]
+fn assert_drawn_alike(path: &str, start: [f64; 4], wanted: &Bounds) {
+    for edges in [
+        "path: [[-1, 0], [1, 0]]",
+        "path: [[1, 0], [-1, 0]]",
+        path,
+        "polygon: [[1, 0], [-1, 0], [-1, -1], [1, -1]]",
+        "polygon: [[1, 0], [1, -1], [-1, -1], [-1, 0]]",
+    ] {
+        println!("{edges}");
+        assert_same(&thrown("ground", &format!("{edges}, rounding: 0.02"), start), wanted);
+    }
+}
+
 /// A face is a plane, whichever way it is drawn, and joints of edges in line do not show.
 #[test]
 fn faces_are_planes() {
     let start = [0.05, 0.3, 0.6, 0.0];
     let plane = thrown("ground.top", "plane: y", start);
-    for edges in [
-        "path: [[-1, 0], [1, 0]]",
-        "path: [[1, 0], [-1, 0]]",
-        "path: [[-1, 0], [0.1, 0], [0.15, 0], [0.2, 0], [1, 0]]",
-        "polygon: [[1, 0], [-1, 0], [-1, -1], [1, -1]]",
-        "polygon: [[1, 0], [1, -1], [-1, -1], [-1, 0]]",
-    ] {
-        println!("{edges}");
-        assert_same(&thrown("ground", &format!("{edges}, rounding: 0.02"), start), &plane);
-    }
+    assert_drawn_alike("path: [[-1, 0], [0.1, 0], [0.15, 0], [0.2, 0], [1, 0]]", start, &plane);
 }
 
 /// A corner and an end are circles of the rounding's radius.
@@ -55,16 +61,7 @@ fn faces_are_planes() {
 fn corners_are_circles() {
     let start = [1.03, 0.45, 0.1, 0.0];
     let circle = thrown("ground.corner", "circle: 0.02", start);
-    for edges in [
-        "path: [[-1, 0], [1, 0]]",
-        "path: [[1, 0], [-1, 0]]",
-        "path: [[-1, 0], [1, 0], [1, -1]]",
-        "polygon: [[1, 0], [-1, 0], [-1, -1], [1, -1]]",
-        "polygon: [[1, 0], [1, -1], [-1, -1], [-1, 0]]",
-    ] {
-        println!("{edges}");
-        assert_same(&thrown("ground", &format!("{edges}, rounding: 0.02"), start), &circle);
-    }
+    assert_drawn_alike("path: [[-1, 0], [1, 0], [1, -1]]", start, &circle);
 }
 
 /// In a groove of 90° both sides carry W/√2; a corner from the inner side is not round.

@@ -4,7 +4,7 @@ use super::model::{formula, pair};
 use super::numbers::State;
 use super::power::{potential_rate, power, two_bodies, value};
 use crate::elements::effects::{Exponent, RestitutionLaw};
-use crate::grammar::{Direction, PerAxis, Rotating};
+use crate::grammar::{Direction, PerAxis, PointRef, Rotating};
 use crate::model::bushing::SixBySix;
 use crate::model::{Backlash, Beam, Bushing, Cable, Contact, DryFriction, EffectKind, Friction, Impact, Preload};
 
@@ -19,29 +19,31 @@ fn elastic(stiffness: &str) -> Impact {
     }
 }
 
+/// A ball on a surface that is still to be said.
+fn touching(between: [PointRef; 2]) -> Contact {
+    Contact {
+        between,
+        plane: None,
+        circle: None,
+        hollow: None,
+        path: None,
+        polygon: None,
+        corners: None,
+        rounding: formula("0"),
+        radius: formula("0.9"),
+        axis: None,
+        impact: elastic("k"),
+        friction: None,
+    }
+}
+
 /// What pulls, touches, meshes and presses without loss: its power is minus the rate of its energy. Radii and lengths are
 /// such that it acts wherever the bodies are, and nowhere just at its corner.
 #[test]
 fn what_takes_nothing_has_its_potential() {
     let m = two_bodies();
     let between = m.between("a.P", "b.P");
-    let contact = || {
-        let (radius, impact) = (formula("0.9"), elastic("k"));
-        Contact {
-            between,
-            plane: None,
-            circle: None,
-            hollow: None,
-            path: None,
-            polygon: None,
-            corners: None,
-            rounding: formula("0"),
-            radius,
-            axis: None,
-            impact,
-            friction: None,
-        }
-    };
+    let contact = || touching(between);
     let cable = Cable {
         between,
         free_length: formula("0.05"),
@@ -121,21 +123,7 @@ fn friction_takes_power() {
     let contact = |friction: Option<Friction>| {
         let mut m = two_bodies();
         let between = m.between("a.P", "b.P");
-        let (circle, radius, impact) = (Some(formula("3")), formula("0.9"), elastic("k"));
-        m.effect(Contact {
-            between,
-            plane: None,
-            circle,
-            hollow: None,
-            path: None,
-            polygon: None,
-            corners: None,
-            rounding: formula("0"),
-            radius,
-            axis: None,
-            impact,
-            friction,
-        });
+        m.effect(Contact { circle: Some(formula("3")), friction, ..touching(between) });
         m.output("effect0.force");
         m.build()
     };
