@@ -51,6 +51,6 @@ pub use crate::multibody::BuildError;
 pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
 pub use inventory::Inventory;
 pub use system::{
-    ConditionOf, ConstraintInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition, System,
-    UncertainParameter,
+    ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition,
+    System, UncertainParameter,
 };

@@ -41,7 +41,7 @@ fn honesty(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (
 }
 
 #[track_caller]
-fn assert_honest(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (f64, f64)) -> usize {
+pub fn assert_honest(bounds: &Bounds, name: &str, method: Method, truth: impl Fn(f64) -> (f64, f64)) -> usize {
     let (counted, covered, _) = honesty(bounds, name, method, truth);
     assert!(covered >= 0.99, "{name}.{}: {covered} of {counted} rows", method.name());
     counted
@@ -56,7 +56,7 @@ fn cosine(a: f64, from: f64, to: f64) -> (f64, f64) {
 }
 
 /// Oscillators of unit mass about `origin`: amplitude, stiffness and its tolerance of each.
-fn oscillators(parts: &[(f64, f64, f64)], outputs: &str, origin: f64, settings: &str) -> Description {
+pub fn oscillators(parts: &[(f64, f64, f64)], outputs: &str, origin: f64, settings: &str) -> Description {
     let each = |text: fn(usize, (f64, f64, f64), f64) -> String| -> String {
         parts.iter().enumerate().map(|(i, &part)| text(i, part, origin)).collect()
     };
@@ -72,7 +72,7 @@ fn oscillators(parts: &[(f64, f64, f64)], outputs: &str, origin: f64, settings: 
 }
 
 /// The range of Σ aᵢ cos(√kᵢ t).
-fn sum(parts: &[(f64, f64, f64)], t: f64) -> (f64, f64) {
+pub fn sum(parts: &[(f64, f64, f64)], t: f64) -> (f64, f64) {
     let range = |&(a, k, share): &(f64, f64, f64)| {
         let phase = |sign: f64| (k * (1.0 + sign * share / 100.0)).sqrt() * t;
         cosine(a, phase(-1.0), phase(1.0))
@@ -118,48 +118,6 @@ fn sums_of_waves_in_the_coordinates_are_covered() {
         products.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, u), v| (l.min(v), u.max(v)))
     };
     assert!(assert_honest(&bounds, "p", Method::Chebyshev, truth) > 70);
-}
-
-/// The largest distance of two bands over the width of the first's; `map` takes an end of the second to one of the first.
-fn apart(a: (&Bounds, &str), b: (&Bounds, &str), map: impl Fn(f64, f64) -> (f64, f64)) -> f64 {
-    let (a, b) = (band(output(a.0, a.1), Method::Chebyshev), band(output(b.0, b.1), Method::Chebyshev));
-    let width = (0..a.lower.len()).map(|row| a.upper[row] - a.lower[row]).fold(0.0, f64::max);
-    let of_row = |row: usize| {
-        let (lower, upper) = map(b.lower[row], b.upper[row]);
-        (a.lower[row] - lower).abs().max((a.upper[row] - upper).abs()) / width
-    };
-    (0..a.lower.len()).map(of_row).fold(0.0, f64::max)
-}
-
-#[test]
-fn origin_order_units_and_sides_do_not_matter() {
-    let parts = [(0.11, 1.2, 15.0), (0.07, 0.9, 12.0)];
-    let settings = "simulation: { duration: 40, step: 0.02, output_step: 0.5 }\nbounds: { chebyshev: { order: 10 } }\n";
-    let outputs = "{ x: b0.x + b1.x, w: \"sin(30*b0.x)*cos(20*b1.x)\" }";
-    let known = run(&oscillators(&parts, outputs, 0.0, settings));
-    assert!(assert_honest(&known, "x", Method::Chebyshev, |t| sum(&parts, t)) == 81);
-
-    let far = "{ x: b0.x + b1.x, w: \"sin(30*(b0.x - 1000))*cos(20*(b1.x - 1000))\" }";
-    let far = run(&oscillators(&parts, far, 1000.0, settings));
-    let moved = apart((&known, "x"), (&far, "x"), |lower, upper| (lower - 2000.0, upper - 2000.0));
-    let waves = apart((&known, "w"), (&far, "w"), |lower, upper| (lower, upper));
-    assert!(moved < 1e-9 && waves < 1e-8, "1 km away: {moved:.1e}, {waves:.1e}");
-
-    let swapped = [parts[1], parts[0]];
-    let permuted = "{ x: b1.x + b0.x, w: \"sin(30*b1.x)*cos(20*b0.x)\" }";
-    let permuted = run(&oscillators(&swapped, permuted, 0.0, settings));
-    let mirrored = [(-parts[0].0, parts[0].1, parts[0].2), (-parts[1].0, parts[1].1, parts[1].2)];
-    let mirrored = run(&oscillators(&mirrored, outputs, 0.0, settings));
-    let small = parts.map(|(a, k, share)| (1e-3 * a, k, share));
-    let scaled = "{ x: b0.x + b1.x, w: \"sin(3e4*b0.x)*cos(2e4*b1.x)\" }";
-    let scaled = run(&oscillators(&small, scaled, 0.0, settings));
-    for name in ["x", "w"] {
-        let order = apart((&known, name), (&permuted, name), |lower, upper| (lower, upper));
-        let sides = apart((&known, name), (&mirrored, name), |lower, upper| (-upper, -lower));
-        let units = if name == "x" { 1e3 } else { 1.0 };
-        let units = apart((&known, name), (&scaled, name), |lower, upper| (units * lower, units * upper));
-        assert!(order < 1e-9 && sides < 1e-9 && units < 1e-9, "{name}: {order:.1e}, {sides:.1e}, {units:.1e}");
-    }
 }
 
 /// m x'' = −k x − c v + cos(w t) from rest.

@@ -36,6 +36,7 @@ mod kinematics;
 mod linkages;
 mod machines;
 mod massless;
+mod metamorphic;
 mod mjcf;
 mod modes;
 mod pruning;

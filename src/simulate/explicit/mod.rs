@@ -5,9 +5,11 @@
 //!
 //! - `tableau`: the coefficients;
 //! - `runge_kutta`: a step, its errors and its dense output, for states of samples and of jets alike;
+//! - `movement`: how far the motion has gone, which errors count against;
 //! - `steps`: the steps that a tolerance asks for, and what stands against the method;
 //! - `run`: samples and jets over a schedule.
 
+mod movement;
 mod run;
 mod runge_kutta;
 mod steps;

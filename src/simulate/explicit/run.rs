@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use symdiff::{WIDTHS, jet::JetSpace};
 
+use super::movement::Movement;
 use super::runge_kutta::{Motion, RungeKutta, StepError};
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
@@ -40,14 +41,6 @@ impl Motion for JetClosure<'_> {
     }
 }
 
-/// What counts as one of each line of a state, of velocities as far as nothing is known yet.
-pub(super) fn sizes(simulator: &Simulator, duration: f64) -> Vec<f64> {
-    let scale = &simulator.program.scale;
-    // Nothing depends on the coordinate whose velocity a state is.
-    let positions = simulator.system.coordinates.iter().map(|c| if c.is_state { f64::INFINITY } else { c.scale });
-    positions.chain(scale.iter().map(|scale| scale / duration)).collect()
-}
-
 /// A tile of samples between two steps.
 #[derive(Debug)]
 struct Tile<'s> {
@@ -55,6 +48,8 @@ struct Tile<'s> {
     /// Of rows, whose accelerations are those of their own states.
     rows: RowClosure<'s>,
     run: RungeKutta,
+    /// The state at the start.
+    start: Vec<f64>,
     /// First sample, and how many lanes are samples.
     first: usize,
     count: usize,
@@ -75,10 +70,20 @@ fn tiles<'s>(simulator: &'s Simulator, samples: &[Sample], threads: usize) -> Re
         let mut motion = RowClosure::new(simulator, &start)?;
         let layout = &simulator.start.layout;
         let state = start.values()[layout.q.start * width..layout.v.end * width].to_vec();
-        let run = RungeKutta::start(&mut motion, 0.0, state);
+        let run = RungeKutta::start(&mut motion, 0.0, state.clone());
         let rows = RowClosure::new(simulator, &start)?;
         let alive = vec![true; width];
-        Ok(Tile { motion, rows, run, first: place * at_once, count: samples.len(), steps: 0, alive, reduction: None })
+        Ok(Tile {
+            motion,
+            rows,
+            run,
+            start: state,
+            first: place * at_once,
+            count: samples.len(),
+            steps: 0,
+            alive,
+            reduction: None,
+        })
     };
     let chunks: Vec<(usize, &[Sample])> = samples.chunks(at_once).enumerate().collect();
     chunks.into_par_iter().map(of_tile).collect()
@@ -90,12 +95,14 @@ pub(super) struct Tiles<'s> {
     tiles: Vec<Tile<'s>>,
     features: Option<&'s Features>,
     samples: Vec<Sample>,
+    movement: Movement,
 }
 
 impl<'s> Tiles<'s> {
-    pub fn start(simulator: &'s Simulator, samples: &[Sample]) -> Result<Self, SimulationError> {
+    pub fn start(simulator: &'s Simulator, samples: &[Sample], duration: f64) -> Result<Self, SimulationError> {
         let (features, tiles) = (simulator.features(), tiles(simulator, samples, 1)?);
-        Ok(Self { tiles, features, samples: samples.to_vec() })
+        let movement = Movement::new(&simulator.system.coordinates, duration);
+        Ok(Self { tiles, features, samples: samples.to_vec(), movement })
     }
 
     /// Whether a sample passes over most of what a force does in space in the step that was tried.
@@ -118,12 +125,18 @@ impl<'s> Tiles<'s> {
     }
 
     /// Tries a step of all; the worst lane's error.
-    pub fn attempt(&mut self, end: f64, sizes: &[f64], tolerance: f64) -> StepError {
+    pub fn attempt(&mut self, end: f64, tolerance: f64) -> StepError {
         let mut worst = StepError::default();
         for tile in &mut self.tiles {
             tile.run.attempt(&mut tile.motion, end);
             tile.run.finish(&mut tile.motion, end);
-            for error in tile.run.errors(end, sizes, tolerance, tile.alive.len()) {
+        }
+        let tried = self.tiles.iter().fold(self.movement.clone(), |movement, tile| {
+            movement.reaching(&tile.start, &tile.run.next, tile.alive.len())
+        });
+        let sizes = tried.sizes();
+        for tile in &self.tiles {
+            for error in tile.run.errors(end, &sizes, tolerance, tile.alive.len()) {
                 worst.ratio = worst.ratio.max(error.ratio);
                 worst.stiffness = worst.stiffness.max(error.stiffness);
             }
@@ -136,14 +149,11 @@ impl<'s> Tiles<'s> {
         self.tiles.iter_mut().for_each(|tile| tile.motion.forget());
     }
 
-    /// Goes on from the step's end; velocities count by the largest so far.
-    pub fn accept(&mut self, end: f64, sizes: &mut [f64]) {
-        let n = sizes.len() / 2;
+    /// Goes on from the step's end.
+    pub fn accept(&mut self, end: f64) {
         for tile in &mut self.tiles {
             tile.run.accept(end);
-            for (size, speeds) in sizes.iter_mut().zip(tile.run.state.chunks_exact(tile.alive.len())).skip(n) {
-                *size = speeds.iter().fold(*size, |size, speed| size.max(speed.abs()));
-            }
+            self.movement = self.movement.clone().reaching(&tile.start, &tile.run.state, tile.alive.len());
         }
     }
 }

@@ -118,7 +118,7 @@ impl RungeKutta {
             let (mut fifth, mut third, mut rates, mut states) = (0.0, 0.0, 0.0, 0.0);
             for (line, size) in sizes.iter().enumerate() {
                 let place = line * width + lane;
-                let allowed = tolerance * size.max(self.state[place].abs());
+                let allowed = tolerance * size;
                 fifth = larger(fifth, error_of(FIFTH, place) / allowed);
                 third = larger(third, error_of(THIRD, place) / allowed);
                 let rate = (self.rates[STAGES - 1][place] - self.rates[STAGES - 2][place]) / size;

@@ -2,7 +2,7 @@
 
 use symdiff::math;
 
-use super::run::{Tiles, sizes};
+use super::run::Tiles;
 use crate::numerics::Sample;
 use crate::simulate::control::{Integration, Schedule};
 use crate::simulate::error::SimulationError;
@@ -70,12 +70,11 @@ pub fn explicit_schedule(
     tolerance: f64,
     most: usize,
 ) -> Result<Result<Schedule, ExplicitObstacle>, SimulationError> {
-    let mut tiles = Tiles::start(simulator, samples)?;
+    let mut tiles = Tiles::start(simulator, samples, duration)?;
     let too_many = Ok(Err(ExplicitObstacle::TooManySteps { steps: most }));
     let functions = TimeFunctions::of(simulator, duration);
     let functions = functions.map(|functions| ResolvingSteps::new(functions, &simulator.system, most)).transpose();
     let Ok(mut functions) = functions else { return too_many };
-    let mut sizes = sizes(simulator, duration);
     let (mut ends, mut time, mut h) = (Vec::new(), 0.0, FIRST_STEP * output_step);
     let (mut stiff, mut others) = (0, 0);
     while time < duration {
@@ -91,7 +90,7 @@ pub fn explicit_schedule(
         };
         let Ok(step) = resolved else { return too_many };
         let end = if time + step * (1.0 + 1e-9) >= duration { duration } else { time + step };
-        let worst = tiles.attempt(end, &sizes, tolerance);
+        let worst = tiles.attempt(end, tolerance);
         let factor = SAFETY * math::pow(worst.ratio.max(1e-12), -0.125);
         if worst.ratio > 1.0 {
             tiles.reject();
@@ -110,7 +109,7 @@ pub fn explicit_schedule(
         if stiff == STIFF_STEPS {
             return Ok(Err(ExplicitObstacle::Stiff { time, step }));
         }
-        tiles.accept(end, &mut sizes);
+        tiles.accept(end);
         ends.push(end);
         time = end;
         // A step cut short at the end, or by a function of the time, is no reason against the longer one.
