@@ -36,6 +36,9 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Some(place) = self.model.link(text.strip_prefix("link.").unwrap_or(text)) {
             return Some(place);
         }
+        if let Some(place) = self.point_of_body(text) {
+            return Some(place);
+        }
         if let Some(body) = self.model.body(text) {
             return Some(PointRef { body, point: None });
         }
@@ -65,6 +68,14 @@ impl<S: SymbolTable> Reader<'_, S> {
         None
     }
 
+    /// `body.point`, as most places are written: looked up at once, before what a name may be else.
+    fn point_of_body(&self, text: &str) -> Option<PointRef> {
+        let (name, point) = text.split_once('.')?;
+        let body = self.model.body(name)?;
+        let point = self.model.points(body).position(|known| known == point)?;
+        Some(PointRef { body, point: Some(point) })
+    }
+
     /// What a name is of, and the rest: of a name in an instance all but the last part, of others the first.
     fn owner<'n>(&self, name: &'n str) -> (&'n str, &'n str) {
         let first = name.split_once('.').unwrap_or((name, ""));
@@ -86,7 +97,7 @@ impl<S: SymbolTable> Reader<'_, S> {
 
     fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
         let bodies = || self.model.bodies();
-        if let Some(found) = bodies().position(|known| known == name) {
+        if let Some(found) = self.model.body(name) {
             return Some(found);
         }
         let (message, help) = match self.model.parts_of_beam(name) {

@@ -51,6 +51,9 @@ fn bearings(reader: &Reader, joints: &[Entry]) -> BTreeMap<usize, usize> {
     let mut bearings = BTreeMap::new();
     for (index, joint) in reader.model.joints.iter().enumerate() {
         let toothed = joint.kind.toothed();
+        if toothed.joints.is_empty() && toothed.bodies.is_empty() {
+            continue;
+        }
         if !joints.iter().any(|entry| entry.key == joint.name) {
             continue;
         }

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::graph::Graph;
 use super::node::{Binary, Expr, Node, Unary};
+use super::visits::Visits;
 
 /// A matrix of expressions of which most are zero: its nonzero entries by row, columns ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -51,46 +52,22 @@ impl SparseMatrix {
     }
 }
 
-/// The nodes that one derivative has to look at, in memory that serves many.
-#[derive(Debug, Default)]
-struct Visits {
-    /// For each node, the last derivative that looked at it.
-    seen_by: Vec<u32>,
-    derivative: u32,
-    stack: Vec<Expr>,
-    found: Vec<Expr>,
-}
-
-impl Visits {
-    /// Of another derivative in a graph of so many nodes.
-    fn begin(&mut self, nodes: usize) {
-        if self.derivative == u32::MAX {
-            self.seen_by.fill(0);
-            self.derivative = 0;
-        }
-        self.seen_by.resize(nodes, 0);
-        self.derivative += 1;
-        self.found.clear();
-    }
-
-    fn is_first(&mut self, expr: Expr) -> bool {
-        std::mem::replace(&mut self.seen_by[expr.index()], self.derivative) != self.derivative
-    }
-}
-
 impl Graph {
     /// `∂of/∂by`, where `by` is a symbol. At a kink (`abs`, `min`, `max`) the mean of both sides is taken; jumps (of `sign`,
     /// `floor`) have no derivative;
     /// a guarded value is taken to be continuous where its condition changes sign.
     pub fn derivative(&mut self, of: Expr, by: Expr) -> Expr {
-        self.derivative_along(of, by, &mut Visits::default())
+        let mut visits = std::mem::take(&mut self.visits);
+        let derivative = self.derivative_along(of, by, &mut visits);
+        self.visits = visits;
+        derivative
     }
 
     /// `∂rows/∂by` with its sparsity: only what a row depends on is looked at, so the work grows with the nonzeros.
     pub fn jacobian(&mut self, rows: &[Expr], by: &[Expr]) -> SparseMatrix {
         let column_of: FxHashMap<Expr, usize> =
             by.iter().enumerate().map(|(column, &symbol)| (symbol, column)).collect();
-        let mut visits = Visits::default();
+        let mut visits = std::mem::take(&mut self.visits);
         let mut matrix = SparseMatrix::zero(rows.len(), by.len());
         for (row, &of) in rows.iter().enumerate() {
             let order = self.reachable(&[of]);
@@ -103,6 +80,7 @@ impl Graph {
                 }
             }
         }
+        self.visits = visits;
         matrix
     }
 

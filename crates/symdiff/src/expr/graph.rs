@@ -6,6 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::node::{Binary, Expr, Node, Unary};
+use super::visits::Visits;
 
 /// An arena of expressions. Constant folding and the algebraic identities are applied as nodes are made.
 ///
@@ -19,6 +20,8 @@ pub struct Graph {
     symbols: FxHashMap<String, Expr>,
     most: Option<usize>,
     pub(crate) derivatives: FxHashMap<(Expr, Expr), Expr>,
+    /// Memory that all derivatives share: it is as large as the graph.
+    pub(super) visits: Visits,
 }
 
 impl Graph {

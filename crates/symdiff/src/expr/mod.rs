@@ -8,6 +8,7 @@ mod node;
 mod passes;
 mod scalar;
 mod spline;
+mod visits;
 
 pub use derivative::SparseMatrix;
 pub use graph::Graph;
