@@ -115,7 +115,8 @@ fn run_and_write(job: &Job, request: &Request) -> Result<Done, Failure> {
     let files = files.map_err(|error| failed(&error))?;
     interrupt::keep_results(false);
     let resolved = || resolution(&bounds).max(verdicts::status(&summary));
-    let status = if summary.failure.is_some() { Status::Failed } else { resolved() };
+    let within = if summary.beyond_tolerance.is_some() { Status::Unresolved } else { Status::Done };
+    let status = if summary.failure.is_some() { Status::Failed } else { resolved().max(within) };
     let stored = kept.map(|(kept, store)| kept.found(store));
     Ok(Done { status, bounds, summary, files, folder, stored })
 }
@@ -142,6 +143,11 @@ pub(super) fn report(done: &Done, console: &Console) {
     }
     if let Some(message) = unreliable(&done.summary) {
         console.warning(&format!("{name}: {message}"));
+    }
+    if let Some(ratio) = done.summary.beyond_tolerance {
+        console.warning(&format!(
+            "{name}: the local errors of a sample's steps add up to {ratio:.3e} times the tolerance: what needs that sample is unreliable"
+        ));
     }
     if let Some(message) = damped(&done.summary) {
         console.warning(&format!("{name}: {message}"));

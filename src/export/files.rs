@@ -170,6 +170,7 @@ mod tests {
             singular_configurations: vec![],
             damped_mode: None,
             unmet_switch: None,
+            beyond_tolerance: None,
             integration: None,
             alpha: -0.1,
             duration: 1.0,

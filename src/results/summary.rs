@@ -42,6 +42,10 @@ pub struct Summary {
     /// From when on some parameter values meet a contact, a stop or a kink that no sample meets, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unmet_switch: Option<f64>,
+    /// How many times the tolerance the local errors of a sample's steps add up to, where that is more than once: rows that need the
+    /// sample are unresolved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beyond_tolerance: Option<f64>,
     /// By what the motion was integrated, where that was not HHT-I3 alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub integration: Option<String>,

@@ -202,6 +202,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         singular_configurations: singular.collect(),
         damped_mode,
         unmet_switch,
+        beyond_tolerance: results.beyond_tolerance(),
         integration: results.schedule.integration.name(),
         alpha: study.description.simulation.alpha,
         duration: study.description.simulation.duration,

@@ -48,10 +48,7 @@ impl Study<'_> {
         let (controlled, controller) = self.schedule_within(tolerance, &samples)?;
         let failure = controlled.failure.map(|failure| format!("{failure}; what does not need that sample is kept"));
         let results = self.methods(&controlled.schedule, Some(controller))?;
-        let beyond = results.beyond_tolerance();
-        let beyond = beyond
-            .map(|ratio| format!("the local errors of a sample's steps add up to {ratio:.2} times the tolerance"));
-        Ok(self.conclude(results, failure.or(beyond)))
+        Ok(self.conclude(results, failure))
     }
 
     /// A schedule whose errors in the outputs are within the tolerance at the controlling samples, and the local errors that are

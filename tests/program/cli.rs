@@ -263,3 +263,26 @@ fn a_full_disk_is_a_failure() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(errors.starts_with("error: cannot write to standard output: "), "{errors}");
 }
+
+/// One sample of the scan is held by a brake that no other sample feels: at rest its force jumps in every step, and the tolerance takes
+/// more steps than a sample may have.
+#[test]
+fn a_sample_beyond_the_tolerance_ends_with_3() {
+    let place = Place::new();
+    let brake = "model: brake
+parameters: { p: { interval: [0.9, 1.16] } }
+bodies: { sledge: { mass: 1, coordinates: [x] } }
+effects: { brake: { force: { on: sledge, value: [\"-390*exp(-((p - 1)/0.009)^2)*sign(sledge.vx)\", 0] } } }
+initial: { sledge.x: 0, sledge.vx: 97.5 }
+outputs: { v: sledge.vx }
+simulation: { duration: 0.6, tolerance: 1e-5, output_step: 0.1, scheme: hht }
+bounds: { scan: { points: 14 } }
+";
+    fs::write(place.path().join("brake.yaml"), brake).unwrap();
+    let (_, errors) = place.run("run brake.yaml -o out", 3);
+    assert!(errors.contains("times the tolerance"), "{errors}");
+    let csv = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
+    let flagged: Vec<bool> = csv.lines().skip(1).map(|row| row.ends_with("v.scan")).collect();
+    // It comes to rest after 0.25 s.
+    assert!(flagged[3..].iter().all(|&flagged| flagged), "{csv}");
+}

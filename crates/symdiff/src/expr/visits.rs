@@ -1,0 +1,33 @@
+//! What a search through the graph has seen.
+
+use super::node::Expr;
+
+/// The nodes that one derivative has to look at, in memory that serves many.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Visits {
+    /// For each node, the last derivative that looked at it.
+    seen_by: Vec<u32>,
+    derivative: u32,
+    /// Nodes that wait to be looked at,
+    pub stack: Vec<Expr>,
+    /// and those that were found.
+    pub found: Vec<Expr>,
+}
+
+impl Visits {
+    /// Of another derivative in a graph of so many nodes.
+    pub fn begin(&mut self, nodes: usize) {
+        if self.derivative == u32::MAX {
+            self.seen_by.fill(0);
+            self.derivative = 0;
+        }
+        self.seen_by.resize(nodes, 0);
+        self.derivative += 1;
+        self.found.clear();
+    }
+
+    /// Whether this derivative has not looked at a node yet.
+    pub fn is_first(&mut self, expr: Expr) -> bool {
+        std::mem::replace(&mut self.seen_by[expr.index()], self.derivative) != self.derivative
+    }
+}
