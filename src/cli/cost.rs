@@ -205,9 +205,12 @@ fn choice(study: &CostStudy) -> String {
             }
             Deviation::Trajectory(off) => format!("off by {}", error(off, own)),
         };
-        let (label, step) = (point.method.label(), step(point.step));
+        let steps = match point.step {
+            Stepping::Fixed(_) => format!("steps of {}", step(point.step)),
+            Stepping::Tolerance(tolerance) => format!("steps to a tolerance of {tolerance:e}"),
+        };
         let simulations = count(point.simulations, "simulation", "simulations");
-        format!("{label}{count_of}, steps of {step}: {simulations} in {}, {off}", seconds(point.seconds))
+        format!("{}{count_of}, {steps}: {simulations} in {}, {off}", point.method.label(), seconds(point.seconds))
     };
     let more = format!("--budget {:.0}", 4.0 * study.budget.max(study.reference_seconds).max(1.0));
     if !study.has_reference() {

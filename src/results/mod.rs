@@ -25,7 +25,7 @@ pub use analysis::{AnalysisSummary, ValueSummary};
 pub use bounds::{Band, Bounds, Contribution, OutputBounds, ResponsePoint, foremost};
 #[cfg(test)]
 pub(crate) use cost::tests as cost_tests;
-pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, cost_curves, pareto};
+pub use cost::{CostMethod, CostPoint, CostReference, CostStudy, Deviation, Integrator, cost_curves, pareto};
 pub use decisions::{Decision, Each, Saving};
 pub use drawing::{Drawing, DrawnBody, DrawnElement, DrawnLength, DrawnPoint};
 pub use effect_cost::{EffectCost, StepInstructions};

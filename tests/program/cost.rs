@@ -74,8 +74,9 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
     let mut reader = csv::Reader::from_path(place.path().join("results/oscillator/cost.csv")).unwrap();
     let all: Rows = reader.deserialize().collect::<Result<_, _>>().unwrap();
     let (rows, trajectories): (Rows, Rows) = all.into_iter().partition(|row| row["of"] == "bounds");
-    // 3 × 4 orders of Chebyshev, 3 of Taylor, 3 scans; five schemes; six steps each.
-    assert_eq!((rows.len(), trajectories.len()), (18 * 6, 5 * 6));
+    // 3 × 4 orders of Chebyshev, 3 of Taylor, 3 scans; five schemes; six steps each. Then 4 orders of extrapolated steps and of the
+    // explicit method, which has 4 tolerances; 2, 3 and 4 levels.
+    assert_eq!((rows.len(), trajectories.len()), (18 * 6 + 4 * (6 + 4), 5 * 6 + 3 * 6 + 4));
     let finest = 800;
     let error = |method, count, steps| number(row(&rows, method, count, steps), "error");
     let sides = |method, count| {
@@ -113,6 +114,21 @@ fn errors_fall_as_they_must_and_have_the_right_sign() {
         assert!(off("trapezoidal", 800) <= fine, "{scheme}");
     }
 
+    // Extrapolated steps and the explicit method are of higher order: no plain steps come near.
+    let plain = off("hht(-0.1)", 800);
+    assert!(off("extrapolated(3)", 7 * 200) < 1e-2 * plain && off("extrapolated(4)", 15 * 200) < 1e-3 * plain);
+    let explicit: Vec<f64> =
+        trajectories.iter().filter(|row| row["method"] == "explicit").map(|row| number(row, "error")).collect();
+    assert!(explicit[0] < 1e-2 && explicit[3] < 1e-4 * plain, "{explicit:?}");
+    let composed = error("chebyshev.coordinates", "8", finest);
+    let by = |method: &str| {
+        let own = rows.iter().filter(|row| row["method"] == method && row["order"] == "16");
+        own.map(|row| number(row, "error")).fold(f64::INFINITY, f64::min)
+    };
+    for method in ["chebyshev.coordinates.extrapolated(3)", "chebyshev.coordinates.explicit"] {
+        assert!(by(method) < 1e-2 * composed, "{method}: {} of {composed}", by(method));
+    }
+
     for rows in [&rows, &trajectories] {
         let place = |row: &HashMap<String, String>| (number(row, "error"), number(row, "seconds"));
         let front: Vec<_> = rows.iter().filter(|row| row["front"] == "true").map(place).collect();
@@ -147,7 +163,8 @@ fn without_uncertainty_or_time_only_the_schemes_are_compared() {
     let (text, status) = run("cost certain.yaml --output here --tolerance 1e-4");
     assert_eq!(status, Some(0), "{text}");
     assert!(
-        !text.contains("too wide  ") && text.contains("The cheapest setting within 1e-4 is HHT-I3, α = −0.1, "),
+        !text.contains("too wide  ")
+            && text.contains("The cheapest setting within 1e-4 is Explicit, order 8, steps to a tolerance of "),
         "{text}"
     );
     assert!(place.path().join("here/cost.csv").exists() && place.path().join("here/cost.svg").exists());

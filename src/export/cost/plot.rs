@@ -10,7 +10,7 @@ use crate::export::figure::document::{Anchor, document, finished, group, heading
 use crate::export::figure::log_axis::LogAxis;
 use crate::export::figure::path::{Point, line_data, px};
 use crate::export::figure::style::{Color, Hue};
-use crate::results::{CostMethod, CostPoint, CostStudy, cost_curves, pareto};
+use crate::results::{CostMethod, CostPoint, CostStudy, Integrator, cost_curves, pareto};
 
 /// Size on the page, px.
 const SIZE: (f64, f64) = (1100.0, 560.0);
@@ -39,6 +39,12 @@ const FRONT: Color = Color([190, 190, 190]);
 fn color(method: CostMethod) -> Color {
     match method {
         CostMethod::Bounds(curve) => Color(curve.about().color),
+        CostMethod::BoundsBy(_, integrator) | CostMethod::By(integrator) => Color(match integrator {
+            Integrator::Explicit => [0, 0, 0],
+            Integrator::Extrapolated { levels: 2 } => [215, 120, 180],
+            Integrator::Extrapolated { levels: 3 } => [213, 94, 0],
+            Integrator::Extrapolated { .. } => [120, 94, 240],
+        }),
         CostMethod::Scheme(Scheme::Hht { .. }) => Color([0, 114, 178]),
         CostMethod::Scheme(Scheme::TrapezoidalIndex2) => Color([130, 25, 80]),
         CostMethod::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) if spectral_radius < 0.65 => {

@@ -1,7 +1,7 @@
 //! The study as data, and the choice from it.
 
+use super::method::CostMethod;
 use crate::compile::Scheme;
-use crate::methods::Curve;
 use crate::model::Stepping;
 
 /// A work-precision study of one model. Errors are relative to each output's scale: the widest that the reference's band
@@ -31,7 +31,7 @@ pub struct CostStudy {
 impl CostStudy {
     /// Whether nothing is uncertain, so that there is nothing to bound.
     pub fn is_deterministic(&self) -> bool {
-        matches!(self.reference.method, CostMethod::Scheme(_))
+        self.reference.method.curve().is_none()
     }
 
     /// Whether there was time for a reference to measure errors by.
@@ -39,9 +39,11 @@ impl CostStudy {
         self.reference.trajectory_error.is_finite()
     }
 
-    /// What a user can choose from: bounds or, without uncertain parameters, the model's own scheme.
+    /// What a user can choose from: bounds or, without uncertain parameters, what a model can be run by.
     fn choices(&self) -> impl Iterator<Item = &CostPoint> {
-        let own = |point: &&CostPoint| matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }));
+        let own = |point: &&CostPoint| {
+            point.method.integrator().is_some() || matches!(point.method, CostMethod::Scheme(Scheme::Hht { .. }))
+        };
         let trajectories = self.trajectories.iter().filter(own).filter(|_| self.is_deterministic());
         self.bounds.iter().chain(trajectories).filter(|point| point.failure.is_none())
     }
@@ -147,9 +149,9 @@ impl CostPoint {
 
     /// Of a setting that has not been run, or in vain.
     pub fn without_result(method: CostMethod, step: Stepping) -> Self {
-        let deviation = match method {
-            CostMethod::Scheme(_) => Deviation::Trajectory(f64::INFINITY),
-            _ => Deviation::Bounds { over_width: f64::INFINITY, under_coverage: f64::INFINITY },
+        let deviation = match method.curve() {
+            None => Deviation::Trajectory(f64::INFINITY),
+            Some(_) => Deviation::Bounds { over_width: f64::INFINITY, under_coverage: f64::INFINITY },
         };
         Self {
             method,
@@ -190,45 +192,10 @@ impl Deviation {
     }
 }
 
-/// A curve of the study.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum CostMethod {
-    /// Bounds.
-    Bounds(Curve),
-    /// One simulation, by this scheme.
-    Scheme(Scheme),
-}
-
-impl CostMethod {
-    /// In files.
-    pub fn name(self) -> String {
-        match self {
-            Self::Bounds(curve) => curve.about().name.to_owned(),
-            Self::Scheme(Scheme::Hht { alpha }) => format!("hht({alpha})"),
-            Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
-                format!("generalised_alpha({spectral_radius})")
-            }
-            Self::Scheme(Scheme::TrapezoidalIndex2) => "trapezoidal".to_owned(),
-        }
-    }
-
-    /// For people.
-    pub fn label(self) -> String {
-        match self {
-            Self::Bounds(curve) => curve.about().label.to_owned(),
-            Self::Scheme(Scheme::Hht { alpha }) => format!("HHT-I3, α = −{}", (1e3 * alpha.abs()).round() / 1e3),
-            Self::Scheme(Scheme::GeneralisedAlpha { spectral_radius }) => {
-                format!("Generalised-α, ρ∞ = {spectral_radius}")
-            }
-            Self::Scheme(Scheme::TrapezoidalIndex2) => "Trapezoidal, index 2".to_owned(),
-        }
-    }
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::methods::Method;
+    use crate::methods::{Curve, Method};
 
     pub const COMPOSED: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 0 });
     pub const TIGHT: CostMethod = CostMethod::Bounds(Curve { method: Method::Chebyshev, place: 1 });

@@ -2,10 +2,19 @@
 
 use crate::methods::{BoundsRequest, Curve, Method};
 use crate::model::{Description, SchemeChoice, Simulation, Stepping};
-use crate::results::CostMethod;
+use crate::results::{CostMethod, Integrator};
 
 /// Steps, in parts of the model's own.
 const PARTS: [f64; 6] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// Tolerances of the explicit method.
+const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
+
+/// Levels of extrapolation that samples of bounds are tried with.
+pub(super) const LEVELS: Integrator = Integrator::Extrapolated { levels: 3 };
+
+/// Orders of bounds whose samples are integrated in place of plain steps: what is more accurate is worth higher ones.
+const COUNTS: [usize; 4] = [5, 8, 12, 16];
 
 /// Of which all samples lie in the true range: what a reference is checked by.
 pub(super) const SCAN: CostMethod = CostMethod::Bounds(Curve { method: Method::Scan, place: 0 });
@@ -48,6 +57,14 @@ pub(super) fn steppings(simulation: &Simulation) -> Vec<Stepping> {
     steppings
 }
 
+/// The same for what integrates in place of plain steps.
+pub(super) fn steppings_by(integrator: Integrator, simulation: &Simulation) -> Vec<Stepping> {
+    match integrator {
+        Integrator::Extrapolated { .. } => steppings(simulation),
+        Integrator::Explicit => TOLERANCES.map(Stepping::Tolerance).to_vec(),
+    }
+}
+
 /// Every setting, method by method, composed ones only if outputs can be.
 pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting> {
     let mut settings = Vec::new();
@@ -57,16 +74,20 @@ pub(super) fn settings(simulation: &Simulation, composable: bool) -> Vec<Setting
             settings.extend(steppings(simulation).into_iter().map(|stepping| Setting { method, count, stepping }));
         }
     }
+    for integrator in [LEVELS, Integrator::Explicit] {
+        let method = smoothest(composable).by(integrator);
+        for count in COUNTS {
+            let steppings = steppings_by(integrator, simulation).into_iter();
+            settings.extend(steppings.map(|stepping| Setting { method, count, stepping }));
+        }
+    }
     settings
 }
 
 impl Setting {
     /// The method under which a run reports it.
     pub(super) fn reported(&self) -> Option<Method> {
-        match self.method {
-            CostMethod::Bounds(curve) => Some(curve.method),
-            CostMethod::Scheme(_) => None,
-        }
+        self.method.curve().map(|curve| curve.method)
     }
 
     /// The model that asks for this and nothing else.
@@ -74,12 +95,13 @@ impl Setting {
         let mut model = model.clone();
         let k = uncertain(&model);
         model.simulation.stepping = self.stepping;
-        // Its settings are steps of the scheme.
-        if model.simulation.scheme == SchemeChoice::Auto {
-            model.simulation.scheme = SchemeChoice::Hht;
-        }
+        (model.simulation.scheme, model.simulation.extrapolation) = match self.method.integrator() {
+            None => (SchemeChoice::Hht, None),
+            Some(Integrator::Extrapolated { levels }) => (SchemeChoice::Hht, Some(levels)),
+            Some(Integrator::Explicit) => (SchemeChoice::Explicit, None),
+        };
         model.bounds = BoundsRequest::default();
-        if let CostMethod::Bounds(curve) = self.method {
+        if let Some(curve) = self.method.curve() {
             (curve.about().ask)(&mut model.bounds, self.count, k);
         }
         model
@@ -87,19 +109,24 @@ impl Setting {
 
     /// Simulations that it takes of k parameters.
     pub(super) fn simulations(&self, k: usize) -> f64 {
-        match self.method {
-            CostMethod::Bounds(curve) => (curve.about().simulations)(self.count, k),
-            CostMethod::Scheme(_) => 1.0,
-        }
+        self.method.curve().map_or(1.0, |curve| (curve.about().simulations)(self.count, k))
     }
 
     /// Simulations times steps, up to a factor that is the same for all settings of a model.
     pub(super) fn work(&self, k: usize) -> f64 {
-        let steps = match self.stepping {
-            Stepping::Fixed(step) => 1.0 / step,
-            Stepping::Tolerance(tolerance) => 1.0 / symdiff::math::cbrt(tolerance),
+        let steps = match (self.stepping, self.method.integrator()) {
+            // About as much as the scheme's steps, at the tolerances that it takes.
+            (Stepping::Tolerance(tolerance), Some(Integrator::Explicit)) => {
+                100.0 * symdiff::math::pow(tolerance, -0.125)
+            }
+            (Stepping::Fixed(step), _) => 1.0 / step,
+            (Stepping::Tolerance(tolerance), _) => 1.0 / symdiff::math::cbrt(tolerance),
         };
-        self.simulations(k) * steps
+        let levels = match self.method.integrator() {
+            Some(Integrator::Extrapolated { levels }) => f64::from((1_u32 << levels) - 1),
+            _ => 1.0,
+        };
+        self.simulations(k) * levels * steps
     }
 }
 

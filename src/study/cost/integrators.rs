@@ -1,16 +1,20 @@
-//! The schemes side by side: the nominal trajectory, on one core, by each with each step.
+//! Schemes and other integrators side by side: the nominal trajectory, on one core, by each with each step.
 
-use super::CostError;
 use super::deviation::Known;
-use super::grid::steppings;
-use super::timing::best_of;
+use super::grid::{LEVELS, Setting, steppings, steppings_by};
+use super::timing::{best_of, method, timed};
+use super::{CostError, CostOptions};
 use crate::assemble::System;
 use crate::compile::Scheme;
 use crate::model::{Description, Simulation, Stepping};
 use crate::numerics::Sample;
-use crate::results::{CostMethod, CostPoint};
+use crate::results::{CostMethod, CostPoint, Integrator};
 use crate::simulate::{Schedule, SimulationError, Simulator, Stepper, schedule_for_tolerance};
 use crate::study::{RunError, first_step, scheme as model_scheme};
+
+/// What integrates in place of plain steps.
+const INTEGRATORS: [Integrator; 4] =
+    [Integrator::Extrapolated { levels: 2 }, LEVELS, Integrator::Extrapolated { levels: 4 }, Integrator::Explicit];
 
 /// Spectral radii that generalised-α is tried with.
 const RADII: [f64; 3] = [0.5, 0.8, 0.9];
@@ -24,12 +28,17 @@ pub(super) fn trajectories(
     system: &System,
     known: &Known,
     progress: &dyn Fn(f64),
-    interrupted: &dyn Fn() -> bool,
+    options: &CostOptions,
 ) -> Result<Vec<CostPoint>, CostError> {
+    let interrupted = options.interrupted;
     let mut schemes = vec![model_scheme(model), Scheme::TrapezoidalIndex2];
     schemes.extend(RADII.map(|spectral_radius| Scheme::GeneralisedAlpha { spectral_radius }));
     let steppings = steppings(&model.simulation);
-    let total = (schemes.len() * steppings.len()) as f64;
+    let others: Vec<(Integrator, Stepping)> = INTEGRATORS
+        .into_iter()
+        .flat_map(|other| steppings_by(other, &model.simulation).into_iter().map(move |stepping| (other, stepping)))
+        .collect();
+    let total = (schemes.len() * steppings.len() + others.len()) as f64;
     let mut points = Vec::new();
     for scheme in schemes {
         let simulator = Simulator::new(system.clone(), scheme, first_step(model)).map_err(RunError::from)?;
@@ -46,6 +55,26 @@ pub(super) fn trajectories(
             });
             progress(points.len() as f64 / total);
         }
+    }
+    let options = CostOptions { threads: Some(1), ..*options };
+    for (integrator, stepping) in others {
+        if interrupted() {
+            break;
+        }
+        let setting = Setting { method: CostMethod::By(integrator), count: 0, stepping };
+        let without = CostPoint::without_result(setting.method, stepping);
+        points.push(match timed(model, &setting, &options, &|_| ()) {
+            Ok(((bounds, summary), seconds)) => CostPoint {
+                simulations: 1,
+                steps: method(&summary, &setting).steps,
+                seconds,
+                deviation: known.of_courses(bounds.outputs.iter().map(|output| &output.nominal[..])),
+                failure: summary.failure,
+                ..without
+            },
+            Err(error) => CostPoint { failure: Some(error.to_string()), ..without },
+        });
+        progress(points.len() as f64 / total);
     }
     Ok(points)
 }

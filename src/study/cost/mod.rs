@@ -14,9 +14,10 @@ mod timing;
 use std::time::Instant;
 
 use super::RunError;
+use crate::compile::compile_switches;
 use crate::methods::{MOST_SIMULATIONS, Varied, can_compose};
-use crate::model::Description;
-use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, pareto};
+use crate::model::{Description, Stepping};
+use crate::results::{CostMethod, CostPoint, CostReference, CostStudy, cost_curves, pareto};
 
 use grid::{Setting, settings, smoothest, uncertain};
 use plan::Plan;
@@ -76,7 +77,9 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     let over = is_over(options.budget);
     let within = CostOptions { interrupted: &over, ..*options };
     let progress = |done| (options.progress)(REFERENCE_DONE * done);
-    let planned = Plan::within_budget(model, composable, &within)
+    let is_fixed = matches!(model.simulation.stepping, Stepping::Fixed(_));
+    let has_expansion = is_fixed && compile_switches(&system).is_none() && !system.analysis.is_without_steps();
+    let planned = Plan::within_budget(model, (composable, has_expansion), &within)
         .and_then(|plan| Ok((Reference::compute(model, &plan, &within, &progress)?, plan)));
     let (reference, plan) = match planned {
         Ok(found) => found,
@@ -113,12 +116,15 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
     }
     let progress = |done: f64| (options.progress)(BOUNDS_DONE + (1.0 - BOUNDS_DONE) * done);
     let over = is_over(options.budget);
-    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, &over)?;
+    let within = CostOptions { interrupted: &over, ..*options };
+    let mut trajectories = integrators::trajectories(model, &system, &reference.known, &progress, &within)?;
     if (options.interrupted)() {
         left_out.push("what was not done when the study was interrupted".to_owned());
     } else if over() {
         left_out.push(format!("schemes that the budget of {} s does not allow", options.budget));
     }
+    left_out.extend(unfit(&bounds).chain(unfit(&trajectories)));
+    left_out.dedup();
     mark(&mut bounds, reference.summary.bounds_error);
     mark(&mut trajectories, reference.summary.trajectory_error);
     Ok(CostStudy {
@@ -131,6 +137,15 @@ pub fn cost(model: &Description, options: &CostOptions) -> Result<CostStudy, Cos
         bounds,
         trajectories,
         left_out,
+    })
+}
+
+/// What cannot integrate the motion at all, with the reason.
+fn unfit(points: &[CostPoint]) -> impl Iterator<Item = String> {
+    cost_curves(points).into_iter().filter(|method| method.integrator().is_some()).filter_map(|method| {
+        let mut own = points.iter().filter(|point| point.method == method);
+        let reason = own.clone().find_map(|point| point.failure.as_ref())?;
+        own.all(|point| point.failure.is_some()).then(|| format!("{}: {reason}", method.label()))
     })
 }
 
@@ -223,10 +238,7 @@ fn point(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> CostPoint {
-    let varied = match setting.method {
-        CostMethod::Bounds(curve) => Some(curve.about().varied),
-        CostMethod::Scheme(_) => None,
-    };
+    let varied = setting.method.curve().map(|curve| curve.about().varied);
     let order = (varied == Some(Varied::Order)).then_some(setting.count);
     let points = (varied == Some(Varied::Points)).then_some(setting.count);
     let point = CostPoint { order, points, ..CostPoint::without_result(setting.method, setting.stepping) };

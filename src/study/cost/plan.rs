@@ -1,6 +1,6 @@
 //! Which reference can be had within the budget.
 
-use super::grid::{SCAN, Setting, finer, smoothest, uncertain};
+use super::grid::{LEVELS, SCAN, Setting, finer, smoothest, uncertain};
 use super::timing::spent;
 use super::{CostError, CostOptions};
 use crate::model::Description;
@@ -8,7 +8,7 @@ use crate::results::CostMethod;
 use crate::study::scheme;
 
 /// Highest orders for one, two and three parameters; for more, the highest up to [`FEW`] that this many simulations allow.
-const ORDERS: [usize; 3] = [24, 16, 10];
+const ORDERS: [usize; 3] = [32, 24, 10];
 const FEW: usize = 7;
 
 /// The order is not lowered below this for the time's sake, nor the steps made coarser.
@@ -50,28 +50,29 @@ pub(super) struct Plan {
 
 impl Plan {
     /// The highest order, and with it the finest steps, that two short runs promise to be done in time; the cheapest there is
-    /// where none is.
+    /// where none is. Where the error has an expansion in powers of the steps, these are extrapolated.
     ///
     /// # Errors
     /// Where a run fails, or even the coarsest takes too long, or there are too many parameters for any.
     pub(super) fn within_budget(
         model: &Description,
-        composable: bool,
+        (composable, has_expansion): (bool, bool),
         options: &CostOptions,
     ) -> Result<Self, CostError> {
         let k = uncertain(model);
         let simulation = &model.simulation;
+        let of_steps = |method: CostMethod| if has_expansion { method.by(LEVELS) } else { method };
         if k == 0 {
             // One simulation, which is cheap.
             return Ok(Self {
-                method: CostMethod::Scheme(scheme(model)),
+                method: of_steps(CostMethod::Scheme(scheme(model))),
                 order: 0,
                 parts: FINEST[0],
                 scan: None,
                 rate: 0.0,
             });
         }
-        let method = smoothest(composable);
+        let method = of_steps(smoothest(composable));
         let setting = |count, parts| Setting { method, count, stepping: finer(simulation, parts) };
         let simulations = |order| setting(order, 1.0).simulations(k);
         let highest = ORDERS.get(k - 1).copied();
@@ -117,7 +118,8 @@ impl Plan {
             return Err(CostError::TooCostly { seconds: least_seconds });
         }
         let rate = fine.seconds / trials[1].work(k);
-        Ok(Self { method, order, parts, scan: dense_scan(model, parts, options)?, rate })
+        let scan = dense_scan(model, of_steps(SCAN), parts, options)?;
+        Ok(Self { method, order, parts, scan, rate })
     }
 
     /// The order that tells how far the reference's is off, where it has one.
@@ -127,10 +129,15 @@ impl Plan {
 }
 
 /// Points of the densest scan, and of its half, that can be done in time, each with two step sizes; none for many parameters.
-fn dense_scan(model: &Description, parts: f64, options: &CostOptions) -> Result<Option<usize>, CostError> {
+fn dense_scan(
+    model: &Description,
+    method: CostMethod,
+    parts: f64,
+    options: &CostOptions,
+) -> Result<Option<usize>, CostError> {
     let k = uncertain(model);
     let (Some(&few), Some(dense)) = (SCAN_TRIAL.get(k - 1), DENSE.get(k - 1)) else { return Ok(None) };
-    let scan = |count, parts| Setting { method: SCAN, count, stepping: finer(&model.simulation, parts) };
+    let scan = |count, parts| Setting { method, count, stepping: finer(&model.simulation, parts) };
     let trial = scan(few, 1.0);
     let rate = spent(model, &trial, options)?.seconds / trial.work(k);
     let seconds = |points: usize| {

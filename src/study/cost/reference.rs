@@ -1,8 +1,9 @@
 //! What errors are measured against: bounds of a high order, extrapolated over small steps and widened to what a dense scan
 //! reaches, with an estimate of what is still wrong with them.
 //!
-//! - *Steps.* B(h), B(2h), B(4h) of a scheme of second order extrapolate to (4 B(h) − B(2h))/3 and (4 B(2h) − B(4h))/3. The
-//!   error of such a value falls with h by four or more, and so is at most a third of how far the two are apart. Controlled
+//! - *Steps.* Where no equation switches, every sample's steps are extrapolated, and B(h) is taken as it is. Else B(h), B(2h), B(4h) of a
+//!   scheme of second order extrapolate to (4 B(h) − B(2h))/3 and (4 B(2h) − B(4h))/3. The
+//!   error of either falls with h by four or more, and so is at most a third of how far it is from that of twice the steps. Controlled
 //!   steps have no such expansion: there B(h) is taken as it is, and a third of its distance from B(2h).
 //! - *Order.* How far the bounds are from those of order p − 2: rather the latter's error.
 //! - *Scan.* Its samples lie in the true range. What is left is taken to be as much as it adds to a scan of half its density.
@@ -46,9 +47,9 @@ impl Reference {
             let (bounds, summary) = bounds(model, &setting, options, &|fraction| progress(before + share * fraction))?;
             summary.failure.map_or(Ok(bounds), |failure| Err(CostError::Reference(failure)))
         };
-        let limit = |fine: &Bounds, coarse: &Bounds| match h {
-            Stepping::Fixed(_) => extrapolated(fine, coarse),
-            Stepping::Tolerance(_) => fine.outputs.clone(),
+        let is_plain = matches!(h, Stepping::Fixed(_)) && plan.method.integrator().is_none();
+        let limit = |fine: &Bounds, coarse: &Bounds| {
+            if is_plain { extrapolated(fine, coarse) } else { fine.outputs.clone() }
         };
 
         let fine = run(plan.method, plan.order, h, 0.4)?;
@@ -65,11 +66,10 @@ impl Reference {
         }
         if let Some(points) = plan.scan {
             let scan = |points| {
-                let fine = run(SCAN, points, h, 0.08)?;
-                match h {
-                    Stepping::Fixed(_) => Ok(extrapolated(&fine, &run(SCAN, points, h2, 0.04)?)),
-                    Stepping::Tolerance(_) => Ok::<_, CostError>(fine.outputs),
-                }
+                let scan = plan.method.integrator().map_or(SCAN, |integrator| SCAN.by(integrator));
+                let fine = run(scan, points, h, 0.08)?;
+                let limit = if is_plain { extrapolated(&fine, &run(scan, points, h2, 0.04)?) } else { fine.outputs };
+                Ok::<_, CostError>(limit)
             };
             known.widen(&scan(points / 2 + 1)?);
             let whole = scan(points)?;

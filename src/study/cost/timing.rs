@@ -48,9 +48,12 @@ pub(super) fn bounds(
     options: &CostOptions,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<(Bounds, Summary), RunError> {
+    // Of one simulation there are no bounds.
+    let methods = setting.method.curve().is_none().then(Vec::new);
+    let interrupted = options.interrupted;
     run(
         &setting.applied(model),
-        Options { threads: options.threads, progress, interrupted: options.interrupted, ..Options::default() },
+        Options { methods, threads: options.threads, progress, interrupted, ..Options::default() },
     )
 }
 
