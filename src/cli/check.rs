@@ -8,7 +8,6 @@ use super::args::{CheckArgs, Format};
 use super::console::{BOLD, Console, coordinates, count, to_json};
 use super::{Failure, Status, load, structure, tree};
 use crate::model::{self, Description, Override};
-use crate::reduce::{Choices, Reduction};
 use crate::results::{AssemblySummary, Structure};
 use crate::simulate::Assembled;
 use crate::study::{self, RunError};
@@ -183,7 +182,7 @@ impl Counts {
             constraints: system.constraints.len(),
             degrees_of_freedom: mobility.degrees_of_freedom,
         };
-        let reduction = Reduction::of(model, Choices::default());
+        let reduction = study::reduction(model);
         let is_whole = |part: &Description| {
             let counts = |model: &Description| [model.bodies.len(), model.joints.len(), model.effects.len()];
             counts(part) == counts(model)

@@ -13,6 +13,34 @@ struct Kept {
     parameters: Vec<bool>,
 }
 
+/// What is asked of a subsystem: numbers in the whole model.
+#[derive(Default)]
+pub struct Asked {
+    pub outputs: Vec<usize>,
+    pub reduced: Vec<usize>,
+    pub requirements: Vec<usize>,
+}
+
+impl Asked {
+    /// An output alone.
+    pub fn output(number: usize) -> Self {
+        Self { outputs: vec![number], ..Self::default() }
+    }
+
+    /// Has a description ask for this alone, of outputs at their new places.
+    fn ask(&self, part: &mut Description) {
+        part.outputs = self.outputs.iter().map(|&output| part.outputs[output].clone()).collect();
+        part.reduced = self.reduced.iter().map(|&number| part.reduced[number].clone()).collect();
+        part.requirements = self.requirements.iter().map(|&number| part.requirements[number].clone()).collect();
+        let reduced = part.reduced.iter_mut().flat_map(|own| &mut own.places);
+        let required = part.requirements.iter_mut().flat_map(|own| &mut own.places);
+        for place in reduced.chain(required) {
+            // What is asked comes with its outputs.
+            *place = self.outputs.iter().position(|output| output == place).unwrap_or(*place);
+        }
+    }
+}
+
 /// The new index of each kept part.
 fn places(kept: &[bool]) -> Vec<Option<usize>> {
     let mut next = 0..;
@@ -24,17 +52,17 @@ fn retain<T>(list: &mut Vec<T>, kept: &[bool]) {
     list.retain(|_| *kept.next().unwrap_or(&true));
 }
 
-/// The model of the parts in `set` with these outputs. Every other part is left out, and so are parameters that no kept part
+/// The model of the parts in `set`, of which this is asked. Every other part is left out, and so are parameters that no kept part
 /// refers to. Also returns the numbers of the remaining uncertain parameters among all.
 pub fn extract(
     description: &Description,
     couplings: &mut Couplings,
     set: Option<usize>,
-    outputs: &[usize],
+    asked: &Asked,
 ) -> (Description, Vec<usize>) {
-    let kept = Kept::of(description, couplings, set, outputs);
     let mut part = description.clone();
-    part.outputs = outputs.iter().map(|&output| description.outputs[output].clone()).collect();
+    asked.ask(&mut part);
+    let kept = Kept::of(description, couplings, set, (asked, &required(&part)));
     let (bodies, joints) = (places(&kept.bodies), places(&kept.joints));
     let points: Vec<Vec<Option<usize>>> = kept.points.iter().map(|points| places(points)).collect();
     let moved = |place: PointRef| {
@@ -104,7 +132,12 @@ fn with_earlier(description: &Description, parameters: &mut [bool]) {
 }
 
 impl Kept {
-    fn of(d: &Description, couplings: &mut Couplings, set: Option<usize>, outputs: &[usize]) -> Self {
+    fn of(
+        d: &Description,
+        couplings: &mut Couplings,
+        set: Option<usize>,
+        (asked, required): (&Asked, &[bool]),
+    ) -> Self {
         let mut has = |part: Part| !couplings.is_grounded(part) && set.is_some_and(|set| couplings.set(part) == set);
         let mut bodies: Vec<bool> = (0..d.bodies.len()).map(|body| has(Part::Body(body))).collect();
         let mut joints: Vec<bool> = (0..d.joints.len()).map(|joint| has(Part::Joint(joint))).collect();
@@ -114,7 +147,7 @@ impl Kept {
 
         let chosen = |kept: &[bool]| (0..kept.len()).filter(|&index| kept[index]).collect::<Vec<_>>();
         let mut named = Dependencies::default();
-        outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
+        asked.outputs.iter().for_each(|&output| named.extend(&couplings.outputs[output]));
         chosen(&joints).into_iter().for_each(|joint| named.extend(&couplings.joints[joint]));
         chosen(&effects).into_iter().for_each(|effect| named.extend(&couplings.effects[effect]));
         // Bodies that are merged with the ground and have something attached, with the joints towards the ground.
@@ -144,7 +177,7 @@ impl Kept {
         let starts = d.initial.iter().chain(&d.guess).filter(|value| kept.starts(value));
         named.parameters.extend(Dependencies::by(d, starts.flat_map(StartValue::formulas)).parameters);
         named.parameters.iter().for_each(|&parameter| kept.parameters[parameter] = true);
-        required(d).into_iter().zip(&mut kept.parameters).for_each(|(required, kept)| *kept |= required);
+        required.iter().zip(&mut kept.parameters).for_each(|(required, kept)| *kept |= required);
         with_earlier(d, &mut kept.parameters);
         kept
     }

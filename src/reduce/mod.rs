@@ -3,12 +3,14 @@
 //! - `welds`: bodies that are welded together become one, unless an output needs the weld's reaction;
 //! - `couplings`: which bodies, joints and effects are coupled; the ground couples nothing;
 //! - parts that no output depends on are left out;
-//! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to.
+//! - coupled parts are a subsystem, a model of its own (`extract`), with the uncertain parameters that it refers to, and those of the
+//!   `questions` whose outputs it has.
 //!
 //! A model of one subsystem, of which nothing is left out, stays as it is.
 
 mod couplings;
 mod extract;
+mod questions;
 mod sets;
 mod welds;
 
@@ -17,6 +19,8 @@ use std::collections::HashSet;
 use crate::model::Description;
 
 use couplings::{Couplings, Part};
+use extract::Asked;
+use questions::{Question, questions, tie};
 
 pub use extract::{narrow, required};
 pub use welds::Weld;
@@ -45,6 +49,10 @@ pub struct Subsystem {
     pub description: Description,
     /// Numbers of its outputs in the whole model.
     pub outputs: Vec<usize>,
+    /// Numbers of its reduced outputs in the whole model.
+    pub reduced: Vec<usize>,
+    /// Numbers of its requirements in the whole model.
+    pub requirements: Vec<usize>,
     /// Numbers of its uncertain parameters among those of the whole model.
     pub parameters: Vec<usize>,
 }
@@ -71,23 +79,34 @@ impl Reduction {
             // A model needs a coordinate.
             return Self::of(description, Choices { merge: false, ..choices });
         }
-        let sets = sets_of_outputs(&mut couplings, &movable, choices);
-        let mut subsystems: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
+        let questions = questions(&whole);
+        let sets = sets_of_outputs(&mut couplings, &movable, &questions, choices);
+        let mut subsystems: Vec<(Option<usize>, Asked)> = Vec::new();
         for (output, set) in sets.into_iter().enumerate() {
             match subsystems.iter_mut().find(|(known, _)| *known == set) {
-                Some((_, outputs)) => outputs.push(output),
-                None => subsystems.push((set, vec![output])),
+                Some((_, asked)) => asked.outputs.push(output),
+                None => subsystems.push((set, Asked::output(output))),
             }
         }
         if subsystems.is_empty() {
             // A robot without joints has no outputs.
-            subsystems.push((movable.first().map(|&part| couplings.set(part)), Vec::new()));
+            subsystems.push((movable.first().map(|&part| couplings.set(part)), Asked::default()));
+        }
+        for (question, places) in questions {
+            let has = |(_, asked): &(_, Asked)| places.first().is_some_and(|place| asked.outputs.contains(place));
+            // What is of parameters alone is asked of the first.
+            let place = subsystems.iter().position(has).unwrap_or(0);
+            match question {
+                Question::Reduced(number) => subsystems[place].1.reduced.push(number),
+                Question::Requirement(number) => subsystems[place].1.requirements.push(number),
+            }
         }
         let kept: HashSet<usize> = subsystems.iter().filter_map(|(set, _)| *set).collect();
         let left_out: Vec<Part> = movable.into_iter().filter(|&part| !kept.contains(&couplings.set(part))).collect();
-        let subsystems = subsystems.into_iter().map(|(set, outputs)| {
-            let (description, parameters) = extract::extract(&whole, &mut couplings, set, &outputs);
-            Subsystem { description, outputs, parameters }
+        let subsystems = subsystems.into_iter().map(|(set, asked)| {
+            let (description, parameters) = extract::extract(&whole, &mut couplings, set, &asked);
+            let Asked { outputs, reduced, requirements } = asked;
+            Subsystem { description, outputs, reduced, requirements, parameters }
         });
         let subsystems = subsystems.collect();
         let name = |part: &Part| match *part {
@@ -115,9 +134,15 @@ fn is_body(part: &Part) -> bool {
     matches!(part, Part::Body(_))
 }
 
-/// The set of parts that each output needs; all parts that an output refers to are in one set.
-fn sets_of_outputs(couplings: &mut Couplings, movable: &[Part], choices: Choices) -> Vec<Option<usize>> {
-    let named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
+/// The set of parts that each output needs; all parts that an output refers to, or a question, are in one set.
+fn sets_of_outputs(
+    couplings: &mut Couplings,
+    movable: &[Part],
+    questions: &[(Question, Vec<usize>)],
+    choices: Choices,
+) -> Vec<Option<usize>> {
+    let mut named: Vec<Vec<Part>> = couplings.outputs.iter().map(|named| named.parts.clone()).collect();
+    tie(questions, &mut named);
     let mut needed: Vec<Part> = Vec::new();
     for parts in &named {
         couplings.unite(parts);

@@ -1,9 +1,9 @@
 //! `mbint explain`: what a model is compiled to.
 
-use super::RunError;
 use super::decisions::{decisions, uncertain};
 use super::effect_costs::effect_costs;
 use super::subsystems::{Prepared, prepare};
+use super::{RunError, reduced};
 use crate::compile::{Program, Tapes};
 use crate::model::Description;
 use crate::reduce::Choices;
@@ -15,7 +15,8 @@ use crate::simulate::Simulator;
 /// # Errors
 /// Where it cannot be built or assembled.
 pub fn explain(description: &Description) -> Result<Explanation, RunError> {
-    let (reduction, prepared) = prepare(description, Choices::default())?;
+    let model = reduced::expanded(description);
+    let (reduction, prepared) = prepare(&model, Choices::default())?;
     let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {
         let mut explanation = of_simulator(&description.name, simulator);
         for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&subsystem.description, simulator)) {
@@ -25,6 +26,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     };
     let mut explanation = Explanation::of_subsystems(prepared.iter().map(of_subsystem).collect());
     let place = |name: &String| description.outputs.iter().position(|output| output.name == *name);
+    explanation.outputs.retain(|name| place(name).is_some());
     explanation.outputs.sort_by_key(place);
     explanation.analysis = description.analysis.in_words().map(str::to_owned);
     let uncertain = uncertain(description);
@@ -37,7 +39,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     for what in &reduction.left_out {
         explanation.left_out.push(LeftOut { what: what.clone(), why: "no output depends on it".to_owned() });
     }
-    explanation.decisions = decisions(description, &reduction, &prepared);
+    explanation.decisions = decisions(&model, &reduction, &prepared);
     Ok(explanation)
 }
 

@@ -5,9 +5,10 @@
 
 use rayon::prelude::*;
 
-use super::reduced::KeptReduced;
+use super::reduced::{KeptReduced, Margins, MarginsOfPart};
 use crate::methods::{self, KeptSurrogate};
 use crate::numerics::{BandError, SparseBasis};
+use crate::reduce::Subsystem;
 use crate::simulate::{Closure, SimulationError, Simulator};
 
 /// Samples evaluated by one thread at once. Fixed, so that results do not depend on the number of threads.
@@ -41,6 +42,8 @@ struct Placed {
     part: KeptPart,
     /// Numbers of its uncertain parameters among those of the model.
     parameters: Vec<usize>,
+    /// Numbers of its requirements in the model.
+    requirements: Vec<usize>,
 }
 
 /// Evaluates what is kept of a run.
@@ -60,17 +63,27 @@ impl KeptPart {
     }
 }
 
+impl Placed {
+    fn margins(&self) -> Option<MarginsOfPart<'_>> {
+        let kept = self.part.reduced.as_ref()?;
+        Some(MarginsOfPart { kept, parameters: &self.parameters, requirements: &self.requirements })
+    }
+}
+
 impl Kept {
-    /// Of all subsystems, with the numbers of their outputs and uncertain parameters in the model of so many outputs.
-    pub(super) fn of_parts(parts: Vec<(KeptPart, &[usize], &[usize])>, outputs: usize) -> Self {
+    /// Of all subsystems of a model of so many outputs.
+    pub(super) fn of_parts(parts: Vec<(KeptPart, &Subsystem)>, outputs: usize) -> Self {
         let mut places = vec![(0, 0); outputs];
-        for (number, (_, outputs, _)) in parts.iter().enumerate() {
-            outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
+        for (number, (_, subsystem)) in parts.iter().enumerate() {
+            subsystem.outputs.iter().enumerate().for_each(|(place, &output)| places[output] = (number, place));
         }
-        let shortest = parts.iter().map(|(part, ..)| &part.times).min_by_key(|times| times.len());
+        let shortest = parts.iter().map(|(part, _)| &part.times).min_by_key(|times| times.len());
         let times = shortest.cloned().unwrap_or_default();
-        let placed =
-            |(part, _, parameters): (KeptPart, &[usize], &[usize])| Placed { part, parameters: parameters.to_vec() };
+        let placed = |(part, Subsystem { parameters, requirements, .. }): (KeptPart, &Subsystem)| Placed {
+            part,
+            parameters: parameters.clone(),
+            requirements: requirements.clone(),
+        };
         Self { parts: parts.into_iter().map(placed).collect(), places, times }
     }
 
@@ -106,15 +119,15 @@ impl Kept {
     /// Values of the polynomial through an output's own samples in a row, at samples of the model's box. `None` where the box was split.
     pub fn own_values<P: AsRef<[f64]>>(&self, row: usize, output: usize, samples: &[P]) -> Option<Vec<f64>> {
         let (number, place) = self.places[output];
-        let Placed { part, parameters } = &self.parts[number];
+        let Placed { part, parameters, .. } = &self.parts[number];
         let pick = |sample: &P| -> Vec<f64> { parameters.iter().map(|&own| sample.as_ref()[own]).collect() };
         part.surrogate.own_values(row, &[place], &samples.iter().map(pick).collect::<Vec<_>>())
     }
 
-    /// Reduced outputs, then margins of requirements, and the numbers of the uncertain parameters on which they may depend. `None` where the
-    /// model has none: one that has some is one subsystem.
-    pub fn reduced(&self) -> Option<(&KeptReduced, &[usize])> {
-        self.parts.iter().find_map(|placed| Some((placed.part.reduced.as_ref()?, placed.parameters.as_slice())))
+    /// Margins of all requirements. `None` where the model has none, or one of them is not known.
+    pub fn margins(&self) -> Option<Margins<'_>> {
+        let asked = self.parts.iter().filter(|placed| !placed.requirements.is_empty());
+        Margins::of(asked.map(Placed::margins).collect::<Option<Vec<_>>>()?).filter(|margins| margins.count() > 0)
     }
 
     /// Prepares evaluation: compiles the loop closures that outputs need.
@@ -144,7 +157,8 @@ impl Evaluator<'_> {
 
     fn values_of_chunk<P: AsRef<[f64]>>(&self, row: usize, outputs: &[usize], samples: &[P]) -> Vec<f64> {
         let mut values = vec![f64::NAN; outputs.len() * samples.len()];
-        for (number, (Placed { part, parameters }, closures)) in self.kept.parts.iter().zip(&self.closures).enumerate()
+        for (number, (Placed { part, parameters, .. }, closures)) in
+            self.kept.parts.iter().zip(&self.closures).enumerate()
         {
             let asked = |place: &usize| self.kept.places[outputs[*place]].0 == number;
             let places: Vec<usize> = (0..outputs.len()).filter(asked).collect();

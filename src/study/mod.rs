@@ -47,7 +47,7 @@ use crate::assemble::BuildError;
 use crate::compile::Scheme;
 use crate::methods::{Method, Refusal};
 use crate::model::{Description, Stepping};
-use crate::reduce::Reduction;
+use crate::reduce::{Choices, Reduction};
 use crate::results::{Bounds, Summary};
 use crate::simulate::{Assembled, SimulationError, Simulator};
 use crate::store::PartStore;
@@ -190,7 +190,12 @@ pub fn prepare_whole(description: &Description) -> Result<Simulator, RunError> {
 /// # Errors
 /// As for [`run`].
 pub fn assemble_parts(description: &Description) -> Result<Vec<Assembled>, RunError> {
-    subsystems::assembled(description)
+    subsystems::assembled(&reduced::expanded(description))
+}
+
+/// What is simulated of a model.
+pub fn reduction(description: &Description) -> Reduction {
+    Reduction::of(&reduced::expanded(description), Choices::default())
 }
 
 /// Whether only a run finds out in which coordinates it is shorter: what is large is not compiled to be checked.

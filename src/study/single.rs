@@ -295,7 +295,7 @@ impl<'a> Study<'a> {
             methods: Vec::new(),
             halved: Vec::new(),
             internal: vec![error],
-            found: Found::default(),
+            found: Found::nothing(self.description),
         };
         Ok(self.conclude(results, None))
     }

@@ -12,6 +12,7 @@ use super::internal::caught;
 use super::kept::Kept;
 use super::outcome::Ran;
 use super::price::Price;
+use super::reduced::{Parameters, together};
 use super::single::Study;
 use super::{Options, RunError, analysis, feasible, formulation};
 use crate::assemble::{self, BuildError};
@@ -103,9 +104,8 @@ fn as_far_as_joints_go<T>(
 
 /// How a model is reduced to be run.
 pub(super) fn choices(description: &Description, options: &Options) -> Choices {
-    // Stability and modes are those of the whole, and what is one number a motion may be of all of it.
-    let of_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
-    let is_whole = of_whole || !description.reduced.is_empty() || !description.requirements.is_empty();
+    // Stability and modes are those of the whole.
+    let is_whole = matches!(description.analysis, Analysis::Statics | Analysis::Modes(_));
     Choices { part: !options.skip_infeasible && !is_whole, ..Choices::default() }
 }
 
@@ -178,7 +178,7 @@ pub(super) fn run(
             }
         };
         ran.push(Done { subsystem, bounds, summary });
-        kept.push(part.map(|part| (part, subsystem.outputs.as_slice(), subsystem.parameters.as_slice())));
+        kept.push(part.map(|part| (part, subsystem)));
     }
     if deferred {
         return Err(SimulationError::Deferred.into());
@@ -326,6 +326,9 @@ impl<'a> Whole<'a> {
                 piece.upper = self.spread(done.subsystem, &piece.upper, &self.domain.upper);
             }
         }
+        let parameters = Parameters { all: &self.parameters, domain: &self.domain };
+        let (reduced, requirements) =
+            together(parameters, ran.iter_mut().map(|done| (done.subsystem, &mut done.summary)));
         let subsystems: Vec<SubsystemSummary> =
             if ran.len() > 1 { ran.iter().map(|done| self.subsystem(done)).collect() } else { Vec::new() };
         let mut summary = Summary::of_subsystems(ran.into_iter().map(|done| done.summary).collect());
@@ -333,6 +336,7 @@ impl<'a> Whole<'a> {
             summary.errors = ErrorSummary::of(bounds);
             summary.contributions = ContributionSummary::of(bounds);
         }
+        (summary.reduced, summary.requirements) = (reduced, requirements);
         summary.parameters = self.parameters;
         summary.assemblies = assemblies::of(self.description);
         summary.not_simulated = self.left_out;
@@ -341,7 +345,7 @@ impl<'a> Whole<'a> {
     }
 
     fn subsystem(&self, done: &Done) -> SubsystemSummary {
-        let Subsystem { description, outputs, parameters } = done.subsystem;
+        let Subsystem { description, outputs, parameters, .. } = done.subsystem;
         SubsystemSummary {
             bodies: description.bodies.iter().skip(1).map(|body| body.name.clone()).collect(),
             outputs: outputs.iter().map(|&output| self.description.outputs[output].name.clone()).collect(),

@@ -40,6 +40,7 @@ mod metamorphic;
 mod mjcf;
 mod modes;
 mod pruning;
+mod questions_apart;
 mod random;
 mod reduced;
 mod reductions;

@@ -165,6 +165,33 @@ fn merged_verdicts_and_statistics_are_those_of_the_run() {
     assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("study-results")));
 }
 
+/// Two that move on their own, with a question of each.
+const APART: &str = "
+parameters: { a: 0.1 m ± 5%, b: 0.2 m ± 5%, k: 40 N/m ± 3% }
+bodies: { one: { mass: 1 kg, coordinates: [x] }, two: { mass: 2 kg, coordinates: [x] } }
+effects:
+  spring_one: { force: { on: one, value: [-k*one.x, 0] } }
+  spring_two: { force: { on: two, value: [-50*two.x, 0] } }
+initial: { one.x: a, one.vx: 0, two.x: b, two.vx: 0 }
+outputs: { x: one.x, first: { when: one.x < 0 m }, least: { min: two.x } }
+requirements: { early: first <= 0.26 s, above: two.x >= -0.3 m, room: least + 0.25 m >= 0 m }
+simulation: { duration: 0.6 s, step: 5e-3, output_step: 2e-2 }
+bounds: { chebyshev: { order: 2 } }
+statistics: {}
+";
+
+#[test]
+fn merged_verdicts_of_parts_are_those_of_the_run() {
+    let place = Place::new();
+    fs::write(place.path().join("apart.yaml"), APART).unwrap();
+    place.run("run apart.yaml -o direct -q", 0);
+    place.run("plan apart.yaml -o study --at-once 0", 0);
+    finish(&place, "study", 0);
+    assert_eq!(tree(&place.path().join("direct")), tree(&place.path().join("study-results")));
+    let summary = fs::read_to_string(place.path().join("direct/summary.json")).unwrap();
+    assert!(summary.contains("\"subsystems\""), "{summary}");
+}
+
 /// Names of all parts of a plan.
 fn parts(place: &Place, study: &str) -> Vec<String> {
     let plan = fs::read_to_string(place.path().join(study).join("plan.json")).unwrap();

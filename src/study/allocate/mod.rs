@@ -170,8 +170,7 @@ impl Allocator<'_> {
     }
 
     fn surface(&self) -> Option<Surface<'_>> {
-        let reduced = self.wide.kept.reduced()?;
-        Some(Surface::new(reduced, &self.wide.items, self.model.requirements.len()))
+        Some(Surface::new(self.wide.kept.margins()?, &self.wide.items))
     }
 
     /// What the requirements leave: every case, or a share of samples.

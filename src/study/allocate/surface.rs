@@ -1,6 +1,6 @@
 //! Margins of requirements over the widest box, each in multiples of its nominal one.
 
-use crate::study::reduced::KeptReduced;
+use crate::study::reduced::Margins;
 
 use super::items::Item;
 
@@ -9,9 +9,7 @@ const UNKNOWN: f64 = -10.0;
 
 /// Margins as functions of the parameters.
 pub struct Surface<'k> {
-    kept: &'k KeptReduced,
-    /// Numbers of the parameters that they depend on.
-    places: &'k [usize],
+    kept: Margins<'k>,
     pub items: &'k [Item],
     /// How many there are.
     pub count: usize,
@@ -22,9 +20,10 @@ pub struct Surface<'k> {
 }
 
 impl<'k> Surface<'k> {
-    /// Of so many requirements, with the surrogate's errors in reserve.
-    pub fn new((kept, places): (&'k KeptReduced, &'k [usize]), items: &'k [Item], count: usize) -> Self {
-        let mut surface = Self { kept, places, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
+    /// Of all requirements, with the surrogate's errors in reserve.
+    pub fn new(kept: Margins<'k>, items: &'k [Item]) -> Self {
+        let count = kept.count();
+        let mut surface = Self { kept, items, count, nominal: vec![1.0; count], reserves: vec![0.0; count] };
         let nominal: Vec<f64> = items.iter().map(|item| item.nominal).collect();
         surface.nominal = surface.raw(&[nominal]);
         surface.reserves = (0..count).map(|place| surface.error(place)).collect();
@@ -48,9 +47,7 @@ impl<'k> Surface<'k> {
 
     /// Margins in their units, requirement by requirement.
     pub fn raw(&self, samples: &[Vec<f64>]) -> Vec<f64> {
-        let own: Vec<Vec<f64>> =
-            samples.iter().map(|sample| self.places.iter().map(|&place| sample[place]).collect()).collect();
-        self.kept.margins(self.count, &own)
+        self.kept.values(samples)
     }
 
     /// What is left of the margins of samples, in multiples of the nominal ones, requirement by requirement.

@@ -40,8 +40,8 @@ pub fn surrogate(model: &Description, asked: AllocateOptions, options: &Options)
             let failure = match ran {
                 Ok((_, summary, kept)) => {
                     simulations += run_simulations(&summary);
-                    match kept.filter(|kept| is_known(model, &items, kept)) {
-                        Some(kept) if order == ORDERS || !is_rough(model, &items, &kept) || !raise(&mut wide) => {
+                    match kept.filter(|kept| is_known(&items, kept)) {
+                        Some(kept) if order == ORDERS || !is_rough(&items, &kept) || !raise(&mut wide) => {
                             return Ok(Wide { kept, items, simulations });
                         }
                         Some(_) => continue,
@@ -73,16 +73,16 @@ pub fn run_simulations(summary: &Summary) -> usize {
 }
 
 /// Whether every margin has a surrogate that can be relied on.
-fn is_known(model: &Description, items: &[Item], kept: &Kept) -> bool {
-    let Some(reduced) = kept.reduced() else { return false };
-    let surface = Surface::new(reduced, items, model.requirements.len());
+fn is_known(items: &[Item], kept: &Kept) -> bool {
+    let Some(margins) = kept.margins() else { return false };
+    let surface = Surface::new(margins, items);
     (0..surface.count).all(|place| surface.error(place).is_finite() && surface.nominal[place].is_finite())
 }
 
 /// Whether a higher order is worth it.
-fn is_rough(model: &Description, items: &[Item], kept: &Kept) -> bool {
-    let Some(reduced) = kept.reduced() else { return true };
-    let surface = Surface::new(reduced, items, model.requirements.len());
+fn is_rough(items: &[Item], kept: &Kept) -> bool {
+    let Some(margins) = kept.margins() else { return true };
+    let surface = Surface::new(margins, items);
     (0..surface.count).any(|place| surface.surrogate_error(place) > ROUGH * surface.scale(place))
 }
 

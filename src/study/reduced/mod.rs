@@ -1,23 +1,27 @@
 //! Reduced outputs and requirements: bounds of what is one number a motion, and verdicts.
 //!
 //! `expand` makes outputs of what they are of; `plan` says what is accumulated during a motion and what follows from it; `ensemble` is
-//! what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it); `keeping` and `kept` evaluate
-//! them after the run; `refine` runs a model until all are decided.
+//! what the methods see; `verdicts` decides requirements, some of them `by_rows` (`found` has all of it); `answers` puts those of
+//! subsystems together; `keeping`, `kept` and `margins` evaluate them after the run; `refine` runs a model until all are decided.
 
+mod answers;
 mod by_rows;
 mod ensemble;
 mod expand;
 mod found;
 mod keeping;
 mod kept;
+mod margins;
 mod plan;
 mod refine;
 mod verdicts;
 
+pub(super) use answers::{Parameters, together};
 pub(super) use ensemble::{Store, steps_of};
 pub(super) use expand::{expanded, shown};
 pub(super) use found::Found;
 pub use kept::KeptReduced;
+pub use margins::{Margins, MarginsOfPart};
 pub(super) use refine::run;
 
 use super::conclude::{bands, contributions};

@@ -8,7 +8,7 @@ use crate::numerics::statistics::{
     Estimate, RARE_SAMPLES, REPLICATES, normal_quantile, rare_share, replicate, share_interval,
 };
 use crate::results::YieldSummary;
-use crate::study::reduced::KeptReduced;
+use crate::study::reduced;
 
 /// Samples of margins, at most.
 const MOST: usize = 1 << 18;
@@ -25,8 +25,7 @@ const TOGETHER: &str = "all requirements";
 /// Margins of samples, by requirement.
 struct Margins<'a> {
     rows: &'a Rows<'a>,
-    kept: &'a KeptReduced,
-    places: &'a [usize],
+    kept: &'a reduced::Margins<'a>,
     /// By replicate, every so many of its samples.
     fewer: usize,
     /// By requirement, sample by sample.
@@ -35,16 +34,13 @@ struct Margins<'a> {
 
 /// All requirements, and where there are several all together.
 pub(super) fn all(rows: &Rows) -> (Vec<YieldSummary>, Option<YieldSummary>) {
-    let Some((kept, places)) = rows.kept.reduced() else { return (Vec::new(), None) };
+    let Some(kept) = rows.kept.margins() else { return (Vec::new(), None) };
     let requirements = &rows.description.requirements;
-    if requirements.is_empty() {
-        return (Vec::new(), None);
-    }
     let fewer = rows.fewer(MOST / REPLICATES);
-    let mut margins = Margins { rows, kept, places, fewer, values: vec![Vec::new(); requirements.len()] };
+    let mut margins = Margins { rows, kept: &kept, fewer, values: vec![Vec::new(); requirements.len()] };
     for replicate in 0..REPLICATES {
-        let samples = margins.own(&rows.points(replicate, fewer));
-        let found = margins.of(&samples);
+        let samples = rows.points(replicate, fewer);
+        let found = kept.values(&samples);
         for (all, own) in margins.values.iter_mut().zip(found.chunks_exact(samples.len())) {
             all.extend_from_slice(own);
         }
@@ -62,16 +58,6 @@ pub(super) fn all(rows: &Rows) -> (Vec<YieldSummary>, Option<YieldSummary>) {
 }
 
 impl Margins<'_> {
-    /// The parameters that margins depend on.
-    fn own(&self, samples: &[&[f64]]) -> Vec<Vec<f64>> {
-        samples.iter().map(|sample| self.places.iter().map(|&place| sample[place]).collect()).collect()
-    }
-
-    /// Margins of samples, requirement by requirement.
-    fn of(&self, samples: &[Vec<f64>]) -> Vec<f64> {
-        self.kept.margins(self.values.len(), samples)
-    }
-
     /// The share that fulfils some of the requirements.
     fn summary(&self, name: &str, of: &[usize]) -> Option<YieldSummary> {
         let errors: Vec<f64> = of.iter().map(|&number| self.kept.error(number)).collect();
@@ -121,8 +107,7 @@ impl Margins<'_> {
         // The least of all, each in its own scale.
         let slack = |points: &[Vec<f64>]| -> Vec<f64> {
             let samples: Vec<Vec<f64>> = points.iter().map(|scores| laws.of_scores(scores)).collect();
-            let samples: Vec<&[f64]> = samples.iter().map(Vec::as_slice).collect();
-            let found = self.of(&self.own(&samples));
+            let found = self.kept.values(&samples);
             let of_sample = |sample: usize| {
                 let slack =
                     |place: usize| (found[of[place] * samples.len() + sample] - sign * errors[place]) / scales[place];
