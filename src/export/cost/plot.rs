@@ -13,9 +13,9 @@ use crate::export::figure::style::{Color, Hue};
 use crate::results::{CostMethod, CostPoint, CostStudy, Integrator, cost_curves, pareto};
 
 /// Size on the page, px.
-const SIZE: (f64, f64) = (1100.0, 560.0);
+const SIZE: (f64, f64) = (1100.0, 600.0);
 /// Space for title and legend, px.
-const TOP: f64 = 124.0;
+const TOP: f64 = LEGEND + (ROWS as f64 + 1.0) * LINE - 4.0;
 /// The first row of the legend, px.
 const LEGEND: f64 = 56.0;
 /// Space for the errors' axis, px.
@@ -26,6 +26,8 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 18.0;
 /// What the front of all methods is.
 const CHEAPEST: &str = "no other is cheaper and as good";
+/// Rows of the legend.
+const ROWS: usize = 5;
 /// From one line of the legend to the next, px.
 const LINE: f64 = 18.0;
 /// From one column of the legend to the next, px.
@@ -174,18 +176,18 @@ impl Panel {
         })
     }
 
-    /// Three rows of methods, and what the front and hollow marks mean.
+    /// Rows of methods, and what the front and hollow marks mean.
     fn legend(&self, points: &[CostPoint]) -> Group {
         let mut legend = group("legend");
         for (entry, method) in cost_curves(points).into_iter().enumerate() {
-            let (row, column) = (entry % 3, entry / 3);
+            let (row, column) = (entry % ROWS, entry / ROWS);
             let (x, y) = (self.left + column as f64 * COLUMN, LEGEND + row as f64 * LINE);
             let stroke = line((x, y), (x + 22.0, y)).set("class", "line").set("stroke-width", 1.6);
             let key = Hue::Color(color(method)).paint(Group::new(), "key").add(stroke);
             let key = key.add(mark((x + 11.0, y), entry, false));
             legend = legend.add(key.add(text(&method.label(), (x + 28.0, y), Anchor::Start)));
         }
-        let (x, y) = (self.left, LEGEND + 3.0 * LINE);
+        let (x, y) = (self.left, LEGEND + ROWS as f64 * LINE);
         let stroke = line((x, y), (x + 22.0, y)).set("class", "line").set("stroke-width", 7.0);
         let key = Hue::Color(FRONT).paint(Group::new(), "key").add(stroke);
         legend = legend.add(key.add(text(CHEAPEST, (x + 28.0, y), Anchor::Start)));
