@@ -257,7 +257,7 @@ impl<'r> Adaptation<'r> {
             }
             errors
         };
-        let by_row = self.composer.rows(surrogate, &sub_box.domain, &times, (&motions, stride), look)?;
+        let by_row = self.composer.rows(surrogate, &sub_box.domain, &times, (&motions, stride), false, look)?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
@@ -302,7 +302,7 @@ impl<'r> Adaptation<'r> {
             let errors = row.errors_at_samples((points, &sub_box.direct), rows[place]);
             largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
         };
-        self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)
+        self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), false, look)
     }
 
     /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
@@ -329,7 +329,8 @@ impl<'r> Adaptation<'r> {
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        let found = self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), look)?;
+        let velocities = detail != Detail::Errors;
+        let found = self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), velocities, look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
         Ok((found.concat(), kept.into_iter().flatten().collect()))
     }

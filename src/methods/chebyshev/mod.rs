@@ -341,7 +341,7 @@ fn composed(
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        match composer.rows(surrogate, domain, &times, (values, stride), look) {
+        match composer.rows(surrogate, domain, &times, (values, stride), true, look) {
             Ok(found) => {
                 for (row, (estimates, row_kept)) in rows.zip(found) {
                     kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));

@@ -55,8 +55,9 @@ impl SubBox<'_> {
     }
 
     /// Motions and outputs of all nodes: row by row, line by line, node by node.
-    pub fn motions(&self, lines: usize, rows: impl Iterator<Item = usize>) -> Vec<f64> {
-        let mut motions = Vec::new();
+    pub fn motions(&self, lines: usize, rows: impl ExactSizeIterator<Item = usize>) -> Vec<f64> {
+        let nodes: usize = self.nodes.iter().map(|(count, _)| count).sum();
+        let mut motions = Vec::with_capacity(rows.len() * lines * nodes);
         for line in rows.flat_map(|row| row * lines..(row + 1) * lines) {
             for (count, values) in &self.nodes {
                 motions.extend_from_slice(&values[line * count..][..*count]);

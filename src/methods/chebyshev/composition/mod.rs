@@ -52,7 +52,8 @@ impl<'a> Composer<'a> {
     }
 
     /// Applies `look` to rows, in parallel block by block (with the extremes of the row before in the same block), given the
-    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line).
+    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line). Velocities are expanded where they
+    /// are asked for, or outputs need them.
     ///
     /// # Errors
     /// Where a closure cannot be compiled.
@@ -62,6 +63,7 @@ impl<'a> Composer<'a> {
         domain: &ParameterBox,
         times: &[f64],
         (motions, stride): (&[f64], usize),
+        velocities: bool,
         look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
     ) -> Result<Vec<T>, EnsembleError> {
         let coordinates = 2 * self.ensemble.scales().len() * surrogate.samples().len();
@@ -75,7 +77,8 @@ impl<'a> Composer<'a> {
             let at = |(place, &time): (usize, &f64)| {
                 let row = first + place;
                 let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
-                let at = Row::new(self.ensemble, surrogate, domain, closure, time, motion, &mut work);
+                let velocities = velocities || closure.needs_velocities();
+                let at = Row::new(self.ensemble, surrogate, domain, closure, (time, motion, velocities), &mut work);
                 look(row, &at, &mut previous)
             };
             times.iter().enumerate().map(at).collect::<Vec<T>>()
@@ -119,8 +122,9 @@ pub(super) struct Row<'r> {
     domain: &'r ParameterBox,
     closure: &'r dyn Closure,
     time: f64,
-    /// Of each of the 2n lines, and then of each output.
+    /// Of each of the 2n lines, and then of each output; zero of velocities that are not expanded.
     coefficients: Vec<f64>,
+    velocities: bool,
     /// Least and largest of each of the 2n lines over the samples.
     extent: Vec<(f64, f64)>,
     /// Each output's values at the samples.
@@ -155,8 +159,7 @@ impl<'r> Row<'r> {
         surrogate: &'r Surrogate,
         domain: &'r ParameterBox,
         closure: &'r dyn Closure,
-        time: f64,
-        motion: &'r [f64],
+        (time, motion, velocities): (f64, &'r [f64], bool),
         work: &mut SurrogateWork,
     ) -> Self {
         let extent = |line: &[f64]| {
@@ -165,8 +168,17 @@ impl<'r> Row<'r> {
         };
         let (coordinates, at_samples) = motion.split_at(2 * ensemble.scales().len() * surrogate.samples().len());
         let extent = coordinates.chunks_exact(surrogate.samples().len()).map(extent).collect();
-        let coefficients = surrogate.coefficients(motion, work);
-        Self { ensemble, surrogate, domain, closure, time, coefficients, extent, at_samples }
+        let coefficients = if velocities {
+            surrogate.coefficients(motion, work)
+        } else {
+            let positions = &coordinates[..coordinates.len() / 2];
+            let mut coefficients = surrogate.coefficients(&[positions, at_samples].concat(), work);
+            let of_outputs = coefficients.split_off(ensemble.scales().len() * surrogate.basis().len());
+            coefficients.resize(2 * coefficients.len(), 0.0);
+            coefficients.extend(of_outputs);
+            coefficients
+        };
+        Self { ensemble, surrogate, domain, closure, time, coefficients, velocities, extent, at_samples }
     }
 
     /// What its polynomials are made by.
