@@ -78,16 +78,7 @@ fn no_sample_of_a_bouncing_ball_gains_energy() {
 /// so that the tolerance takes more steps than a sample may have. What is true there is known; what is stated is flagged.
 #[test]
 fn a_sample_beyond_the_tolerance_flags_what_follows() {
-    let text = "
-parameters: { p: { interval: [0.9, 1.16] } }
-bodies: { sledge: { mass: 1, coordinates: [x] } }
-effects: { brake: { force: { on: sledge, value: [\"-390*exp(-((p - 1)/0.009)^2)*sign(sledge.vx)\", 0] } } }
-initial: { sledge.x: 0, sledge.vx: 97.5 }
-outputs: { v: sledge.vx }
-simulation: { duration: 0.6, tolerance: 1e-5, output_step: 0.1, scheme: hht }
-bounds: { scan: { points: 14 } }
-";
-    let result = Model::from_yaml_str("brake", text).unwrap().study().run().unwrap();
+    let result = Model::from_yaml_str("brake", include_str!("../common/brake.yaml")).unwrap().study().run().unwrap();
     let held = result.outputs().next().unwrap();
     let band = held.bands().next().unwrap();
     // It comes to rest after 0.25 s.

@@ -269,16 +269,7 @@ fn a_full_disk_is_a_failure() {
 #[test]
 fn a_sample_beyond_the_tolerance_ends_with_3() {
     let place = Place::new();
-    let brake = "model: brake
-parameters: { p: { interval: [0.9, 1.16] } }
-bodies: { sledge: { mass: 1, coordinates: [x] } }
-effects: { brake: { force: { on: sledge, value: [\"-390*exp(-((p - 1)/0.009)^2)*sign(sledge.vx)\", 0] } } }
-initial: { sledge.x: 0, sledge.vx: 97.5 }
-outputs: { v: sledge.vx }
-simulation: { duration: 0.6, tolerance: 1e-5, output_step: 0.1, scheme: hht }
-bounds: { scan: { points: 14 } }
-";
-    fs::write(place.path().join("brake.yaml"), brake).unwrap();
+    fs::write(place.path().join("brake.yaml"), include_str!("../common/brake.yaml")).unwrap();
     let (_, errors) = place.run("run brake.yaml -o out", 3);
     assert!(errors.contains("times the tolerance"), "{errors}");
     let csv = fs::read_to_string(place.path().join("out/bounds.csv")).unwrap();
