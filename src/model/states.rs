@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use super::description::Analysis;
 use super::effects;
 use super::names::Reader;
-use crate::elements::effects::State;
+use crate::elements::effects::{EffectKind, ForceElement, State};
 use crate::grammar::reader::Fields;
 use crate::grammar::{Element, Sensor};
 use crate::syntax::suggest::clip;
@@ -16,15 +16,23 @@ const MOST_PASSES: usize = 8;
 
 /// Makes the names of states known, which everything may speak of: those of the section, and of effects that are states.
 pub fn declare(reader: &mut Reader, entries: &[Entry], effects: &[Entry]) {
-    let among_effects = effects.iter().filter_map(|entry| Some((entry, entry.value.get(State::KEYWORD)?)));
-    let all: Vec<(&Entry, &Node)> = entries.iter().map(|entry| (entry, &entry.value)).chain(among_effects).collect();
-    all.iter().for_each(|(entry, _)| reader.declared.add(&entry.key));
+    entries.iter().for_each(|entry| reader.declared.add(&entry.key));
+    for entry in effects {
+        if EffectKind::value_ahead(reader, &entry.value).is_some() {
+            reader.declared.add(&entry.key);
+        }
+    }
     for _ in 0..MOST_PASSES {
         let mut found = false;
-        for (entry, node) in &all {
-            if let Some(place) = reader.declared.without_unit(&entry.key)
-                && let Some(dimension) = State::dimension_of(reader, node)
-            {
+        for (entry, is_effect) in
+            entries.iter().map(|entry| (entry, false)).chain(effects.iter().map(|entry| (entry, true)))
+        {
+            let Some(place) = reader.declared.without_unit(&entry.key) else { continue };
+            let ahead = match is_effect {
+                true => EffectKind::value_ahead(reader, &entry.value),
+                false => State::value_ahead(reader, &entry.value),
+            };
+            if let Some(Some(dimension)) = ahead {
                 reader.declared.set(place, dimension);
                 found = true;
             }

@@ -24,7 +24,7 @@ pub use self::impact::{Exponent, RestitutionLaw};
 use self::registry::effects;
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Element, ElementDocs, OnJoint, PointRef, Sensor};
+use crate::grammar::{Element, ElementDocs, Node, OnJoint, PointRef, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
 effects! {
@@ -48,6 +48,7 @@ effects! {
     state::State,
     pid::Pid,
     dc_motor::DcMotor,
+    filter::Filter,
 }
 
 /// Something that an effect measures, and what it is.
@@ -103,6 +104,12 @@ pub trait ForceElement: Element {
     /// The states that it brings; [`Forces::state_rate`] says how they change.
     fn states(&self) -> Vec<StateVariable<'_>> {
         Vec::new()
+    }
+
+    /// Whether its name alone stands for a state, known before it is read: the dimension, as far as that is known by then. Nothing
+    /// is reported.
+    fn value_ahead<S: SymbolTable>(_reader: &mut Reader<'_, S>, _mapping: &Node) -> Option<Option<Dimension>> {
+        None
     }
 }
 

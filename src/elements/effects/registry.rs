@@ -53,6 +53,17 @@ macro_rules! effects {
                 }
             }
 
+            /// Whether the name of what an entry describes stands for a state, and of which dimension, as far as that is known.
+            pub(crate) fn value_ahead<S: $crate::grammar::SymbolTable>(
+                reader: &mut $crate::grammar::Reader<'_, S>,
+                entry: &$crate::grammar::Node,
+            ) -> Option<Option<Dimension>> {
+                $(if let Some(mapping) = entry.get(<$name as $crate::grammar::Element>::KEYWORD) {
+                    return <$name as ForceElement>::value_ahead(reader, mapping);
+                })*
+                None
+            }
+
             /// Of every effect, in the order of the registry.
             pub fn docs() -> Vec<$crate::grammar::ElementDocs> {
                 vec![$(with_sensors::<$name>()),*]

@@ -48,21 +48,17 @@ impl ForceElement for State {
         vec![StateVariable { sensor: self.sensors()[0].0, initial: &self.initial }]
     }
 
+    fn value_ahead<S: SymbolTable>(reader: &mut Reader<'_, S>, mapping: &Node) -> Option<Option<Dimension>> {
+        let initial = mapping.get("initial").and_then(|node| reader.quietly(node));
+        let mut rate = || Some(reader.quietly(mapping.get("rate")?)?.times(Dimension::TIME));
+        Some(initial.or_else(&mut rate))
+    }
+
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
         let rate = forces.value(&self.rate)?;
         forces.sensor(self.sensors()[1].0, rate);
         forces.state_rate(0, rate);
         Ok(())
-    }
-}
-
-impl State {
-    /// The dimension of what a mapping with `rate` and `initial` describes, as far as it is known without what is read later; nothing
-    /// is reported.
-    pub fn dimension_of<S: SymbolTable>(reader: &mut Reader<'_, S>, mapping: &Node) -> Option<Dimension> {
-        let initial = mapping.get("initial").and_then(|node| reader.quietly(node));
-        let rate = || Some(reader.quietly(mapping.get("rate")?)?.times(Dimension::TIME));
-        initial.or_else(rate)
     }
 }
 

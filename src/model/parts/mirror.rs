@@ -26,7 +26,7 @@ enum Image {
 use Image::{Axial, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 24] = [
+const KINDS: [(&str, &[(&str, Image)]); 25] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -51,6 +51,7 @@ const KINDS: [(&str, &[(&str, Image)]); 24] = [
     ("bushing", &[]),
     ("gravity", &[]),
     ("preload", &[]),
+    ("filter", &[]),
 ];
 
 /// Keys of which nobody says what their images are.
