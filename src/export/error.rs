@@ -3,6 +3,9 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::owned::SUMMARY;
+use crate::store::without;
+
 /// Why results could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
@@ -12,6 +15,9 @@ pub enum ExportError {
     /// A file cannot be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
+    /// A folder has no results.
+    #[error("{}, so there are no results to show; name the folder that `mbint run` wrote", without(folder, SUMMARY))]
+    NoResults { folder: PathBuf },
     /// A file of results cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Read { path: PathBuf, source: io::Error },

@@ -100,6 +100,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         if let Some(found) = self.model.body(name) {
             return Some(found);
         }
+        let bodies = || self.model.bodies();
         let (message, help) = match self.model.parts_of_beam(name) {
             Some(parts) => (format!("`{name}` is a beam, but one of its nodes belongs here"), Some(parts)),
             None => (format!("unknown body `{}`", clip(name)), suggest::help(name, "bodies", bodies())),

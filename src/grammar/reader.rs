@@ -206,14 +206,18 @@ impl<S: SymbolTable> Reader<'_, S> {
                 }
                 [_, second, ..] => {
                     let message = format!("{} has one kind, but `{}` is a second key", what, clip(&second.key));
-                    let help = format!("write `name: {{ kind: … }}`, with one of {}", kinds());
+                    let help = within_kind(known, entries)
+                        .unwrap_or_else(|| format!("write `name: {{ kind: … }}`, with one of {}", kinds()));
                     self.error(second.key_span.clone(), message, help);
                     None
                 }
             },
             _ => {
                 let message = format!("{} is a mapping of its kind, but here is {}", what, node.kind());
-                let help = format!("write `{{ kind: … }}`; the kinds are {}", kinds());
+                let help = match node.scalar().filter(|scalar| known.contains(&&*scalar.text)) {
+                    Some(kind) => format!("write `{{ {}: {{ … }} }}`, with its keys within", kind.text),
+                    None => format!("write `{{ kind: … }}`; the kinds are {}", kinds()),
+                };
                 self.error(if node.is_null() { at } else { node.span.clone() }, message, help);
                 None
             }
@@ -296,4 +300,23 @@ impl<S: SymbolTable> Reader<'_, S> {
 /// `a joint` → `joint`.
 fn bare(what: &str) -> &str {
     what.strip_prefix("a ").or_else(|| what.strip_prefix("an ")).unwrap_or(what)
+}
+
+/// What to write where keys stand beside the kind that they belong to, or the kind is the value of one.
+fn within_kind(known: &[&str], entries: &[Entry]) -> Option<String> {
+    let is_kind = |text: &str| known.contains(&text);
+    let mut kinds = entries.iter().filter(|entry| is_kind(&entry.key));
+    match (kinds.next(), kinds.next()) {
+        (Some(kind), None) => {
+            let other = entries.iter().find(|entry| entry.key != kind.key)?;
+            let (kind, other) = (&kind.key, clip(&other.key));
+            Some(format!("what belongs to `{kind}` stands within it: `{{ {kind}: {{ …, {other}: … }} }}`"))
+        }
+        (None, _) => {
+            let mut values = entries.iter().filter_map(|entry| entry.value.scalar());
+            let kind = values.find(|scalar| is_kind(&scalar.text))?;
+            Some(format!("write `{{ {}: {{ … }} }}`, with the other keys within", kind.text))
+        }
+        _ => None,
+    }
 }

@@ -81,11 +81,8 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
         return NameError { message: format!("`{shown}` is a joint, not a number"), part, help };
     }
     let parameters = table.parameters();
-    let energies = ENERGIES.iter().map(|(energy, _)| *energy).filter(|_| context == Context::Output);
-    let help = match suggest::nearest(name, parameters.clone().chain(energies)) {
-        Some(near) => Some(format!("did you mean `{near}`?")),
-        None => suggest::help(name, "parameters", parameters),
-    };
+    let energies = if context == Context::Output { ENERGIES.map(|(energy, _)| energy).to_vec() } else { Vec::new() };
+    let help = suggest::help_beside(name, "parameters", parameters, &energies);
     let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
     let message =
         if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };

@@ -31,6 +31,7 @@ mod requirements;
 mod robots;
 mod scenes;
 mod scheme;
+mod sections;
 mod space;
 mod states;
 mod statistics;

@@ -1,6 +1,6 @@
 //! Reactions of bearings that teeth push on: refused, for a ratio does not tell where teeth touch, nor at which angle.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use symdiff::Formula;
 
@@ -49,23 +49,23 @@ pub fn check(reader: &mut Reader, joints: &[Entry], effects: &[Entry], outputs: 
 /// Joints that hold what has teeth, each with the gear or rack.
 fn bearings(reader: &Reader, joints: &[Entry]) -> BTreeMap<usize, usize> {
     let mut bearings = BTreeMap::new();
-    for (index, joint) in reader.model.joints.iter().enumerate() {
+    let written: HashSet<&str> = joints.iter().map(|entry| entry.key.as_str()).collect();
+    // The first gear or rack of each body.
+    let mut teeth = BTreeMap::new();
+    for (index, joint) in reader.model.joints.iter().enumerate().filter(|(_, joint)| written.contains(&*joint.name)) {
         let toothed = joint.kind.toothed();
-        if toothed.joints.is_empty() && toothed.bodies.is_empty() {
-            continue;
-        }
-        if !joints.iter().any(|entry| entry.key == joint.name) {
-            continue;
-        }
         for bearing in toothed.joints {
             bearings.entry(bearing).or_insert(index);
         }
-        for (bearing, other) in reader.model.joints.iter().enumerate() {
-            let holds =
-                other.kind.between().is_some_and(|between| between.iter().any(|at| toothed.bodies.contains(&at.body)));
-            if holds {
-                bearings.entry(bearing).or_insert(index);
-            }
+        for body in toothed.bodies {
+            teeth.entry(body).or_insert(index);
+        }
+    }
+    for (bearing, joint) in reader.model.joints.iter().enumerate().filter(|_| !teeth.is_empty()) {
+        let held = joint.kind.between().into_iter().flatten();
+        if let Some(&first) = held.filter_map(|at| teeth.get(&at.body)).min() {
+            let known = bearings.entry(bearing).or_insert(first);
+            *known = first.min(*known);
         }
     }
     bearings

@@ -13,6 +13,17 @@ pub enum StoreError {
         /// The system's reason.
         error: std::io::Error,
     },
+    /// A folder has no plan.
+    #[error(
+        "{}, so there is no study in it; `mbint plan` makes a study's folder, which is to be named here",
+        without(folder, file)
+    )]
+    NoStudy {
+        /// The folder.
+        folder: PathBuf,
+        /// The file that is missing.
+        file: &'static str,
+    },
     /// A file is not what its name says.
     #[error("{} is damaged, or of another version of mbint; remove it and plan again", path.display())]
     Damaged {
@@ -22,6 +33,16 @@ pub enum StoreError {
     /// Something cannot be written in the files' format.
     #[error("a value cannot be written: {0}")]
     Encoding(#[from] postcard::Error),
+}
+
+/// Why a file is not in a folder: neither may be there.
+pub fn without(folder: &Path, file: &str) -> String {
+    let shown = folder.display();
+    match folder {
+        _ if folder.is_dir() => format!("the folder {shown} has no {file}"),
+        _ if folder.exists() => format!("{shown} is a file, not a folder"),
+        _ => format!("there is no folder {shown}"),
+    }
 }
 
 impl StoreError {

@@ -17,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-pub use error::StoreError;
+pub use error::{StoreError, without};
 pub use part::{PartReader, PartWriter};
 pub use plan::{Asked, AskedPoints, Plan, Shard, StudyFolder};
 pub use task::{ScanPart, Task};

@@ -1,5 +1,6 @@
 //! `plan.json`: what is to be simulated in a round of a study, cut into shards.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -7,6 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::error::StoreError;
 use super::whole::{self, Durable};
 use super::{Deferred, FORMAT, PARTS};
+
+/// The file's name in the study's folder.
+const PLAN: &str = "plan.json";
 
 /// A study's round.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,7 +129,7 @@ impl StudyFolder {
     }
 
     fn plan_file(&self) -> PathBuf {
-        self.0.join("plan.json")
+        self.0.join(PLAN)
     }
 
     /// Reads the plan.
@@ -134,7 +138,12 @@ impl StudyFolder {
     /// Where there is none, or it is of another version.
     pub fn plan(&self) -> Result<Plan, StoreError> {
         let path = self.plan_file();
-        let bytes = std::fs::read(&path).map_err(|error| StoreError::io(&path, error))?;
+        let bytes = std::fs::read(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound | ErrorKind::NotADirectory => {
+                StoreError::NoStudy { folder: self.0.clone(), file: PLAN }
+            }
+            _ => StoreError::io(&path, error),
+        })?;
         let plan = serde_json::from_slice::<Plan>(&bytes).ok();
         plan.filter(|plan| plan.format == FORMAT && plan.mbint == env!("CARGO_PKG_VERSION"))
             .ok_or_else(|| StoreError::damaged(&path))

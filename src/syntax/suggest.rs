@@ -31,7 +31,7 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
             } else if candidate.chars().count().abs_diff(length) > limit {
                 return None;
             } else {
-                strsim::damerau_levenshtein(name, candidate)
+                strsim::osa_distance(name, candidate)
             };
             // A short candidate is not near when every letter of it differs.
             (distance <= limit && distance < candidate.chars().count()).then_some((distance, candidate))
@@ -43,11 +43,21 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
 /// Help for an unknown name: the nearest known one, or all, or those of many that are most alike. `kind` is their plural: `bodies`.
 /// `None` where no known name is short enough to be shown.
 pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>) -> Option<String> {
+    help_beside(name, kind, known, &[])
+}
+
+/// As [`help`], where names `beside` the known ones are proposed too, and not listed.
+pub fn help_beside<'c>(
+    name: &str,
+    kind: &str,
+    known: impl IntoIterator<Item = &'c str>,
+    beside: &[&'c str],
+) -> Option<String> {
     let known: Vec<&str> = known.into_iter().take(MOST_KNOWN).collect();
-    if let Some(near) = nearest(name, known.iter().copied()) {
+    if let Some(near) = nearest(name, beside.iter().chain(&known).copied()) {
         return Some(format!("did you mean `{near}`?"));
     }
-    let mut short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= LONGEST).collect();
+    let short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= LONGEST).collect();
     match short.as_slice() {
         _ if known.is_empty() => Some(format!("there are no {kind}")),
         [] => None,
@@ -57,9 +67,10 @@ pub fn help<'c>(name: &str, kind: &str, known: impl IntoIterator<Item = &'c str>
             let name = clip(name).to_lowercase();
             // Alike is what begins alike; the sort is stable.
             let likeness = |other: &str| strsim::jaro_winkler(&name, &other.to_lowercase());
-            short.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
-            short.truncate(FEW);
-            Some(format!("there are {} {kind}, most like it {}", known.len(), list(&short)))
+            let mut alike: Vec<(f64, &str)> = short.into_iter().map(|other| (likeness(other), other)).collect();
+            alike.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let few: Vec<&str> = alike.into_iter().take(FEW).map(|(_, other)| other).collect();
+            Some(format!("there are {} {kind}, most like it {}", known.len(), list(&few)))
         }
     }
 }

@@ -29,7 +29,7 @@ pub fn parse(text: &str, diagnostics: &mut Diagnostics) -> Option<Node> {
         flow_nesting_limit: MAX_DEPTH,
         block_nesting_limit: MAX_DEPTH,
     };
-    let mut builder = Builder { text, diagnostics, open: Vec::new(), root: None };
+    let mut builder = Builder { text, diagnostics, open: Vec::new(), root: None, is_unnamed: false };
     for (count, next) in Parser::new_from_str_with_options(text, options).enumerate() {
         let (event, span) = match next {
             Ok((event, span)) => (event, span.byte_range().unwrap_or(0..0)),
@@ -67,6 +67,8 @@ struct Builder<'t, 'd> {
     diagnostics: &'d mut Diagnostics,
     open: Vec<Open>,
     root: Option<Node>,
+    /// Whether something has no name under which to go on with it.
+    is_unnamed: bool,
 }
 
 impl Builder<'_, '_> {
@@ -128,7 +130,7 @@ impl Builder<'_, '_> {
             self.syntax_error(self.start_of_innermost(), &ErrorKind::RecursionLimitExceeded);
             return false;
         }
-        true
+        !self.is_unnamed
     }
 
     fn start_of_innermost(&self) -> usize {
@@ -160,10 +162,17 @@ impl Builder<'_, '_> {
                     let text = match node.value {
                         Value::Scalar(scalar) => scalar.text,
                         _ => {
+                            let is_doubled = self.text[node.span.start..].starts_with('{');
+                            let help = if is_doubled {
+                                "a key is a name; write one pair of braces, `{ name: … }`"
+                            } else {
+                                "a key is a name"
+                            };
                             self.diagnostics.push(
                                 Diagnostic::error(node.span.clone(), format!("{} cannot be a key", node.kind()))
-                                    .help("a key is a name".to_owned()),
+                                    .help(help.to_owned()),
                             );
+                            self.is_unnamed = true;
                             String::new()
                         }
                     };

@@ -92,7 +92,14 @@ fn what_is_missing_is_reported() {
     let (_, errors) = place.run("shard study --index 2", 2);
     assert!(errors.contains("there is no shard 2; there are: 0 to 1"), "{errors}");
     let (_, errors) = place.run("status nowhere", 1);
-    assert!(errors.contains("plan.json"), "{errors}");
+    assert!(errors.contains("there is no folder nowhere, so there is no study in it"), "{errors}");
+    fs::create_dir(place.path().join("other")).unwrap();
+    let (_, errors) = place.run("merge other", 1);
+    assert!(errors.contains("the folder other has no plan.json, so there is no study in it"), "{errors}");
+    let (_, errors) = place.run("merge pendulum.yaml", 1);
+    assert!(errors.contains("pendulum.yaml is a file, not a folder"), "{errors}");
+    let (_, errors) = place.run("report other", 2);
+    assert!(errors.contains("the folder other has no summary.json, so there are no results to show"), "{errors}");
 
     // The model is not what it was.
     fs::write(place.path().join("pendulum.yaml"), PENDULUM.replace("value: 1,", "value: 1.1,")).unwrap();

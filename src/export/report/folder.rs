@@ -52,6 +52,9 @@ pub(in crate::export) fn page_of_folders(dir: &Path, model: &str, folders: &[Str
 /// # Errors
 /// Where one of the files cannot be read.
 pub(in crate::export) fn scene_of_folder(dir: &Path) -> Result<PageScene, ExportError> {
+    if !dir.join(SUMMARY).exists() {
+        return Err(ExportError::NoResults { folder: dir.to_owned() });
+    }
     let summary = read_json(&dir.join(SUMMARY))?;
     // Without it, what it says is not on the page.
     let motion = read_json(&dir.join(MOTION)).unwrap_or(Value::Null);

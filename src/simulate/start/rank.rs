@@ -7,19 +7,57 @@ use nalgebra::DMatrix;
 /// Pivots below this share of the first one count as zero.
 const RANK_TOLERANCE: f64 = 1e-9;
 
+/// A row is told apart by a column of its own where the entry there is at least this share of its largest.
+const OWN_SHARE: f64 = 1e-3;
+
 /// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that depend on the rows before them.
 pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> {
-    let independence = row_independence(rows, tolerance).into_iter().enumerate();
-    independence.filter(|(_, left_of_row)| *left_of_row <= tolerance).map(|(row, _)| row).collect()
+    let left = rows_with_shared_columns(rows);
+    let shared: Vec<&[(usize, f64)]> = left.iter().map(|&row| rows[row].as_slice()).collect();
+    let independence = left.iter().zip(row_independence(&shared, tolerance));
+    independence.filter(|(_, left_of_row)| *left_of_row <= tolerance).map(|(&row, _)| row).collect()
+}
+
+/// Rows that are left when, again and again, a row is taken away that has a large entry in a column of its own: that row is a part
+/// of no combination that vanishes, so dependence is among the others. What hangs together as a tree leaves none, in linear time.
+fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>]) -> Vec<usize> {
+    let columns = rows.iter().flatten().map(|&(column, _)| column + 1).max().unwrap_or(0);
+    let mut rows_of_column: Vec<Vec<usize>> = vec![Vec::new(); columns];
+    for (row, entries) in rows.iter().enumerate() {
+        let nonzero = entries.iter().filter(|(_, value)| *value != 0.0);
+        nonzero.for_each(|&(column, _)| rows_of_column[column].push(row));
+    }
+    rows_of_column.iter_mut().for_each(Vec::dedup);
+    let mut users: Vec<usize> = rows_of_column.iter().map(Vec::len).collect();
+    let mut is_left = vec![true; rows.len()];
+    let mut single: Vec<usize> = (0..columns).filter(|&column| users[column] == 1).collect();
+    while let Some(column) = single.pop() {
+        let Some(&row) = rows_of_column[column].iter().find(|&&row| is_left[row]) else { continue };
+        let size = rows[row].iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
+        let own: f64 = rows[row].iter().filter(|(other, _)| *other == column).map(|(_, value)| value).sum();
+        if own.abs() < OWN_SHARE * size {
+            continue;
+        }
+        is_left[row] = false;
+        let mut released: Vec<usize> =
+            rows[row].iter().filter(|(_, value)| *value != 0.0).map(|&(other, _)| other).collect();
+        released.sort_unstable();
+        released.dedup();
+        for other in released {
+            users[other] -= 1;
+            single.extend((users[other] == 1).then_some(other));
+        }
+    }
+    (0..rows.len()).filter(|&row| is_left[row]).collect()
 }
 
 /// How independent each row of a sparse matrix is of the rows before it: the largest entry that elimination in the rows'
 /// order leaves of the row, relative to the row's own size. The pivot of a row is its largest remaining entry; rows within
 /// the tolerance give no pivot.
-pub fn row_independence(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<f64> {
+pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], tolerance: f64) -> Vec<f64> {
     let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
     let mut independence = Vec::with_capacity(rows.len());
-    for row in rows {
+    for row in rows.iter().map(AsRef::as_ref) {
         let size = row.iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
         let mut left: BTreeMap<usize, f64> = row.iter().copied().collect();
         // Clearing one pivot's column may fill the column of an earlier pivot, so the loop runs until no pivot column is left.
@@ -91,5 +129,20 @@ mod tests {
             vec![],
         ];
         assert_eq!(dependent_rows(&rows, 1e-9), [2, 4]);
+    }
+
+    /// Whatever hangs on a loop, and wherever its rows stand, as many rows depend on others as without it.
+    #[test]
+    fn rows_with_columns_of_their_own_hide_no_dependence() {
+        let triangle = [vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(2, 1.0), (0, -1.0)]];
+        let tail = |from: usize, to: usize| vec![(from, 2.0), (to, -3.0)];
+        let [first, second, third] = triangle;
+        let rows = vec![tail(3, 4), first, tail(2, 3), second, third, tail(4, 5)];
+        assert_eq!(dependent_rows(&rows, 1e-9), [4]);
+        assert_eq!(rows_with_shared_columns(&rows), [1, 3, 4]);
+        let weak = vec![vec![(0, 1.0), (1, 1e-5)], vec![(0, 1.0)]];
+        assert_eq!(rows_with_shared_columns(&weak), [1]);
+        let no_tail = vec![vec![(0, 1.0), (1, 0.0)], vec![(0, 2.0), (1, 0.0)]];
+        assert_eq!(dependent_rows(&no_tail, 1e-9), [1]);
     }
 }
