@@ -96,7 +96,6 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     fn find_body(&mut self, node: &Node, name: &str) -> Option<usize> {
-        let bodies = || self.model.bodies();
         if let Some(found) = self.model.body(name) {
             return Some(found);
         }

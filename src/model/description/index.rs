@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// Remembers where the names of a list are. The list may grow, and may change otherwise, too: what is remembered is compared with it.
+/// Remembers where the names of a list are. The list may grow, be cut, and be another one: what is remembered is compared with its
+/// end. A name that stays in its place stays as it is.
 #[derive(Default)]
 pub(crate) struct NameIndex(Mutex<Known>);
 
@@ -21,7 +22,8 @@ impl NameIndex {
         // What a panic left is compared with the list as everything is.
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let Known { places, entered } = &mut *known;
-        if *entered > length {
+        let is_same = |last: &usize| *entered <= length && places.get(name_at(*last)) == Some(last);
+        if entered.checked_sub(1).is_some_and(|last| !is_same(&last)) {
             (*places, *entered) = (HashMap::new(), 0);
         }
         for place in *entered..length {
@@ -30,13 +32,11 @@ impl NameIndex {
         *entered = length;
         match places.get(name) {
             Some(&place) if name_at(place) == name => Some(place),
-            // Either it is not there, or the list has changed.
-            found => {
-                let place = (0..length).find(|&place| name_at(place) == name);
-                if place != found.copied() {
-                    (*places, *entered) = (HashMap::new(), 0);
-                }
-                place
+            None => None,
+            // The list has changed.
+            Some(_) => {
+                (*places, *entered) = (HashMap::new(), 0);
+                (0..length).find(|&place| name_at(place) == name)
             }
         }
     }
