@@ -15,7 +15,7 @@ const MOST: usize = 1 << 18;
 
 /// Where fewer than these fail, samples are drawn where it fails; where fewer than many, these count if they say more.
 const FEW: usize = 400;
-const MANY: usize = 8000;
+const MANY: usize = 4000;
 
 /// Samples from which places that fail are looked for.
 const STARTS: usize = 12;
