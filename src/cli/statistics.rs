@@ -19,8 +19,20 @@ pub(super) fn statistics(summary: &Summary) -> String {
         ("mean", Align::Right),
         ("deviation", Align::Right),
         ("statistical", Align::Right),
+        ("unit", Align::Left),
     ]);
     for output in &found.outputs {
+        let display = summary.errors.iter().find(|error| error.output == output.output);
+        let display = display.and_then(|error| error.display.as_ref());
+        let shown = |value: f64| display.map_or(value, |display| display.of_si(value));
+        let spread = |value: f64| display.map_or(value, |display| value / display.si());
+        let digits = decimals(spread(output.deviation.value));
+        let number = |value: f64| match digits {
+            Some(digits) => format!("{value:.digits$}"),
+            None => format!("{value:.4e}"),
+        };
+        let ends = |lower: f64, upper: f64| format!("[{}, {}]", number(shown(lower)), number(shown(upper)));
+        let estimate = |value: f64, of: Uncertain| format!("{} ± {:.1e}", number(value), spread(of.total()));
         let statistical = match (output.quantiles.first(), output.quantiles.last()) {
             (Some(low), Some(high)) => ends(low.value, high.value),
             _ => String::new(),
@@ -29,11 +41,12 @@ pub(super) fn statistics(summary: &Summary) -> String {
             output.output.clone(),
             format!("{:.4}", output.time),
             ends(output.worst_case[0], output.worst_case[1]),
-            format!("± {:.3e}", output.linear),
-            format!("± {:.3e}", output.rss),
-            estimate(output.mean),
-            estimate(output.deviation),
+            format!("± {}", number(spread(output.linear))),
+            format!("± {}", number(spread(output.rss))),
+            estimate(shown(output.mean.value), output.mean),
+            estimate(spread(output.deviation.value), output.deviation),
             statistical,
+            display.map_or(&output.unit, |display| &display.text).clone(),
         ]);
     }
     let shares = match (found.quantiles.first(), found.quantiles.last()) {
@@ -86,13 +99,10 @@ fn parts(ppm: f64) -> String {
     if ppm >= 100.0 || ppm == 0.0 { format!("{ppm:.0}") } else { format!("{ppm:.2e}") }
 }
 
-fn ends(lower: f64, upper: f64) -> String {
-    format!("[{lower:.6}, {upper:.6}]")
-}
-
-/// A value with its whole error.
-fn estimate(value: Uncertain) -> String {
-    format!("{:.6} ± {:.1e}", value.value, value.total())
+/// Digits behind the point that show four of a deviation; none of what is better shown with an exponent.
+fn decimals(deviation: f64) -> Option<usize> {
+    let digits = 3.0 - symdiff::math::log10(deviation).floor();
+    if deviation == 0.0 { Some(6) } else { (-3.0..=8.0).contains(&digits).then(|| digits.max(0.0) as usize) }
 }
 
 /// What is taken for each parameter's law.

@@ -245,6 +245,43 @@ outputs: { x1: a.x, x2: b.x, x3: c.x }
 }
 
 #[test]
+fn a_plate_in_space_with_any_damping_vibrates_as_another_solver_says() {
+    // Six springs and dampers that are not stretched: K = Σ k a aᵀ and C = Σ c a aᵀ with a = (n, r × n), M = diag(m, m, m, J).
+    let text = "
+analysis: modes
+bodies:
+  ground: { points: { e1: [-0.1, 0.2, 0.1], e2: [0.3, -0.6, 0.1], e3: [-0.3, 0.2, -0.5], e4: [-0.54, -0.52, 0.1], e5: [0.2, -0.14, -0.42], e6: [-0.42, 0.2, 0.39] } }
+  plate:
+    mass: 3 kg
+    inertia: [0.04, 0.07, 0.09]
+    points: { c1: [0.3, 0.2, 0.1], c2: [0.3, -0.2, 0.1], c3: [-0.3, 0.2, -0.1], c4: [-0.3, -0.2, 0.1], c5: [0.2, 0.1, -0.1], c6: [-0.1, 0.2, 0.15] }
+effects:
+  s1: { spring_damper: { between: [ground.e1, plate.c1], stiffness: 900, damping: 4, free_length: 0.4 } }
+  s2: { spring_damper: { between: [ground.e2, plate.c2], stiffness: 1100, damping: 2, free_length: 0.4 } }
+  s3: { spring_damper: { between: [ground.e3, plate.c3], stiffness: 1300, damping: 9, free_length: 0.4 } }
+  s4: { spring_damper: { between: [ground.e4, plate.c4], stiffness: 700, damping: 3, free_length: 0.4 } }
+  s5: { spring_damper: { between: [ground.e5, plate.c5], stiffness: 1500, damping: 1, free_length: 0.4 } }
+  s6: { spring_damper: { between: [ground.e6, plate.c6], stiffness: 800, damping: 6, free_length: 0.4 } }
+initial: { plate.x: 0, plate.y: 0, plate.z: 0 }
+outputs: { z: plate.z }
+";
+    let bounds = nominal(&read(text));
+    // scipy.linalg.eigvals of [0 I; −M⁻¹K −M⁻¹C], assembled by hand from the directions and the places of the springs.
+    let modes = [
+        (0.116_832_375_287, 0.002_263_414_410_92),
+        (1.189_384_085_99, 0.016_671_339_379_4),
+        (4.258_541_661_09, 0.043_244_113_677_4),
+        (5.890_156_534_22, 0.045_945_623_761_7),
+        (9.153_651_496_19, 0.086_443_297_536_7),
+        (9.862_597_950_21, 0.194_843_356_865),
+    ];
+    for (mode, (frequency, damping)) in modes.into_iter().enumerate() {
+        close(value(&bounds, &format!("mode{}.frequency", mode + 1)), frequency, 1e-10);
+        close(value(&bounds, &format!("mode{}.damping", mode + 1)), damping, 1e-9);
+    }
+}
+
+#[test]
 fn modes_that_veer_stay_on_their_branches() {
     // Two oscillators with a weak spring between them: equal at k = 50, where their frequencies come near and part again.
     let text = "

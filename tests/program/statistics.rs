@@ -136,3 +136,52 @@ simulation: { duration: 0.6 s, step: 1 ms, output_step: 2 ms }
         assert!((found - share).abs() < most, "{found} {share} ± {most}");
     }
 }
+
+/// A stack of five parts: H − a − b − c − d, 0.3 mm.
+const STACK: &str = "
+model: stack
+parameters:
+  H: { value: 50.3 mm, tolerance: 0.12 mm, distribution: normal }
+  a: { value: 12 mm, tolerance: 0.05 mm, distribution: normal }
+  b: { value: 15 mm, tolerance: 0.08 mm, distribution: uniform }
+  c: { value: 13 mm, tolerance: 0.06 mm, distribution: triangular }
+  d: { value: 10 mm, tolerance: 0.03 mm, distribution: normal }
+bodies: { block: { mass: 1, coordinates: [x] } }
+initial: { block.x: H - a - b - c - d, block.vx: 0 }
+outputs: { gap: { formula: block.x, unit: mm } }
+requirements: { fits: { output: gap, min: 0.05 mm, max: 0.7 mm } }
+simulation: { duration: 0.02, step: 0.01, output_step: 0.01 }
+bounds: { chebyshev: { order: 1 } }
+";
+
+#[test]
+fn a_stack_has_worst_case_root_sum_square_and_statistics_side_by_side() {
+    let place = Place::new();
+    fs::write(place.path().join("stack.yaml"), STACK).unwrap();
+    // One box may be too small, and is.
+    let (printed, _) = place.run("run stack.yaml -o out", 4);
+    // By hand: Σ t = 0.34 mm, √Σ t² = 0.166733 mm; variances t²/9 (normal), t²/3 (uniform), t²/6 (triangular): 0.0686375 mm.
+    for word in ["[-0.04000, 0.64000]", "± 0.34000", "± 0.16673", "0.30000 ±", "0.06864 ±", "  mm\n"] {
+        assert!(printed.contains(word), "{word}: {printed}");
+    }
+    let summary = fs::read_to_string(place.path().join("out/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let found = &summary["statistics"]["outputs"][0];
+    let near = |value: &serde_json::Value, wanted: f64, most: f64| {
+        let value = value.as_f64().unwrap();
+        assert!((value - wanted).abs() < most, "{value} {wanted}");
+    };
+    near(&found["worst_case"][0], -0.04e-3, 1e-12);
+    near(&found["worst_case"][1], 0.64e-3, 1e-12);
+    near(&found["linear"], 0.34e-3, 1e-12);
+    near(&found["rss"], 0.166_733_32e-3, 1e-11);
+    near(&found["deviation"]["value"], 0.068_637_53e-3, 1e-8);
+    // Cpk = (0.3 − 0.05)/(3 σ), and Cp = (0.7 − 0.05)/(6 σ).
+    let fits = &summary["statistics"]["requirements"][0];
+    near(&fits["cpk"], 0.25 / (3.0 * 0.068_637_53), 1e-3);
+    near(&fits["cp"], 0.65 / (6.0 * 0.068_637_53), 1e-3);
+    let report = fs::read_to_string(place.path().join("out/report.html")).unwrap();
+    for word in ["Worst case, root sum square and distribution", ">RSS<", "Parts that fail", ">Cpk<"] {
+        assert!(report.contains(word), "{word}");
+    }
+}

@@ -7,6 +7,7 @@ mod motion;
 mod packing;
 mod page;
 mod script;
+mod statistics;
 mod stl;
 mod tables;
 

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::html::{escaped, image, inline_svg, script_json};
 use super::script::{SCRIPT, STYLE};
+use super::statistics;
 use super::tables::{self, text};
 
 /// A scene of a page, or the model where it has none.
@@ -103,6 +104,7 @@ fn content(place: usize, scene: &PageScene, scenes: usize) -> String {
         tables::requirements(summary),
         picture,
         format!("<section class=\"plots\">{plots}</section>\n"),
+        statistics::statistics(summary),
         tables::reduced(summary),
         tables::bounds(summary),
         tables::parameters(summary),

@@ -14,7 +14,8 @@ pub(super) fn list<'v>(object: &'v Value, key: &str) -> &'v [Value] {
     object[key].as_array().map_or(&[], Vec::as_slice)
 }
 
-fn table(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+/// A table; the first cell of a row is its heading.
+pub(super) fn table(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let head: String = headings.iter().map(|heading| format!("<th scope=\"col\">{heading}</th>")).collect();
     let body: String = rows
         .map(|cells| {
@@ -28,11 +29,13 @@ fn table(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     format!("<div class=\"wide\"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>")
 }
 
-fn section(class: &str, heading: &str, content: &str) -> String {
+/// A section with its heading.
+pub(super) fn section(class: &str, heading: &str, content: &str) -> String {
     format!("<section class=\"{class}\"><h3>{heading}</h3>{content}</section>\n")
 }
 
-fn with_unit(value: &Value, unit: &str) -> String {
+/// A number with its unit, where it has one.
+pub(super) fn with_unit(value: &Value, unit: &str) -> String {
     let number = number(value);
     if unit.is_empty() { number } else { format!("{number}&#8239;{}", escaped(&unit.replace('*', "·"))) }
 }

@@ -1,13 +1,9 @@
 //! Shares that are so small that few samples see them, by importance sampling about the likeliest points at which something fails.
 
 use super::estimates::Estimate;
-use super::points::{REPLICATES, replicate};
-use super::special::normal_quantile;
+use super::mixture::{Mixture, distance, value_and_slopes};
+use super::points::REPLICATES;
 use crate::numerics::dot;
-use symdiff::math;
-
-/// Share of the samples that is drawn from the law itself: no weight is more than its reciprocal.
-const DEFENSIVE: f64 = 0.2;
 
 /// Points of a replicate.
 const POINTS: usize = 1 << 12;
@@ -15,14 +11,10 @@ const POINTS: usize = 1 << 12;
 /// Most places about which samples are drawn.
 const PLACES: usize = 6;
 
-/// Steps to the likeliest point that fails, the longest of them, a difference quotient's, and how far out is looked.
+/// Steps to the likeliest point that fails, the longest of them, and how far out is looked.
 const ROUNDS: usize = 25;
 const STRIDE: f64 = 1.5;
-const STEP: f64 = 1e-2;
 const FARTHEST: f64 = 8.0;
-
-/// Places nearer to each other than this are one.
-const APART: f64 = 0.7;
 
 /// Samples that a share takes.
 pub const RARE_SAMPLES: usize = REPLICATES * POINTS;
@@ -31,46 +23,26 @@ pub const RARE_SAMPLES: usize = REPLICATES * POINTS;
 /// normal scores, `starts` are points from which such places are looked for.
 ///
 /// The likeliest point that fails is found by the iteration of A. M. Hasofer & N. C. Lind and of R. Rackwitz & B. Fiessler (Computers &
-/// Structures 9 (1978) 489). Samples are of a mixture of normal laws about these points and of the law itself, each weighted by the ratio of the
-/// densities (T. Hesterberg, Technometrics 37 (1995) 185).
+/// Structures 9 (1978) 489). Samples are of a mixture of normal laws about these points and of the law itself.
 pub fn rare_share(starts: &[Vec<f64>], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<Estimate> {
-    let mut places: Vec<Vec<f64>> = Vec::new();
+    let mut mixture = Mixture::default();
     for start in starts {
-        let Some(place) = likeliest(start, slack) else { continue };
-        let is_new = |known: &Vec<f64>| distance(known, &place) > APART;
-        if places.len() < PLACES && places.iter().all(is_new) {
-            places.push(place);
+        if let Some(place) = likeliest(start, slack) {
+            mixture.add(place, PLACES);
         }
     }
-    let k = places.first()?.len();
+    if mixture.is_plain() {
+        return None;
+    }
+    let k = starts[0].len();
     let of_replicate = |number: usize| {
-        let points: Vec<Vec<f64>> =
-            replicate(number, k + 1, POINTS).chunks_exact(k + 1).map(|point| drawn(point, &places)).collect();
+        let (points, weights) = mixture.replicate(number, k, POINTS);
         let values = slack(&points);
         // NaN fails.
-        let fails = points.iter().zip(&values).filter(|(_, value)| **value < 0.0 || value.is_nan());
-        fails.map(|(point, _)| weight(point, &places)).sum::<f64>() / POINTS as f64
+        let fails = weights.iter().zip(&values).filter(|(_, value)| **value < 0.0 || value.is_nan());
+        fails.map(|(weight, _)| weight).sum::<f64>() / POINTS as f64
     };
     Some(Estimate::of(&(0..REPLICATES).map(of_replicate).collect::<Vec<_>>()))
-}
-
-/// A point of the mixture from evenly spread numbers: the first says about which place.
-fn drawn(numbers: &[f64], places: &[Vec<f64>]) -> Vec<f64> {
-    let about = (numbers[0] - DEFENSIVE) / (1.0 - DEFENSIVE) * places.len() as f64;
-    let place = (about >= 0.0).then(|| &places[(about as usize).min(places.len() - 1)]);
-    let score = |(axis, &p): (usize, &f64)| normal_quantile(p) + place.map_or(0.0, |place| place[axis]);
-    numbers[1..].iter().enumerate().map(score).collect()
-}
-
-/// The law's density over the mixture's.
-fn weight(point: &[f64], places: &[Vec<f64>]) -> f64 {
-    let each = (1.0 - DEFENSIVE) / places.len() as f64;
-    let ratio = |place: &Vec<f64>| each * math::exp(dot(point, place) - 0.5 * dot(place, place));
-    1.0 / (DEFENSIVE + places.iter().map(ratio).sum::<f64>())
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 /// The point nearest to the middle, as far as can be seen from the start, at which nothing is left.
@@ -78,25 +50,15 @@ fn likeliest(start: &[f64], slack: &dyn Fn(&[Vec<f64>]) -> Vec<f64>) -> Option<V
     let mut at = start.to_vec();
     let scale = slack(&[vec![0.0; at.len()]])[0].abs();
     for _ in 0..ROUNDS {
-        let mut points = vec![at.clone()];
-        for axis in 0..at.len() {
-            for step in [STEP, -STEP] {
-                let mut point = at.clone();
-                point[axis] += step;
-                points.push(point);
-            }
-        }
-        let values = slack(&points);
-        let slopes: Vec<f64> =
-            (0..at.len()).map(|axis| (values[2 * axis + 1] - values[2 * axis + 2]) / (2.0 * STEP)).collect();
+        let (value, slopes) = value_and_slopes(&at, slack);
         let squared = dot(&slopes, &slopes);
         if squared == 0.0 || !squared.is_finite() {
             return None;
         }
-        let along = (dot(&slopes, &at) - values[0]) / squared;
+        let along = (dot(&slopes, &at) - value) / squared;
         let wanted: Vec<f64> = slopes.iter().map(|slope| along * slope).collect();
         let length = distance(&wanted, &at);
-        if length < 1e-3 && values[0].abs() < 1e-3 * scale {
+        if length < 1e-3 && value.abs() < 1e-3 * scale {
             break;
         }
         let share = (STRIDE / length).min(1.0);

@@ -196,7 +196,7 @@ mod tests {
             false
         }
 
-        fn linearised(&self, multiples: &[f64]) -> Vec<Linear> {
+        fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear> {
             let value = 1.0 - self.0.iter().zip(multiples).map(|(s, f)| s * f).sum::<f64>();
             vec![Linear { value, slopes: self.0.iter().map(|s| -s).collect() }]
         }

@@ -13,6 +13,7 @@ mod worst;
 
 use super::{Options, RunError, reduced, statistics};
 use crate::model::Description;
+use crate::numerics::statistics::normal_quantile;
 use crate::results::{AllocatedTolerance, Allocation, Criterion, NotMet, Summary, ToleranceZone, TradePoint, Verdict};
 use choose::{Chosen, choose};
 use items::{Choice, Item, items, with_tolerances};
@@ -25,12 +26,12 @@ use worst::{Slack, Worst};
 const ROUNDS: usize = 4;
 const UNUSED: f64 = 5e-3;
 
-/// Of what may fail, the share that is aimed at: what samples tell of it differs a little from study to study.
-const AIM: f64 = 0.98;
+/// The same of a yield, as a share of all tolerances, for which more rounds are worth it.
+const ROUNDS_OF_SHARE: usize = 6;
+const UNUSED_OF_SHARE: f64 = 5e-4;
 
-/// Samples for a yield: so many that this many fail, within these ends.
-const FAILING: f64 = 150.0;
-const SAMPLES: [usize; 2] = [1 << 13, 1 << 18];
+/// Of what may fail, the share that is aimed at: what samples tell of it differs a little from study to study.
+const AIM: f64 = 0.997;
 
 /// Shares of the nominal margins for which the cost is reported.
 const TRADED: usize = 6;
@@ -104,9 +105,10 @@ impl Allocator<'_> {
         let mut allocation = self.begun();
         let mut best: Option<(f64, Chosen, Summary)> = None;
         let mut chosen = None;
-        let mut may_fail = self.asked.share.map(|share| 1.0 - share);
+        let mut may_fail = self.asked.share.map(|share| AIM * (1.0 - share));
+        let (rounds, enough) = if may_fail.is_some() { (ROUNDS_OF_SHARE, UNUSED_OF_SHARE) } else { (ROUNDS, UNUSED) };
         let mut start = present.clone();
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             (self.options.stage)("choosing tolerances");
             let Some(mut found) = choose(&mut *slack, items, &start) else { break };
             start.clone_from(&found.multiples);
@@ -122,7 +124,7 @@ impl Allocator<'_> {
             } else if best.is_none() {
                 chosen = Some((found.clone(), summary));
             }
-            if (holds && unused < UNUSED) || (self.options.interrupted)() {
+            if (holds && unused < enough) || (self.options.interrupted)() {
                 break;
             }
             if let Some(may_fail) = may_fail {
@@ -179,10 +181,8 @@ impl Allocator<'_> {
             return Err(AllocateError::Unsuitable("there is no surrogate over the whole box".to_owned()));
         };
         let Some(share) = self.asked.share else { return Ok(Box::new(Worst::new(surface))) };
-        let wanted = (FAILING / (1.0 - share)) as usize;
-        let samples = statistics::samples(self.model, wanted.clamp(SAMPLES[0], SAMPLES[1]).next_power_of_two());
-        let samples = samples.map_err(AllocateError::Unsuitable)?;
-        Ok(Box::new(Share::new(surface, samples, 1.0 - share)))
+        let laws = statistics::laws(self.model).map_err(AllocateError::Unsuitable)?;
+        Ok(Box::new(Share::new(surface, laws, AIM * (1.0 - share))))
     }
 
     /// A study at these multiples.
@@ -216,9 +216,10 @@ impl Allocator<'_> {
             let Some(found) = yields else { return (false, 0.0) };
             let fails = 1.0 - found.interval[0];
             let unused = (1.0 - share - fails) / (1.0 - share);
-            *may_fail *= (AIM * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.5, 2.0);
-            // Of few that fail, a tenth is hardly a change of a tolerance.
-            return (unused >= 0.0, 0.05 * unused);
+            *may_fail *= (AIM * (1.0 - share) / fails.max(1e-3 * (1.0 - share))).clamp(0.2, 5.0);
+            // Of few that fail, a tenth is hardly a change of a tolerance: d ln Φ(−z) is about −z² d ln z.
+            let z = normal_quantile(share);
+            return (unused >= 0.0, unused / (z * z).max(1.0));
         }
         let surface = self.surface();
         let mut holds = true;

@@ -2,67 +2,144 @@
 
 use super::surface::Surface;
 use super::worst::{STEP, Slack};
-use crate::numerics::statistics::quantile_of;
+use crate::numerics::statistics::{
+    Mixture, REPLICATES, least_at_distance, normal_quantile, shares_below, weighted_quantile,
+};
 use crate::numerics::{Linear, Power};
+use crate::study::statistics::Laws;
 
-/// Samples from which the derivatives of the quantile are taken: the worst, so many times those that may fail, and at least so many. What the
-/// tolerances take of them is shared as at the quantile itself where margins are linear and laws normal.
-const BESIDE: f64 = 2.5;
+/// Points of each replicate. What they leave open is found by the study that confirms.
+const POINTS: usize = 1 << 9;
+
+/// Where less than this may fail, points are drawn about the places that fail first: so many of them, looked for from so many samples of
+/// each requirement.
+const RARE: f64 = 0.1;
+const PLACES: usize = 6;
+const STARTS: usize = 12;
+
+/// Points are drawn again where a multiple is another by this factor.
+const OTHER: f64 = 1.2;
+
+/// Samples from which the derivatives of the quantile are taken: with what lies below them within these ends, in shares that may fail, and at
+/// least so many. What the tolerances take of them is shared as at the quantile itself where margins are linear and laws normal.
+const BESIDE: [f64; 2] = [0.4, 2.5];
 const LEAST: usize = 64;
 
 /// What a share of samples leaves of all requirements.
 pub struct Share<'s> {
     pub surface: Surface<'s>,
-    /// Samples of the model's own laws.
-    samples: Vec<Vec<f64>>,
-    /// The share of them that may fail.
+    laws: Laws,
+    /// The share of all that may fail.
     pub may_fail: f64,
+    drawn: Option<Drawn>,
+}
+
+/// Samples of the model's own laws, with what each stands for.
+struct Drawn {
+    /// For which multiples.
+    multiples: Vec<f64>,
+    samples: Vec<Vec<f64>>,
+    weights: Vec<f64>,
 }
 
 impl<'s> Share<'s> {
-    pub fn new(surface: Surface<'s>, samples: Vec<Vec<f64>>, may_fail: f64) -> Self {
-        Self { surface, samples, may_fail }
+    pub fn new(surface: Surface<'s>, laws: Laws, may_fail: f64) -> Self {
+        Self { surface, laws, may_fail, drawn: None }
     }
 
-    /// Samples with these multiples of their distances from the nominal values.
-    fn scaled<'a>(&'a self, multiples: &[f64], which: impl Iterator<Item = &'a Vec<f64>>) -> Vec<Vec<f64>> {
-        let along = |sample: &Vec<f64>, axis: usize| {
+    /// A sample with these multiples of its distances from the nominal values.
+    fn scaled(&self, multiples: &[f64], sample: &[f64]) -> Vec<f64> {
+        let along = |(axis, value): (usize, &f64)| {
             let nominal = self.surface.items[axis].nominal;
-            nominal + multiples[axis] * (sample[axis] - nominal)
+            nominal + multiples[axis] * (value - nominal)
         };
-        which.map(|sample| (0..multiples.len()).map(|axis| along(sample, axis)).collect()).collect()
+        sample.iter().enumerate().map(along).collect()
     }
 
-    /// What each sample leaves, by requirement.
-    fn slacks(&self, multiples: &[f64]) -> Vec<f64> {
-        self.surface.slacks(&self.scaled(multiples, self.samples.iter()))
+    /// Samples for these multiples, drawn again where those before were for others.
+    fn draw(&mut self, multiples: &[f64]) -> &Drawn {
+        let is_other = |(a, b): (&f64, &f64)| a / b > OTHER || b / a > OTHER;
+        let drawn = match self.drawn.take() {
+            Some(drawn) if !drawn.multiples.iter().zip(multiples).any(is_other) => drawn,
+            _ => self.drawn_for(multiples),
+        };
+        self.drawn.insert(drawn)
     }
 
-    /// What each sample leaves of the requirement of which it leaves least.
-    fn worst(&self, slacks: &[f64]) -> Vec<f64> {
-        let n = self.samples.len();
+    fn drawn_for(&self, multiples: &[f64]) -> Drawn {
+        let k = self.laws.dimension();
+        let mixture = if self.may_fail < RARE { self.mixture(multiples) } else { Mixture::default() };
+        let (mut samples, mut weights) = (Vec::new(), Vec::new());
+        for number in 0..REPLICATES {
+            let (points, own) = mixture.replicate(number, k, POINTS);
+            samples.extend(points.iter().map(|scores| self.laws.of_scores(scores)));
+            weights.extend(own);
+        }
+        Drawn { multiples: multiples.to_vec(), samples, weights }
+    }
+
+    /// Laws about the places at the distance of what may fail at which each requirement has least left, the least of all first.
+    fn mixture(&self, multiples: &[f64]) -> Mixture {
+        let distance = -normal_quantile(self.may_fail);
+        let slacks = |points: &[Vec<f64>]| {
+            let samples: Vec<Vec<f64>> =
+                points.iter().map(|scores| self.scaled(multiples, &self.laws.of_scores(scores))).collect();
+            self.surface.slacks(&samples)
+        };
+        let (points, _) = Mixture::default().replicate(0, self.laws.dimension(), POINTS);
+        let all = slacks(&points);
+        let mut places: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (requirement, own) in all.chunks_exact(points.len()).enumerate() {
+            let slack = |points: &[Vec<f64>]| slacks(points)[requirement * points.len()..][..points.len()].to_vec();
+            let mut order: Vec<usize> = (0..points.len()).collect();
+            order.sort_by(|&a, &b| own[a].total_cmp(&own[b]).then(a.cmp(&b)));
+            let found =
+                order.iter().take(STARTS).filter_map(|&start| least_at_distance(&points[start], distance, &slack));
+            places.extend(found.map(|place| (slack(std::slice::from_ref(&place))[0], place)));
+        }
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut mixture = Mixture::default();
+        places.into_iter().for_each(|(_, place)| mixture.add(place, PLACES));
+        mixture
+    }
+
+    /// What each sample leaves, by requirement; and what each stands for.
+    fn slacks(&mut self, multiples: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        self.draw(multiples);
+        let Some(drawn) = &self.drawn else { return Default::default() };
+        let samples: Vec<Vec<f64>> = drawn.samples.iter().map(|sample| self.scaled(multiples, sample)).collect();
+        (self.surface.slacks(&samples), drawn.weights.clone())
+    }
+
+    /// What each of so many samples leaves of the requirement of which it leaves least.
+    fn worst(&self, slacks: &[f64], n: usize) -> Vec<f64> {
         let least =
             |sample: usize| (0..self.surface.count).map(|own| slacks[own * n + sample]).fold(f64::INFINITY, f64::min);
         (0..n).map(least).collect()
     }
 
-    /// Numbers of the samples with the least of some values.
-    fn beside(&self, values: &[f64]) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
-        let count = ((BESIDE * self.may_fail * values.len() as f64) as usize).max(LEAST);
-        order.truncate(count);
-        order
+    /// Numbers of the samples about the quantile of some values.
+    fn beside(&self, values: &[f64], weights: &[f64]) -> Vec<usize> {
+        let shares = shares_below(values, weights);
+        let place = |times: f64| shares.partition_point(|(_, below)| *below < times * self.may_fail);
+        let (from, to) = (place(BESIDE[0]), place(BESIDE[1]));
+        let (from, to) = if to < from + LEAST { (0, LEAST.min(shares.len())) } else { (from, to) };
+        shares[from..to].iter().map(|(number, _)| *number).collect()
     }
 
     /// Mean derivatives of slacks of some samples with respect to the multiples; `pick` takes a sample's slack out of those of all.
     fn slopes(&self, multiples: &[f64], which: &[usize], pick: impl Fn(&[f64], usize) -> f64) -> Vec<f64> {
+        let Some(drawn) = &self.drawn else { return vec![0.0; multiples.len()] };
+        let weight: f64 = which.iter().map(|&place| drawn.weights[place]).sum();
         let slope = |axis: usize| {
             let mean = |sign: f64| {
                 let mut moved = multiples.to_vec();
                 moved[axis] *= 1.0 + sign * STEP;
-                let slacks = self.surface.slacks(&self.scaled(&moved, which.iter().map(|&place| &self.samples[place])));
-                (0..which.len()).map(|place| pick(&slacks, place)).sum::<f64>() / which.len() as f64
+                let samples: Vec<Vec<f64>> =
+                    which.iter().map(|&place| self.scaled(&moved, &drawn.samples[place])).collect();
+                let slacks = self.surface.slacks(&samples);
+                let own = |(place, &number): (usize, &usize)| drawn.weights[number] * pick(&slacks, place);
+                which.iter().enumerate().map(own).sum::<f64>() / weight
             };
             (mean(1.0) - mean(-1.0)) / (2.0 * STEP * multiples[axis])
         };
@@ -73,24 +150,25 @@ impl<'s> Share<'s> {
 impl Slack for Share<'_> {
     /// The quantile of each requirement's own slack.
     fn left(&mut self, multiples: &[f64]) -> Vec<f64> {
-        let mut slacks = self.slacks(multiples);
-        slacks.chunks_exact_mut(self.samples.len()).map(|own| quantile_of(own, self.may_fail)).collect()
+        let (slacks, weights) = self.slacks(multiples);
+        slacks.chunks_exact(weights.len()).map(|own| weighted_quantile(own, &weights, self.may_fail)).collect()
     }
 
     fn is_known_to_fail(&self, _: &[f64]) -> bool {
         false
     }
 
-    fn linearised(&self, multiples: &[f64]) -> Vec<Linear> {
-        let mut values = self.worst(&self.slacks(multiples));
-        let beside = self.beside(&values);
+    fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear> {
+        let (slacks, weights) = self.slacks(multiples);
+        let values = self.worst(&slacks, weights.len());
+        let beside = self.beside(&values, &weights);
         let (count, n) = (self.surface.count, beside.len());
         let pick =
             |slacks: &[f64], place: usize| (0..count).map(|own| slacks[own * n + place]).fold(f64::INFINITY, f64::min);
         let slopes = self.slopes(multiples, &beside, pick);
         // With respect to the squares.
         let slopes = slopes.iter().zip(multiples).map(|(slope, multiple)| slope / (2.0 * multiple)).collect();
-        vec![Linear { value: quantile_of(&mut values, self.may_fail), slopes }]
+        vec![Linear { value: weighted_quantile(&values, &weights, self.may_fail), slopes }]
     }
 
     fn power(&self) -> Power {
@@ -98,8 +176,8 @@ impl Slack for Share<'_> {
     }
 
     fn slopes_at_least(&mut self, multiples: &[f64], requirement: usize) -> Vec<f64> {
-        let n = self.samples.len();
-        let beside = self.beside(&self.slacks(multiples)[requirement * n..][..n]);
+        let (slacks, weights) = self.slacks(multiples);
+        let beside = self.beside(&slacks[requirement * weights.len()..][..weights.len()], &weights);
         let count = beside.len();
         self.slopes(multiples, &beside, |slacks, place| slacks[requirement * count + place])
     }
@@ -114,6 +192,7 @@ impl Slack for Share<'_> {
 
     /// The quantile of what all leave together.
     fn least(&mut self, multiples: &[f64]) -> f64 {
-        quantile_of(&mut self.worst(&self.slacks(multiples)), self.may_fail)
+        let (slacks, weights) = self.slacks(multiples);
+        weighted_quantile(&self.worst(&slacks, weights.len()), &weights, self.may_fail)
     }
 }

@@ -12,7 +12,7 @@ pub trait Slack {
     fn is_known_to_fail(&self, multiples: &[f64]) -> bool;
 
     /// What is left, linearised in a power of the multiples.
-    fn linearised(&self, multiples: &[f64]) -> Vec<Linear>;
+    fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear>;
 
     /// In which power.
     fn power(&self) -> Power;
@@ -106,7 +106,7 @@ impl Slack for Worst<'_> {
         self.surface.slacks(&places).iter().any(|slack| *slack < 0.0)
     }
 
-    fn linearised(&self, multiples: &[f64]) -> Vec<Linear> {
+    fn linearised(&mut self, multiples: &[f64]) -> Vec<Linear> {
         let of = |(requirement, known): (usize, &Vec<Vec<f64>>)| -> Vec<Linear> {
             let linear = |xi: &Vec<f64>| {
                 let (value, slopes) = self.slopes(multiples, requirement, xi);

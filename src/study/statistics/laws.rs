@@ -9,7 +9,7 @@ use crate::results::LawSummary;
 const REACH: f64 = 6.0;
 
 /// Laws and correlations of the uncertain parameters in the model's order.
-pub(super) struct Laws {
+pub struct Laws {
     names: Vec<String>,
     laws: Vec<Law>,
     /// The box that is bounded.

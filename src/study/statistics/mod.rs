@@ -10,11 +10,10 @@ use super::{Options, RunError, reduced, subsystems};
 use crate::methods::Method;
 use crate::model::{Description, ParameterValue};
 use crate::numerics::BandError;
-use crate::numerics::statistics::REPLICATES;
 use crate::results::{
     Bounds, LawSummary, OutputStatistics, OutputStatisticsSummary, StatisticsResult, StatisticsSummary, Summary,
 };
-use laws::Laws;
+pub(super) use laws::Laws;
 use rows::Rows;
 
 /// Runs every method asked for, and statistics of the first so many outputs beside.
@@ -124,18 +123,14 @@ fn side_by_side(bounds: &Bounds, place: usize, output: &OutputStatistics) -> Opt
     })
 }
 
-/// About so many samples of a model's laws, values of all uncertain parameters.
+/// A model's laws, as far as they reach.
 ///
 /// # Errors
 /// Where nothing is uncertain.
-pub(super) fn samples(description: &Description, count: usize) -> Result<Vec<Vec<f64>>, String> {
+pub(super) fn laws(description: &Description) -> Result<Laws, String> {
     let mut laws = Laws::of(description)?;
     laws.widened(description);
-    let each = count / REPLICATES;
-    let of = |number: usize| -> Vec<Vec<f64>> {
-        laws.samples(number, each).chunks_exact(laws.dimension()).map(<[f64]>::to_vec).collect()
-    };
-    Ok((0..REPLICATES).flat_map(of).collect())
+    Ok(laws)
 }
 
 /// How many times its tolerance the law of a parameter reaches.

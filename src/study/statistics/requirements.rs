@@ -13,8 +13,9 @@ use crate::study::reduced;
 /// Samples of margins, at most.
 const MOST: usize = 1 << 18;
 
-/// Where fewer than these fail, samples are drawn where it fails.
+/// Where fewer than these fail, samples are drawn where it fails; where fewer than many, these count if they say more.
 const FEW: usize = 400;
+const MANY: usize = 4000;
 
 /// Samples from which places that fail are looked for.
 const STARTS: usize = 12;
@@ -74,14 +75,16 @@ impl Margins<'_> {
             (seen(0.0), [share_interval(seen(1.0), count)[0], share_interval(seen(-1.0), count)[1]]);
         let mut fails = 1.0 - share as f64 / count as f64;
         let (mut samples, mut about_failures) = (count, false);
-        if count - share < FEW
+        if count - share < MANY
             && let [Some(better), Some(nominal), Some(worse)] =
                 [-1.0, 0.0, 1.0].map(|sign| self.rare(of, &errors, sign))
         {
-            fails = nominal.value;
             let most = worse.value + worse.sampling;
-            interval = [(1.0 - most).max(0.0), (1.0 - better.value + better.sampling).min(1.0)];
-            (samples, about_failures) = (RARE_SAMPLES, true);
+            let rare = [(1.0 - most).max(0.0), (1.0 - better.value + better.sampling).min(1.0)];
+            if count - share < FEW || rare[1] - rare[0] < interval[1] - interval[0] {
+                (fails, interval) = (nominal.value, rare);
+                (samples, about_failures) = (RARE_SAMPLES, true);
+            }
         }
         // What lies outside of the surrogate counts against it.
         interval[0] *= 1.0 - self.rows.laws.left_out();
