@@ -28,7 +28,7 @@ use crate::multibody::BuildError;
 pub fn build(description: &Description) -> Result<System, BuildError> {
     match description.simulation.formulation {
         Formulation::Joint => {
-            in_joint_coordinates(description, None)?.map_err(|why| BuildError::NoJointCoordinates { why })
+            in_joint_coordinates(description, None, None)?.map_err(|why| BuildError::NoJointCoordinates { why })
         }
         Formulation::Absolute | Formulation::Auto => in_absolute_coordinates(description),
     }
@@ -45,23 +45,30 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
 }
 
 /// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
-/// where joints close loops, nor where a body is more joints than that from its root on average.
+/// where a body is more joints than that from its root on average. Loops are closed from where absolute coordinates begin to
+/// look, or from an assembled start in absolute coordinates (their values) where it is known.
 ///
 /// # Errors
 /// As for [`build`].
 pub fn in_joint_coordinates(
     description: &Description,
     deepest: Option<usize>,
+    assembled: Option<&[f64]>,
 ) -> Result<Result<System, String>, BuildError> {
     let builder = Builder::new();
     let mut mechanism = Mechanism::new(&builder, description, true)?;
-    let too_involved = deepest.and_then(|deepest| mechanism.tree.too_involved(description, deepest));
-    if let Some(why) = too_involved.or_else(|| mechanism.obstacle(description, deepest.is_some())) {
+    let too_deep = deepest.and_then(|deepest| mechanism.tree.too_deep(deepest));
+    if let Some(why) = too_deep.or_else(|| mechanism.obstacle(description, deepest.is_some())) {
         return Ok(Err(why));
     }
-    mechanism.guess_children(description)?;
+    mechanism.guess_children(description, assembled)?;
     let system = equations(mechanism, description)?;
     Ok(Ok(system(builder.finish())))
+}
+
+/// Whether joints close loops, in joint coordinates.
+pub fn closes_loops(description: &Description) -> bool {
+    Tree::spanning(description, |_| true).closes_loops(description)
 }
 
 /// Least number of multiplications that an elimination takes in joint coordinates, before anything is written down.

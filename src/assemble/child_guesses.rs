@@ -1,8 +1,8 @@
-//! Guesses of bodies that have no coordinates of their own, in joint coordinates.
+//! Where to look for the coordinates of joints that close loops, or whose bodies `guess` names, in joint coordinates.
 //!
-//! Such a guess says where its body would be looked for if every body had coordinates: walked from the ground with what is named, as in
+//! A guess of a body without coordinates of its own says where its body would be looked for if every body had coordinates: walked from the ground with what is named, as in
 //! absolute coordinates. What the inboard joints measure there is where their coordinates are looked for: those of all children, so that
-//! a loop is closed from the same place, and in the same branch.
+//! a loop is closed from the same place. It is closed in the same branch where the assembled start in absolute coordinates is known.
 
 use symdiff::Builder;
 
@@ -13,22 +13,27 @@ use crate::model::{Description, StartValue};
 use crate::multibody::BuildError;
 
 impl Mechanism<'_, '_> {
-    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child.
+    /// Notes where to look for the inboard joints' coordinates, if `guess` names a child or joints close loops. `assembled` are the
+    /// coordinates of an assembled start in absolute coordinates, where it is known.
     ///
     /// # Errors
     /// A formula with a name that cannot stand in it.
-    pub fn guess_children(&mut self, description: &Description) -> Result<(), BuildError> {
+    pub fn guess_children(&mut self, description: &Description, assembled: Option<&[f64]>) -> Result<(), BuildError> {
         let mut named = description.guess.iter().filter_map(|value| match value {
             StartValue::Coordinate { body, .. } | StartValue::Orientation { body, .. } => Some(*body),
             _ => None,
         });
-        if !named.any(|body| self.is_child(body)) {
+        if !self.tree.closes_loops(description) && !named.any(|body| self.is_child(body)) {
             return Ok(());
         }
         let builder = Builder::new();
         let absolute = Mechanism::new(&builder, description, false)?;
         let guess = absolute.start(description)?.guess;
-        let at_guess = AtGuess::of(&absolute, &builder.graph(), &guess);
+        let mut at_guess = AtGuess::of(&absolute, &builder.graph(), &guess);
+        if let Some(assembled) = assembled {
+            at_guess.set(&absolute.q, assembled.to_vec());
+            self.starts_assembled = true;
+        }
         for joint in self.tree.inboard.iter().flatten().map(|inboard| inboard.joint) {
             for coordinate in [JointCoordinate::Angle, JointCoordinate::Displacement] {
                 let Some(&place) = self.joint_coordinates.get(&(joint, coordinate)) else { continue };

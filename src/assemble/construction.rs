@@ -29,6 +29,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             time,
             uncertain: Vec::new(),
             child_guesses: Vec::new(),
+            starts_assembled: false,
             parameters: Vec::new(),
             q: Vec::new(),
             v: Vec::new(),

@@ -10,7 +10,8 @@ use crate::multibody::Context;
 impl Mechanism<'_, '_> {
     /// What prevents joint coordinates; `None` where nothing does.
     ///
-    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks for absolute ones.
+    /// Where joint coordinates are one choice of two (`is_chosen`), a start that names coordinates of bodies speaks for absolute ones,
+    /// and a guess where no joints close loops: those are closed from the assembled start in absolute coordinates.
     pub fn obstacle(&self, description: &Description, is_chosen: bool) -> Option<String> {
         if self.tree.is_absolute() {
             return Some("no joint can give a body its position".to_owned());
@@ -37,7 +38,8 @@ impl Mechanism<'_, '_> {
 
     /// A value at the start, or a guess, of a body that has no coordinates of its own.
     fn lost_start(&self, d: &Description) -> Option<String> {
-        d.initial.iter().chain(&d.guess).find_map(|value| {
+        let guess: &[StartValue] = if self.tree.closes_loops(d) { &[] } else { &d.guess };
+        d.initial.iter().chain(guess).find_map(|value| {
             let body = match value {
                 StartValue::Coordinate { body, coordinate, order, .. } => {
                     let known = self.angle_of_inboard_joint(d, *body, *coordinate, *order).is_some();

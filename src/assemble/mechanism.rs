@@ -80,8 +80,10 @@ pub struct Mechanism<'g, 'd> {
     pub time: Scalar<'g>,
     /// The parameters that are symbols.
     pub uncertain: Vec<UncertainParameter>,
-    /// Places in q of joints' coordinates, and where to look for them because `guess` names a child.
+    /// Places in q of inboard joints' coordinates, and where to look for them.
     pub child_guesses: Vec<(usize, f64)>,
+    /// Whether those are of an assembled start, and go before what `guess` says.
+    pub starts_assembled: bool,
     /// All parameters: a symbol, or folded to a number or to an expression of symbols.
     pub parameters: Vec<Scalar<'g>>,
     /// Coordinates.

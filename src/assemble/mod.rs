@@ -48,7 +48,7 @@ pub(crate) mod tests;
 mod tree;
 
 pub use crate::multibody::BuildError;
-pub use build::{build, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
+pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition,

@@ -29,7 +29,8 @@ impl<'g> Mechanism<'g, '_> {
         let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
         let mut guessed = self.values_at_start(description, &description.guess, TimeOrder::Position)?;
         for &(place, value) in &self.child_guesses {
-            guessed[place].get_or_insert_with(|| self.g.number(value));
+            let found = guessed[place].filter(|_| !self.starts_assembled);
+            guessed[place] = Some(found.unwrap_or_else(|| self.g.number(value)));
         }
         let known: Vec<_> = position.iter().zip(guessed).map(|(kept, guess)| kept.or(guess)).collect();
         let placed = self.placed(description, &known)?;

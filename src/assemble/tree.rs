@@ -122,15 +122,16 @@ impl Tree {
         self.merged[body]
     }
 
-    /// Why joint coordinates are not worth a try: joints close loops, or bodies are more than so many joints from their roots
-    /// on average.
-    pub fn too_involved(&self, description: &Description, deepest: usize) -> Option<String> {
+    /// Whether joints close loops of the trees.
+    pub fn closes_loops(&self, description: &Description) -> bool {
+        let mut joints = description.joints.iter().zip(&self.joints);
+        joints.any(|(joint, inboard)| !inboard && joint.kind.between().is_some())
+    }
+
+    /// Why joint coordinates are not worth a try: bodies are more than so many joints from their roots on average.
+    pub fn too_deep(&self, deepest: usize) -> Option<String> {
         if self.is_absolute() {
             return None;
-        }
-        let mut joints = description.joints.iter().zip(&self.joints);
-        if joints.any(|(joint, inboard)| !inboard && joint.kind.between().is_some()) {
-            return Some("joints close loops (`formulation: joint` is there to be tried)".to_owned());
         }
         let depths = self.depths();
         let depth = depths.iter().sum::<usize>().div_ceil(self.order.len());

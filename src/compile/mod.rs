@@ -5,7 +5,7 @@
 //! - `newton_matrix`: residual, Newton matrix and new state of a step;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
 //! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`, `start_program`), `nearest` what decides where it is
-//!   open; `equation_tapes`: the equations alone;
+//!   open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 
@@ -16,6 +16,7 @@ mod layout;
 mod nearest;
 mod newton_matrix;
 mod program;
+mod rounding;
 mod scheme;
 mod sparse_lu;
 mod start;

@@ -63,6 +63,8 @@ pub struct Program {
     pub matrix_entries: Vec<(usize, usize, usize)>,
     /// Registers of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
+    /// What rounding makes of each constraint near the pivot samples, m, in the constraint's unit; zero of a scheme of index 2.
+    pub rounding: Vec<f64>,
     /// Registers of the multipliers of redundant constraints: undetermined reactions, which are taken as zero.
     pub redundant: Vec<usize>,
     /// Pivots that can become small, for each version of the factors.

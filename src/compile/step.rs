@@ -1,5 +1,6 @@
 //! System → [`Program`]: the equations of a step, their elimination, the tapes.
 
+use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where};
 
 use super::elimination::{Elimination, PivotChoice, Version, is_worthwhile};
@@ -7,7 +8,8 @@ use super::equations::Equation;
 use super::layout::Layout;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::program::{FACTOR, MATRIX, OBSERVE, PivotSample, Program};
-use super::scheme::Scheme;
+use super::rounding::running_errors;
+use super::scheme::{ConstraintLevel, Scheme};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting};
 use crate::assemble::System;
 
@@ -30,6 +32,10 @@ pub fn compile(
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
     let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)
         .map_err(|none| none.named(|row| Equation::of_row(row, system.q.len())))?;
+    let rounding = match coefficients.level {
+        ConstraintLevel::Position => rounding_of_constraints(system, &inputs, samples),
+        ConstraintLevel::Velocity => vec![0.0; system.constraint.len()],
+    };
     let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);
@@ -55,6 +61,7 @@ pub fn compile(
         outputs: lowered.outputs[OBSERVE].iter().map(|&register| register as usize).collect(),
         matrix_entries,
         residual: registers[nonzeros..].iter().map(|&register| register as usize).collect(),
+        rounding,
         redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint).collect(),
         watched,
         equilibration,
@@ -173,12 +180,27 @@ fn sample_numbers(
     inputs: &[Input],
     samples: &[PivotSample; PIVOT_SAMPLES],
 ) -> Vec<Numbers> {
-    let register_of: rustc_hash::FxHashMap<Expr, usize> =
-        inputs.iter().map(|input| (input.symbol, input.register as usize)).collect();
+    let register_of = registers(inputs);
     let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
     let values: Vec<Vec<f64>> =
         samples.iter().map(|sample| graph.evaluate(&entries, |symbol| sample.values[register_of[&symbol]])).collect();
     (0..entries.len()).map(|entry| std::array::from_fn(|sample| values[sample][entry])).collect()
+}
+
+/// Register of each symbol.
+fn registers(inputs: &[Input]) -> FxHashMap<Expr, usize> {
+    inputs.iter().map(|input| (input.symbol, input.register as usize)).collect()
+}
+
+/// What rounding makes of each constraint, the largest of the pivot samples.
+fn rounding_of_constraints(system: &System, inputs: &[Input], samples: &[PivotSample; PIVOT_SAMPLES]) -> Vec<f64> {
+    let register_of = registers(inputs);
+    let mut largest = vec![0.0_f64; system.constraint.len()];
+    for sample in samples {
+        let errors = running_errors(&system.graph, &system.constraint, |symbol| sample.values[register_of[&symbol]]);
+        largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = largest.max(error));
+    }
+    largest
 }
 
 /// Symmetric diagonal scaling: unit diagonal for the equations of motion, then unit largest entry for the constraints. A

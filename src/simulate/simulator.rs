@@ -137,15 +137,19 @@ impl Assembled {
 
     /// Some outputs in the nominal state, with these parameters in their formulas.
     pub fn outputs_at_start(&self, which: Range<usize>, sample: &Sample) -> Vec<f64> {
-        let (system, layout) = (&self.system, &self.start.layout);
-        let symbols = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied();
-        let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda].into_iter().flat_map(Clone::clone);
-        let state = symbols.zip(registers.map(|register| self.nominal[register]));
-        let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(sample.iter().copied());
-        let values: FxHashMap<Expr, f64> = state.chain(parameters).chain([(system.time, 0.0)]).collect();
-        let outputs: Vec<Expr> = system.outputs[which].iter().map(|output| output.expr).collect();
-        system.graph.evaluate(&outputs, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN))
+        outputs_in(&self.system, &self.start.layout, &self.nominal, which, sample)
     }
+}
+
+/// Some outputs in a state (the layout's registers), with these parameters in their formulas.
+fn outputs_in(system: &System, layout: &Layout, state: &[f64], which: Range<usize>, sample: &Sample) -> Vec<f64> {
+    let symbols = [&system.q, &system.v, &system.w, &system.lambda].into_iter().flatten().copied();
+    let registers = [&layout.q, &layout.v, &layout.w, &layout.lambda].into_iter().flat_map(Clone::clone);
+    let values = symbols.zip(registers.map(|register| state[register]));
+    let parameters = system.parameters.iter().map(|parameter| parameter.symbol).zip(sample.iter().copied());
+    let values: FxHashMap<Expr, f64> = values.chain(parameters).chain([(system.time, 0.0)]).collect();
+    let outputs: Vec<Expr> = system.outputs[which].iter().map(|output| output.expr).collect();
+    system.graph.evaluate(&outputs, |symbol| values.get(&symbol).copied().unwrap_or(f64::NAN))
 }
 
 /// A mechanism that can be simulated.
@@ -211,6 +215,12 @@ impl Simulator {
             features: OnceLock::new(),
             free_closure: OnceLock::new(),
         })
+    }
+
+    /// All outputs in the nominal state.
+    pub fn outputs_at_start(&self) -> Vec<f64> {
+        let nominal: Sample = self.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+        outputs_in(&self.system, &self.start.layout, &self.nominal, 0..self.system.outputs.len(), &nominal)
     }
 
     /// Start states of samples: a tile of this width in which lane l has the parameters `sample(l)`.

@@ -2,9 +2,9 @@
 //!
 //! Joint coordinates are few and their matrices dense, absolute ones many and theirs sparse. What that comes to in
 //! instructions is only known when both are compiled, so both are; but for long chains, where it is known before, and not to
-//! the end where absolute coordinates turn out to take many times as much. Where
-//! joints close loops, absolute coordinates are kept: joint ones may be shorter there too, but lose their way where a loop
-//! passes a position in which it can branch off (a flat parallelogram), and absolute ones do not.
+//! the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
+//! assembled first, and joint ones start from there, so that both close the loops in the same branch. A start in a singular
+//! configuration is left to absolute coordinates.
 
 use crate::assemble::{self, BuildError, FormulationInfo, System};
 use crate::model::{Description, Formulation};
@@ -29,6 +29,9 @@ const MOST: usize = 8_000_000;
 /// The same in joint coordinates where only the start is wanted: in a second or two.
 const MOST_TO_CHECK: usize = 1_000_000;
 
+/// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what closures leave.
+const ALIKE: f64 = 1e-6;
+
 /// Eliminations of the start.
 const ELIMINATIONS: usize = 3;
 
@@ -49,7 +52,10 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
         return within_budget(description, MOST, &|system| Ok(compile(system)?));
     }
     let absolute = assemble::in_absolute_coordinates(description)?;
-    let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
+    if assemble::closes_loops(description) {
+        return of_loops(description, absolute);
+    }
+    let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), None)? {
         Ok(joint) => joint,
         Err(why) => {
             return match compile(because(absolute, why)) {
@@ -62,7 +68,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     };
     // What is singular in one formulation may be regular in the other.
     let Ok(mut joint) = compile(joint) else { return Ok(compile(absolute)?) };
-    let absolute = match within(absolute, (GIVEN_UP * instructions(&joint)).clamp(SOON, MOST)) {
+    let absolute = match within(absolute, enough(&joint)) {
         Ok(absolute) => absolute,
         Err(why) => {
             if why == SimulationError::TooLong {
@@ -72,10 +78,64 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(joint);
         }
     };
+    Ok(shorter(absolute, joint))
+}
+
+/// Compiles a model in which joints close loops in the shorter formulation.
+fn of_loops(description: &Description, absolute: System) -> Result<Simulator, RunError> {
+    let within = |system: System, operations: usize| {
+        Simulator::within(system, scheme(description), first_step(description), Some(operations))
+    };
+    let absolute = match within(absolute, MOST) {
+        Err(SimulationError::TooLong) => {
+            return other_way(description, Formulation::Joint, &|joint| Ok(within(joint, MOST)?));
+        }
+        compiled => compiled?,
+    };
+    let keep = |mut absolute: Simulator, why: String| {
+        absolute.system.formulation.why = why;
+        Ok(absolute)
+    };
+    if !absolute.mobility.singular_at_start.is_empty() {
+        return keep(absolute, "the start is singular".to_owned());
+    }
+    let start = &absolute.nominal[absolute.start.layout.q.clone()];
+    let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), Some(start))? {
+        Ok(joint) => joint,
+        Err(why) => return keep(absolute, why),
+    };
+    match within(joint, enough(&absolute)) {
+        Ok(joint) if starts_alike(&absolute, &joint) => Ok(shorter(absolute, joint)),
+        Ok(_) => keep(absolute, "outputs start elsewhere in joint coordinates".to_owned()),
+        Err(SimulationError::TooLong) => {
+            let why = format!("{} instructions a step instead of several times as many", instructions(&absolute));
+            keep(absolute, why)
+        }
+        Err(_) => keep(absolute, "joint coordinates have no start".to_owned()),
+    }
+}
+
+/// Whether both have the same degrees of freedom and the same outputs at the start.
+fn starts_alike(absolute: &Simulator, joint: &Simulator) -> bool {
+    let [first, second] = [absolute, joint].map(Simulator::outputs_at_start);
+    // NaN is like nothing.
+    let alike = |(a, b): (f64, f64)| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
+    absolute.mobility.degrees_of_freedom == joint.mobility.degrees_of_freedom
+        && first.len() == second.len()
+        && first.into_iter().zip(second).all(alike)
+}
+
+/// Operations after which the other formulation is given up.
+fn enough(simulator: &Simulator) -> usize {
+    (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
+}
+
+/// Of both formulations the one with fewer instructions.
+fn shorter(absolute: Simulator, joint: Simulator) -> Simulator {
     let [many, few] = [&absolute, &joint].map(instructions);
     let (mut chosen, (least, most)) = if few < many { (joint, (few, many)) } else { (absolute, (many, few)) };
     chosen.system.formulation.why = format!("{least} instructions a step instead of {most}");
-    Ok(chosen)
+    chosen
 }
 
 /// Builds and assembles a model, without its steps' program where that is not needed to choose the formulation.
@@ -98,7 +158,10 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
             compiled(description)?;
         return Ok(Assembled { system, start, nominal, mobility, undetermined, shared, equilibrium, vibrations });
     }
-    match assemble::in_joint_coordinates(description, Some(DEEPEST))? {
+    if assemble::closes_loops(description) {
+        return of_system(assemble::in_absolute_coordinates(description)?);
+    }
+    match assemble::in_joint_coordinates(description, Some(DEEPEST), None)? {
         // Shallow trees are short in joint coordinates.
         Ok(joint) => of_system(joint),
         Err(why) => of_system(because(assemble::in_absolute_coordinates(description)?, why)),

@@ -436,7 +436,7 @@ joints:
   drive: {{ motor: {{ on: pivot, speed: 30 }} }}
 effects: {{ weight: {{ gravity: {{ acceleration: [0, -9.81] }} }} }}
 outputs: {{ x: slider.x, torque: drive.torque, energy: energy }}
-simulation: {{ duration: 0.4, step: 1e-4, output_step: 1e-3 }}
+simulation: {{ duration: 0.4, step: 1e-4, output_step: 1e-3, formulation: absolute }}
 "
         )))
     };

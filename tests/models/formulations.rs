@@ -15,7 +15,7 @@ fn within(mut description: Description, formulation: Formulation) -> Description
 }
 
 fn has_both(description: &Description) -> bool {
-    assemble::in_joint_coordinates(description, None).unwrap().is_ok()
+    assemble::in_joint_coordinates(description, None, None).unwrap().is_ok()
 }
 
 /// Every output's course.
@@ -141,7 +141,7 @@ fn agree(description: &Description, h: f64, later: f64) {
         has_both(description),
         "{}: {:?}",
         description.name,
-        assemble::in_joint_coordinates(description, None).unwrap().err()
+        assemble::in_joint_coordinates(description, None, None).unwrap().err()
     );
     for (name, at_start, apart) in differences(description, h) {
         println!("{} {name}: {at_start:.1e} {apart:.1e}", description.name);

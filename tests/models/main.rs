@@ -34,6 +34,7 @@ mod invariants;
 mod kept;
 mod kinematics;
 mod linkages;
+mod loops;
 mod machines;
 mod massless;
 mod metamorphic;

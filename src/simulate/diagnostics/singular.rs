@@ -6,7 +6,7 @@
 //! configuration, and stays positive where the mechanism only comes near to one.
 
 use crate::simulate::simulator::Simulator;
-use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence};
+use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
 
 /// Steps are examined where a pivot has lost this much of the range between its size at the pivot samples (1e-10) and the
@@ -45,6 +45,8 @@ struct Moment {
 #[derive(Clone, Debug)]
 pub struct SingularWatch<'s> {
     simulator: &'s Simulator,
+    /// Sizes of the constraints' rows in general position.
+    usual: Vec<f64>,
     /// The last three steps' ends, the latest last.
     moments: [Moment; 3],
     suspects: usize,
@@ -56,7 +58,8 @@ impl<'s> SingularWatch<'s> {
     pub fn new(simulator: &'s Simulator, stepper: &Stepper) -> Self {
         let start = Moment { time: 0.0, pivot_loss: f64::INFINITY, state: stepper.lane(0) };
         let moments = [start.clone(), start.clone(), start];
-        Self { simulator, moments, suspects: 0, passes: Vec::new() }
+        let usual = usual_row_sizes(&simulator.system, &simulator.start, &simulator.nominal);
+        Self { simulator, usual, moments, suspects: 0, passes: Vec::new() }
     }
 
     /// Singular configurations found so far.
@@ -110,7 +113,7 @@ impl<'s> SingularWatch<'s> {
     fn independence(&self, time: f64) -> Vec<(usize, f64)> {
         let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
-        let independence = row_independence(&rows, DEPENDENT).into_iter().enumerate();
+        let independence = row_independence(&rows, &self.usual, DEPENDENT).into_iter().enumerate();
         independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 

@@ -2,8 +2,8 @@
 
 use symdiff::Tile;
 
-use super::general_position::move_apart;
-use super::rank::dependent_rows;
+use super::general_position::{move_apart, pivot_samples};
+use super::rank::{dependent_of_sizes, row_size};
 use crate::assemble::System;
 use crate::compile::{StartProgram, Tapes};
 
@@ -24,9 +24,11 @@ pub struct Mobility {
 /// Rank of Φ_q at the nominal start and, where rows depend on others there, at a configuration in general position near
 /// the start. A row that depends on others at the start only is not redundant: the start is singular.
 pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility {
-    let at_start = dependent_constraints(system, start, nominal);
+    let usual = usual_row_sizes(system, start, nominal);
+    let dependent = |state: &[f64]| dependent_of_sizes(&jacobian_rows(system, start, state), &usual, DEPENDENT);
+    let at_start = dependent(nominal);
     let elsewhere = if at_start.is_empty() { None } else { move_apart(system, nominal) };
-    let redundant = match elsewhere.map(|state| dependent_constraints(system, start, &state)) {
+    let redundant = match elsewhere.map(|state| dependent(&state)) {
         Some(generic) if generic.len() <= at_start.len() => generic,
         _ => at_start.clone(),
     };
@@ -36,9 +38,16 @@ pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobil
     Mobility { degrees_of_freedom, redundant, singular_at_start }
 }
 
-/// Constraints that depend on earlier ones at a state.
-fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -> Vec<usize> {
-    dependent_rows(&jacobian_rows(system, start, state), DEPENDENT)
+/// Sizes of the rows of Φ_q around a state: the least of those in general position, with the coordinates' scales. In joint
+/// coordinates a row may vanish where the mechanism is singular.
+pub fn usual_row_sizes(system: &System, start: &StartProgram, state: &[f64]) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; system.lambda.len()];
+    let [_, around @ ..] = pivot_samples(system, &start.layout, state, 0.0);
+    for sample in around {
+        let sizes = jacobian_rows(system, start, &sample.values).into_iter().map(|row| row_size(&row));
+        least.iter_mut().zip(sizes).for_each(|(least, size)| *least = least.min(size));
+    }
+    least.into_iter().map(|size| if size.is_finite() { size } else { 0.0 }).collect()
 }
 
 /// Rows of Φ_q at a state (the layout's registers), per scale of each coordinate: (coordinate, value).

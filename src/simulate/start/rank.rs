@@ -12,15 +12,21 @@ const OWN_SHARE: f64 = 1e-3;
 
 /// Rows of a sparse matrix (entries (column, value), scaled to comparable size) that depend on the rows before them.
 pub fn dependent_rows(rows: &[Vec<(usize, f64)>], tolerance: f64) -> Vec<usize> {
-    let left = rows_with_shared_columns(rows);
+    dependent_of_sizes(rows, &vec![0.0; rows.len()], tolerance)
+}
+
+/// The same where a row that is much smaller than its usual size counts as dependent too.
+pub fn dependent_of_sizes(rows: &[Vec<(usize, f64)>], usual: &[f64], tolerance: f64) -> Vec<usize> {
+    let left = rows_with_shared_columns(rows, usual);
     let shared: Vec<&[(usize, f64)]> = left.iter().map(|&row| rows[row].as_slice()).collect();
-    let independence = left.iter().zip(row_independence(&shared, tolerance));
+    let sizes: Vec<f64> = left.iter().map(|&row| usual[row]).collect();
+    let independence = left.iter().zip(row_independence(&shared, &sizes, tolerance));
     independence.filter(|(_, left_of_row)| *left_of_row <= tolerance).map(|(&row, _)| row).collect()
 }
 
 /// Rows that are left when, again and again, a row is taken away that has a large entry in a column of its own: that row is a part
 /// of no combination that vanishes, so dependence is among the others. What hangs together as a tree leaves none, in linear time.
-fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>]) -> Vec<usize> {
+fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>], usual: &[f64]) -> Vec<usize> {
     let columns = rows.iter().flatten().map(|&(column, _)| column + 1).max().unwrap_or(0);
     let mut rows_of_column: Vec<Vec<usize>> = vec![Vec::new(); columns];
     for (row, entries) in rows.iter().enumerate() {
@@ -33,7 +39,7 @@ fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>]) -> Vec<usize> {
     let mut single: Vec<usize> = (0..columns).filter(|&column| users[column] == 1).collect();
     while let Some(column) = single.pop() {
         let Some(&row) = rows_of_column[column].iter().find(|&&row| is_left[row]) else { continue };
-        let size = rows[row].iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
+        let size = row_size(&rows[row]).max(usual[row]);
         let own: f64 = rows[row].iter().filter(|(other, _)| *other == column).map(|(_, value)| value).sum();
         if own.abs() < OWN_SHARE * size {
             continue;
@@ -52,13 +58,13 @@ fn rows_with_shared_columns(rows: &[Vec<(usize, f64)>]) -> Vec<usize> {
 }
 
 /// How independent each row of a sparse matrix is of the rows before it: the largest entry that elimination in the rows'
-/// order leaves of the row, relative to the row's own size. The pivot of a row is its largest remaining entry; rows within
-/// the tolerance give no pivot.
-pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], tolerance: f64) -> Vec<f64> {
+/// order leaves of the row, relative to the row's own size or its usual one, whichever is larger. The pivot of a row is its
+/// largest remaining entry; rows within the tolerance give no pivot.
+pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], usual: &[f64], tolerance: f64) -> Vec<f64> {
     let mut reduced: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new(); // by pivot column
     let mut independence = Vec::with_capacity(rows.len());
-    for row in rows.iter().map(AsRef::as_ref) {
-        let size = row.iter().fold(0.0_f64, |size, (_, value)| size.max(value.abs()));
+    for (row, &usual) in rows.iter().map(AsRef::as_ref).zip(usual) {
+        let size = row_size(row).max(usual);
         let mut left: BTreeMap<usize, f64> = row.iter().copied().collect();
         // Clearing one pivot's column may fill the column of an earlier pivot, so the loop runs until no pivot column is left.
         while let Some((&column, &value)) =
@@ -82,6 +88,11 @@ pub fn row_independence(rows: &[impl AsRef<[(usize, f64)]>], tolerance: f64) -> 
         }
     }
     independence
+}
+
+/// The largest entry of a row.
+pub fn row_size(row: &[(usize, f64)]) -> f64 {
+    row.iter().fold(0.0, |size, (_, value)| size.max(value.abs()))
 }
 
 /// Columns of a matrix that its independent rows leave free, found by elimination with complete pivoting. Columns of large
@@ -139,10 +150,17 @@ mod tests {
         let [first, second, third] = triangle;
         let rows = vec![tail(3, 4), first, tail(2, 3), second, third, tail(4, 5)];
         assert_eq!(dependent_rows(&rows, 1e-9), [4]);
-        assert_eq!(rows_with_shared_columns(&rows), [1, 3, 4]);
+        assert_eq!(rows_with_shared_columns(&rows, &[0.0; 6]), [1, 3, 4]);
         let weak = vec![vec![(0, 1.0), (1, 1e-5)], vec![(0, 1.0)]];
-        assert_eq!(rows_with_shared_columns(&weak), [1]);
+        assert_eq!(rows_with_shared_columns(&weak, &[0.0; 2]), [1]);
         let no_tail = vec![vec![(0, 1.0), (1, 0.0)], vec![(0, 2.0), (1, 0.0)]];
         assert_eq!(dependent_rows(&no_tail, 1e-9), [1]);
+    }
+
+    #[test]
+    fn a_row_that_has_vanished_but_for_rounding_is_implied() {
+        let rows = vec![vec![(0, 1e-16), (1, -2e-16)], vec![(1, 1.0)]];
+        assert!(dependent_rows(&rows, 1e-9).is_empty());
+        assert_eq!(dependent_of_sizes(&rows, &[0.5, 0.5], 1e-9), [0]);
     }
 }

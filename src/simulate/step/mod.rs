@@ -2,6 +2,7 @@
 
 mod newton;
 mod rank_revealing;
+mod rounding;
 mod stepper;
 
 pub use newton::Counters;

@@ -8,6 +8,7 @@
 use symdiff::{Tile, Vectorise, vectorised};
 
 use super::rank_revealing::solve_rank_deficient;
+use super::rounding::{is_rounding, matrix_entries, rounding_of_residuals};
 use crate::compile::{Program, Watched};
 use crate::simulate::start::allowed_residual;
 
@@ -37,7 +38,7 @@ const LEAST_CONTRACTION: f64 = 1e-9;
 const STEPS_BETWEEN_LOOKS: u64 = 16;
 
 /// Corrections below this (relative positions) are round-off, whatever their contraction.
-const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// Work of the iteration, summed over all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -116,6 +117,9 @@ impl Newton {
         }
         self.steps += 1;
         self.iterate(program, tile, h);
+        if self.pending.contains(&true) {
+            self.accept_rounding(program, tile, h);
+        }
         if self.pending.contains(&true) {
             // Lanes that did not converge start again from their prediction, with the rank-revealing solve.
             self.singular.iter_mut().zip(&self.pending).for_each(|(singular, pending)| *singular |= pending);
@@ -213,26 +217,31 @@ impl Newton {
     /// over the distance to it. `gain` is that of positions.
     fn correct_singular(&self, program: &Program, tile: &mut Tile, gain: f64, count: usize) {
         tile.run(program.matrix());
-        let coordinates = program.scale.len();
         for lane in (0..self.pending.len()).filter(|&lane| self.pending[lane] && self.singular[lane]) {
             let value = |register: usize| tile.lane(register)[lane];
-            let entries: Vec<(usize, usize, f64)> =
-                program.matrix_entries.iter().map(|&(row, column, register)| (row, column, value(register))).collect();
-            let mut rounding = vec![0.0; program.residual.len()];
-            let slopes = entries.iter().filter(|(row, column, _)| *row >= coordinates && *column < coordinates);
-            for &(row, column, slope) in slopes.filter(|_| count >= FROZEN_CORRECTIONS) {
-                let position = value(program.layout.q.start + column).abs() + program.scale[column];
-                rounding[row] += ROUND_OFF * slope.abs() * position / gain;
-            }
-            let right = program.residual.iter().zip(&rounding).map(|(&register, rounding)| {
-                let residual = value(register);
-                if residual.abs() <= *rounding { 0.0 } else { -residual }
-            });
-            let right: Vec<f64> = right.collect();
+            let entries = matrix_entries(program, tile, lane);
+            let rounding = match count {
+                0..FROZEN_CORRECTIONS => vec![0.0; program.residual.len()],
+                _ => rounding_of_residuals(program, tile, lane, &entries, gain),
+            };
+            let uncertain = |residual: f64, rounding: f64| if residual.abs() <= rounding { 0.0 } else { -residual };
+            let residuals = program.residual.iter().zip(&rounding);
+            let right: Vec<f64> =
+                residuals.map(|(&register, rounding)| uncertain(value(register), *rounding)).collect();
             let solution = solve_rank_deficient(&entries, &right, &program.equilibration);
             for (place, register) in program.layout.correction.clone().enumerate() {
                 tile.lane_mut(register)[lane] = solution.as_ref().map_or(f64::NAN, |solution| solution[place]);
             }
+        }
+    }
+
+    /// Ends the iteration of lanes whose constraints hold to rounding and whose corrections are of its size: near a singular
+    /// position they flip between neighbouring numbers for ever.
+    fn accept_rounding(&mut self, program: &Program, tile: &mut Tile, h: f64) {
+        tile.run(program.matrix());
+        let gain = program.coefficients.position_gain(h);
+        for (lane, pending) in self.pending.iter_mut().enumerate() {
+            *pending &= self.singular[lane] || !is_rounding(program, tile, lane, self.last[lane], gain);
         }
     }
 

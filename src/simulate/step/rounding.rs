@@ -1,0 +1,42 @@
+//! What rounding leaves of the constraints at an iterate.
+
+use symdiff::Tile;
+
+use super::newton::ROUND_OFF;
+use crate::compile::Program;
+
+/// Corrections up to this (relative positions) may be rounding over the distance to a singular position, if constraints hold.
+const STALLED: f64 = 1e-10;
+
+/// Entries of the Newton matrix of a lane, after its tape has run: row, column, value.
+pub fn matrix_entries(program: &Program, tile: &Tile, lane: usize) -> Vec<(usize, usize, f64)> {
+    let entries = program.matrix_entries.iter();
+    entries.map(|&(row, column, register)| (row, column, tile.lane(register)[lane])).collect()
+}
+
+/// What rounding makes of each of the n + m residuals, zero of those of motion: by rounding of positions, and by that of the
+/// constraints' terms, which counts where no coordinate changes their sum. `gain` is that of positions.
+pub fn rounding_of_residuals(
+    program: &Program,
+    tile: &Tile,
+    lane: usize,
+    entries: &[(usize, usize, f64)],
+    gain: f64,
+) -> Vec<f64> {
+    let n = program.scale.len();
+    let mut rounding = vec![0.0; n];
+    rounding.extend(program.rounding.iter().map(|error| error / gain));
+    for &(row, column, slope) in entries.iter().filter(|(row, column, _)| *row >= n && *column < n) {
+        let position = tile.lane(program.layout.q.start + column)[lane].abs() + program.scale[column];
+        rounding[row] += ROUND_OFF * slope.abs() * position / gain;
+    }
+    rounding
+}
+
+/// Whether a lane's constraints hold to rounding, and its last correction may be nothing else, after the matrix' tape has run.
+pub fn is_rounding(program: &Program, tile: &Tile, lane: usize, last: f64, gain: f64) -> bool {
+    let entries = matrix_entries(program, tile, lane);
+    let rounding = rounding_of_residuals(program, tile, lane, &entries, gain);
+    let mut constraints = program.residual.iter().zip(&rounding).skip(program.scale.len());
+    last <= STALLED && constraints.all(|(&register, rounding)| tile.lane(register)[lane].abs() <= *rounding)
+}
