@@ -17,6 +17,7 @@ mod car_axis;
 mod certify;
 mod closed_forms;
 mod composition;
+mod controllers;
 mod convergence;
 mod drawing_linkages;
 mod explicit;

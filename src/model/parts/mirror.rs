@@ -26,7 +26,7 @@ enum Image {
 use Image::{Axial, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 25] = [
+const KINDS: [(&str, &[(&str, Image)]); 26] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -52,6 +52,17 @@ const KINDS: [(&str, &[(&str, Image)]); 25] = [
     ("gravity", &[]),
     ("preload", &[]),
     ("filter", &[]),
+    (
+        "contact",
+        &[
+            ("plane", Polar),
+            ("axis", Polar),
+            ("path", Polars),
+            ("polygon", Polars),
+            ("capsule", Polars),
+            ("corners", Polars),
+        ],
+    ),
 ];
 
 /// Keys of which nobody says what their images are.
