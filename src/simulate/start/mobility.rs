@@ -4,7 +4,7 @@ use symdiff::Tile;
 
 use super::general_position::move_apart;
 use super::rank::dependent_rows;
-use crate::assemble::System;
+use crate::assemble::{ConstraintId, System};
 use crate::compile::{StartProgram, Tapes};
 
 /// Rows of Φ_q that are independent of the others by less than this (scaled) count as dependent.
@@ -16,9 +16,9 @@ pub struct Mobility {
     /// Coordinates less independent constraints.
     pub degrees_of_freedom: usize,
     /// Constraints that depend on earlier ones wherever the mechanism moves.
-    pub redundant: Vec<usize>,
+    pub redundant: Vec<ConstraintId>,
     /// Constraints that depend on earlier ones at the start only, which is then a singular configuration.
-    pub singular_at_start: Vec<usize>,
+    pub singular_at_start: Vec<ConstraintId>,
 }
 
 /// Rank of Φ_q at the nominal start and, where rows depend on others there, at a configuration in general position near
@@ -37,8 +37,9 @@ pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobil
 }
 
 /// Constraints that depend on earlier ones at a state.
-fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -> Vec<usize> {
-    dependent_rows(&jacobian_rows(system, start, state), DEPENDENT)
+fn dependent_constraints(system: &System, start: &StartProgram, state: &[f64]) -> Vec<ConstraintId> {
+    let rows = dependent_rows(&jacobian_rows(system, start, state), DEPENDENT);
+    rows.into_iter().map(ConstraintId::new).collect()
 }
 
 /// Rows of Φ_q at a state (the layout's registers), per scale of each coordinate: (coordinate, value).
