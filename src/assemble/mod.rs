@@ -26,6 +26,7 @@ mod coordinates;
 mod extent;
 mod flexible;
 mod formulation;
+mod ids;
 mod inventory;
 mod joints;
 mod massless;
@@ -49,6 +50,7 @@ mod tree;
 
 pub use crate::multibody::BuildError;
 pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
+pub use ids::{ConditionId, ConstraintId, CoordinateId, OutputId};
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition,

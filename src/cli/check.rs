@@ -192,7 +192,6 @@ impl Counts {
             _ => Whole::of_parts(&study::assemble_parts(model)?),
         };
         let is_less = simulated.coordinates != whole.coordinates || simulated.constraints != whole.constraints;
-        let constraints = |numbers: &[usize]| numbers.iter().map(|&k| system.constraints[k].name.clone()).collect();
         Ok(Self {
             model: model.name.clone(),
             formulation,
@@ -203,10 +202,10 @@ impl Counts {
             whole: is_less.then_some(whole),
             uncertain_parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
             assemblies: study::assemblies(model),
-            redundant_constraints: constraints(&mobility.redundant),
-            singular_at_start: constraints(&mobility.singular_at_start),
+            redundant_constraints: system.constraint_names(&mobility.redundant),
+            singular_at_start: system.constraint_names(&mobility.singular_at_start),
             shared_start: shared,
-            undetermined_outputs: undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+            undetermined_outputs: system.output_names(&undetermined),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
             analysis: model.analysis.in_words(),
             not_simulated: reduction.left_out,

@@ -12,6 +12,7 @@ use symdiff::{Expr, Graph, Guard, Input, SparseMatrix, Stages};
 use super::newton_matrix::ITERATION;
 use super::program::{Mode, Watched, WatchedPivot};
 use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
+use crate::assemble::ConstraintId;
 
 /// Largest growth factor of freely chosen pivots; above it only pivots that cannot vanish are allowed.
 const MOST_GROWTH: f64 = 1e4;
@@ -32,7 +33,7 @@ const WORTHWHILE: f64 = 0.8;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PivotChoice<'a> {
     /// Constraints that others imply.
-    pub redundant: &'a [usize],
+    pub redundant: &'a [ConstraintId],
     /// Pivots that cannot vanish.
     pub symmetric: Pivoting<'a>,
     /// Whether only those are allowed.
@@ -93,7 +94,7 @@ impl PivotChoice<'_> {
     ) -> (SparseMatrix, Vec<Numbers>) {
         let (mut regular, mut numbers) = (matrix.clone(), numbers.to_vec());
         for &constraint in self.redundant {
-            let row = self.n + constraint;
+            let row = self.n + constraint.number();
             let weight = REDUNDANT_WEIGHT / (equilibration[row] * equilibration[row]);
             let place = matrix.rows[..row].iter().map(Vec::len).sum::<usize>() + regular.rows[row].len();
             let offset = regular.nonzeros() - matrix.nonzeros();

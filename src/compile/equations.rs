@@ -2,22 +2,22 @@
 
 use symdiff::{Expr, Graph, SparseMatrix};
 
-use crate::assemble::System;
+use crate::assemble::{ConditionId, ConstraintId, CoordinateId, System};
 
 /// A row of the closure: what positions have to fulfil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosureRow {
-    /// A constraint, by its number.
-    Constraint(usize),
-    /// A condition of the start, by its number among all of them.
-    Condition(usize),
+    /// A constraint.
+    Constraint(ConstraintId),
+    /// A condition of the start.
+    Condition(ConditionId),
 }
 
 /// An equation of a start or of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Equation {
-    /// Of the motion, by the number of its coordinate.
-    Motion(usize),
+    /// Of the motion, by its coordinate.
+    Motion(CoordinateId),
     /// Of the closure.
     Closure(ClosureRow),
 }
@@ -26,8 +26,8 @@ impl Equation {
     /// Of the rows of a system of n coordinates: the equations of motion, then the constraints.
     pub fn of_row(row: usize, n: usize) -> Self {
         match row.checked_sub(n) {
-            None => Self::Motion(row),
-            Some(constraint) => Self::Closure(ClosureRow::Constraint(constraint)),
+            None => Self::Motion(CoordinateId::new(row)),
+            Some(constraint) => Self::Closure(ClosureRow::Constraint(ConstraintId::new(constraint))),
         }
     }
 }

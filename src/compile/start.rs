@@ -33,7 +33,7 @@ use super::nearest::{LeastSquares, OpenStart};
 use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
 use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, named, residuals};
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, StartProgram, VELOCITY};
-use crate::assemble::System;
+use crate::assemble::{ConstraintId, System};
 
 /// ε relative to a constraint's own size in the matrix's metric.
 const REGULARISATION: f64 = 1e-12;
@@ -54,7 +54,7 @@ type Target = (Expr, Option<u32>);
 /// Where the equations have no finite values at the sample, and where the graph is full.
 pub fn compile_start(
     system: &System,
-    redundant: &[usize],
+    redundant: &[ConstraintId],
     sample: &[f64],
 ) -> Result<StartProgram, NoFactors<Equation>> {
     compile_nearest_start(system, redundant, sample, OpenStart::default())
@@ -66,7 +66,7 @@ pub fn compile_start(
 /// As for [`compile_start`].
 pub fn compile_nearest_start(
     system: &System,
-    redundant: &[usize],
+    redundant: &[ConstraintId],
     sample: &[f64],
     open: OpenStart,
 ) -> Result<StartProgram, NoFactors<Equation>> {
@@ -144,7 +144,7 @@ struct Builder<'s> {
     system: &'s System,
     graph: Graph,
     inputs: &'s [Input],
-    redundant: &'s [usize],
+    redundant: &'s [ConstraintId],
     sample: &'s [f64],
     factorised: Vec<Factorised>,
 }
@@ -244,7 +244,7 @@ impl Builder<'_> {
         let sizes = self.constraint_sizes(&matrix, &numbers, n);
         let mut scale = vec![1.0; n + m];
         for (constraint, size) in sizes.into_iter().enumerate() {
-            let relaxed = self.redundant.contains(&constraint);
+            let relaxed = self.redundant.contains(&ConstraintId::new(constraint));
             if pairs.iter().all(|&(_, paired)| paired != constraint) {
                 let value = self.graph.constant(-size * if relaxed { RELAXATION } else { REGULARISATION });
                 matrix.add(&mut self.graph, n + constraint, n + constraint, value);
@@ -303,7 +303,8 @@ impl Builder<'_> {
             let is_measured = names.0 == names.1;
             let is_number = self.graph.as_constant(derivative).is_some_and(|number| number != 0.0);
             let may_be_pivot = is_number || is_measured;
-            let is_defined = derivatives.len() > 1 && may_be_pivot && !self.redundant.contains(&constraint);
+            let is_defined =
+                derivatives.len() > 1 && may_be_pivot && !self.redundant.contains(&ConstraintId::new(constraint));
             if is_defined && !std::mem::replace(&mut taken[column], true) {
                 pairs.push((column, constraint));
             }

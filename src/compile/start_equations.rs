@@ -4,7 +4,7 @@ use symdiff::{Expr, Graph, SparseMatrix};
 
 use super::equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
 use super::sparse_lu::NoFactors;
-use crate::assemble::{StartCondition, System};
+use crate::assemble::{ConditionId, ConstraintId, CoordinateId, StartCondition, System};
 
 /// What remains of a row of the closure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,8 +58,8 @@ pub(super) type Kind = fn(&StartCondition) -> bool;
 /// The constraints, then the conditions of a kind.
 fn closure_rows(system: &System, kind: Kind) -> impl Iterator<Item = ClosureRow> {
     let conditions = system.start.conditions.iter().enumerate().filter(move |(_, condition)| kind(condition));
-    let constraints = (0..system.constraint.len()).map(ClosureRow::Constraint);
-    constraints.chain(conditions.map(|(place, _)| ClosureRow::Condition(place)))
+    let constraints = (0..system.constraint.len()).map(ConstraintId::new).map(ClosureRow::Constraint);
+    constraints.chain(conditions.map(|(place, _)| ClosureRow::Condition(ConditionId::new(place))))
 }
 
 /// Their residuals, in these registers.
@@ -70,7 +70,8 @@ pub(super) fn residuals(system: &System, kind: Kind, registers: Vec<usize>) -> V
 /// A correction's matrix without factors: its rows are those of the coordinates, then those of the closure.
 pub(super) fn named(system: &System, none: NoFactors, kind: Kind) -> NoFactors<Equation> {
     let closure = closure_rows(system, kind).map(Equation::Closure);
-    let equations: Vec<Equation> = (0..system.q.len()).map(Equation::Motion).chain(closure).collect();
+    let motion = (0..system.q.len()).map(CoordinateId::new).map(Equation::Motion);
+    let equations: Vec<Equation> = motion.chain(closure).collect();
     none.named(|row| equations[row])
 }
 

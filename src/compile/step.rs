@@ -11,7 +11,7 @@ use super::program::{FACTOR, MATRIX, OBSERVE, PivotSample, Program};
 use super::rounding::running_errors;
 use super::scheme::{ConstraintLevel, Scheme};
 use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting};
-use crate::assemble::System;
+use crate::assemble::{ConstraintId, System};
 
 /// A value to compute, and the register that it must have, if any.
 type Target = (Expr, Option<u32>);
@@ -23,7 +23,7 @@ type Target = (Expr, Option<u32>);
 pub fn compile(
     system: &System,
     scheme: Scheme,
-    redundant: &[usize],
+    redundant: &[ConstraintId],
     samples: &[PivotSample; PIVOT_SAMPLES],
 ) -> Result<Program, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
@@ -62,7 +62,7 @@ pub fn compile(
         matrix_entries,
         residual: registers[nonzeros..].iter().map(|&register| register as usize).collect(),
         rounding,
-        redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint).collect(),
+        redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint.number()).collect(),
         watched,
         equilibration,
         nonzeros: (nonzeros, factors.nonzeros()),
@@ -78,7 +78,7 @@ fn factors(
     graph: &mut Graph,
     newton: &NewtonSystem,
     inputs: &[Input],
-    redundant: &[usize],
+    redundant: &[ConstraintId],
     samples: &[PivotSample; PIVOT_SAMPLES],
 ) -> Result<(Version, Option<(Expr, Version)>), NoFactors> {
     let n = system.q.len();

@@ -82,7 +82,11 @@ fn unknown_word(table: &impl SymbolTable, name: &str, shown: &str, context: Cont
     }
     let parameters = table.parameters();
     let energies = if context == Context::Output { ENERGIES.map(|(energy, _)| energy).to_vec() } else { Vec::new() };
-    let help = suggest::help_beside(name, "parameters", parameters, &energies);
+    let help = match name {
+        "time" if context != Context::Constant => Some("the time is `t`".to_owned()),
+        "PI" | "Pi" | "π" => Some("did you mean `pi`?".to_owned()),
+        _ => suggest::help_beside(name, "parameters", parameters, &energies),
+    };
     let infinite = matches!(name.to_lowercase().as_str(), "inf" | "infinity" | "nan");
     let message =
         if infinite { format!("`{shown}` is not a finite number") } else { format!("unknown parameter `{shown}`") };

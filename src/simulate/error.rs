@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::start::{ConstraintResidual, free_columns, jacobian_rows};
 use super::statics::NoEquilibrium;
-use crate::assemble::{ConditionOf, ConstraintInfo, ResidualUnit, System};
+use crate::assemble::{ConditionOf, ConstraintInfo, CoordinateId, ResidualUnit, System};
 use crate::compile::{ClosureRow, Equation, NoFactors, StartProgram};
 
 /// Parameters of a sample: name and value in SI units.
@@ -228,7 +228,7 @@ pub(super) fn not_driven(system: &System, start: &StartProgram, state: &[f64]) -
 /// Why a sample with these parameters has no equilibrium.
 pub(super) fn no_equilibrium(system: &System, none: &NoEquilibrium, parameters: &[f64]) -> SimulationError {
     let names = system.parameters.iter().map(|parameter| parameter.name.clone());
-    let coordinate = &system.coordinates[none.coordinate];
+    let coordinate = &system[none.coordinate];
     let unit = if coordinate.is_angle { "N m" } else { "N" };
     SimulationError::NoEquilibrium {
         coordinate: coordinate.name.clone(),
@@ -241,10 +241,10 @@ pub(super) fn no_equilibrium(system: &System, none: &NoEquilibrium, parameters: 
 /// An equation's name.
 pub(super) fn equation_name(system: &System, equation: Equation) -> String {
     match equation {
-        Equation::Motion(coordinate) => format!("motion of {}", system.coordinates[coordinate].name),
-        Equation::Closure(ClosureRow::Constraint(constraint)) => system.constraints[constraint].name.clone(),
+        Equation::Motion(coordinate) => format!("motion of {}", system[coordinate].name),
+        Equation::Closure(ClosureRow::Constraint(constraint)) => system[constraint].name.clone(),
         Equation::Closure(ClosureRow::Condition(condition)) => {
-            format!("start of {}", system.start.conditions[condition].info.name)
+            format!("start of {}", system[condition].info.name)
         }
     }
 }
@@ -262,14 +262,15 @@ fn not_placed(massless: Option<&str>) -> String {
 pub(super) fn no_factors(system: &System, none: &NoFactors<Equation>) -> SimulationError {
     match none {
         NoFactors::Singular { rows } => {
-            let has_inertia = |coordinate: usize| system.mass.iter().any(|&(row, ..)| row == coordinate);
+            let has_inertia =
+                |coordinate: CoordinateId| system.mass.iter().any(|&(row, ..)| row == coordinate.number());
             let massless = rows.iter().find_map(|row| match row {
                 Equation::Motion(coordinate) if !has_inertia(*coordinate) => Some(*coordinate),
                 _ => None,
             });
             SimulationError::Singular {
                 equations: rows.iter().map(|&row| equation_name(system, row)).collect(),
-                massless: massless.map(|coordinate| system.coordinates[coordinate].name.clone()),
+                massless: massless.map(|coordinate| system[coordinate].name.clone()),
             }
         }
         NoFactors::TooLong => SimulationError::TooLong,
@@ -281,17 +282,17 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
     let names = system.parameters.iter().map(|parameter| parameter.name.clone());
     let (owner, info) = match worst.row {
         ClosureRow::Constraint(constraint) => {
-            let info = &system.constraints[constraint];
+            let info = &system[constraint];
             (format!("joint `{}`", info.joint), info)
         }
         ClosureRow::Condition(condition) => {
-            let info = &system.start.conditions[condition].info;
+            let info = &system[condition].info;
             let (how, names) = match worst.of_velocities {
                 false => ("straight", "all coordinates"),
                 true => ("as a rigid body", "all velocities"),
             };
             let of = &info.joint;
-            let owner = match system.start.conditions[condition].of {
+            let owner = match system[condition].of {
                 ConditionOf::Beam => {
                     format!("beam `{of}` (it starts {how} unless `initial` gives {names} of all its nodes)")
                 }

@@ -16,7 +16,7 @@ use super::start::{
     shared_coordinates,
 };
 use super::statics::Equilibrium;
-use crate::assemble::System;
+use crate::assemble::{OutputId, System};
 use crate::compile::{
     Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
     compile_switches,
@@ -42,7 +42,7 @@ pub struct Assembled {
     /// Degrees of freedom and redundant constraints.
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
-    pub undetermined: Vec<usize>,
+    pub undetermined: Vec<OutputId>,
     /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.
@@ -166,7 +166,7 @@ pub struct Simulator {
     /// Degrees of freedom and redundant constraints.
     pub mobility: Mobility,
     /// Outputs that depend on reactions which equilibrium does not determine.
-    pub undetermined: Vec<usize>,
+    pub undetermined: Vec<OutputId>,
     /// Coordinates that share what the model leaves open of the start: it is nearest to rest, one of many.
     pub shared: Vec<String>,
     /// Where the start is an equilibrium.

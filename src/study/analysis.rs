@@ -15,8 +15,7 @@ impl Study<'_> {
         let parameters: Vec<f64> = system.parameters.iter().map(|parameter| parameter.nominal).collect();
         let found = equilibrium.stability(&self.simulator.nominal, &parameters);
         summary.stability = Some(found.smallest);
-        summary.indifferent =
-            found.indifferent.into_iter().map(|place| system.coordinates[place].name.clone()).collect();
+        summary.indifferent = found.indifferent.into_iter().map(|coordinate| system[coordinate].name.clone()).collect();
         Some(summary)
     }
 }

@@ -5,6 +5,7 @@ use symdiff::math;
 use super::internal::{InternalError, caught};
 use super::outcome::{Outcome, Ran, Results};
 use super::single::Study;
+use crate::assemble::ConstraintId;
 use crate::methods::{Method, Sensitivity, Stop, StopCause};
 use crate::numerics::{BandError, Sample, carries, time_error, time_error_certified};
 use crate::results::{
@@ -140,7 +141,11 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> 
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
         }
         StopCause::Locked { constraint, residual } => {
-            let locked = study.simulator.locked(OpenConstraint { constraint, residual }, time, parameters);
+            let locked = study.simulator.locked(
+                OpenConstraint { constraint: ConstraintId::new(constraint), residual },
+                time,
+                parameters,
+            );
             format!("{locked}; results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {
@@ -183,7 +188,7 @@ fn damped_mode(results: &Results, bounds: &Bounds) -> Option<DampedMode> {
 fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<String>) -> Summary {
     let system = &study.simulator.system;
     let mobility = &study.simulator.mobility;
-    let names = |constraints: &[usize]| constraints.iter().map(|&k| system.constraints[k].name.clone()).collect();
+    let names = |constraints: &[ConstraintId]| system.constraint_names(constraints);
     let damped_mode = damped_mode(&results, bounds);
     let unmet_switch = results.unmet_switch_from().map(|row| results.schedule.time(row.saturating_sub(1)));
     let singular =
@@ -196,7 +201,7 @@ fn summary(study: &Study, results: Results, bounds: &Bounds, failure: Option<Str
         constraints: system.lambda.len(),
         degrees_of_freedom: mobility.degrees_of_freedom,
         redundant_constraints: names(&mobility.redundant),
-        undetermined_outputs: study.simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+        undetermined_outputs: system.output_names(&study.simulator.undetermined),
         singular_at_start: names(&mobility.singular_at_start),
         shared_start: study.simulator.shared.clone(),
         singular_configurations: singular.collect(),

@@ -61,10 +61,10 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
         coordinates: system.coordinates_of_motion().map(|coordinate| coordinate.name.clone()).collect(),
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,
-        redundant_constraints: constraint_names(simulator, &simulator.mobility.redundant),
+        redundant_constraints: system.constraint_names(&simulator.mobility.redundant),
         shared_start: simulator.shared.clone(),
-        singular_at_start: constraint_names(simulator, &simulator.mobility.singular_at_start),
-        undetermined_outputs: simulator.undetermined.iter().map(|&k| system.outputs[k].name.clone()).collect(),
+        singular_at_start: system.constraint_names(&simulator.mobility.singular_at_start),
+        undetermined_outputs: system.output_names(&simulator.undetermined),
         parameters: system.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
         effects: system
             .effects
@@ -95,10 +95,6 @@ fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
             .collect(),
         decisions: Vec::new(),
     }
-}
-
-fn constraint_names(simulator: &Simulator, constraints: &[usize]) -> Vec<String> {
-    constraints.iter().map(|&constraint| simulator.system.constraints[constraint].name.clone()).collect()
 }
 
 /// A program's instructions, with every conditional effect active, or none.

@@ -3,6 +3,9 @@
 /// Known names that are looked at.
 const MOST_KNOWN: usize = 1000;
 
+/// Names that are compared: the known ones, and some beside them.
+const MOST_COMPARED: usize = MOST_KNOWN + 100;
+
 /// Known names that are listed in full.
 const MOST_LISTED: usize = 32;
 
@@ -23,7 +26,7 @@ pub fn nearest<'c>(name: &str, known: impl IntoIterator<Item = &'c str>) -> Opti
     let limit = if length < 2 { 0 } else { (length / 3).max(1) };
     known
         .into_iter()
-        .take(MOST_KNOWN)
+        .take(MOST_COMPARED)
         .filter(|candidate| candidate.len() <= 4 * LONGEST)
         .filter_map(|candidate| {
             let distance = if candidate.to_lowercase() == lower {
@@ -54,8 +57,13 @@ pub fn help_beside<'c>(
     beside: &[&'c str],
 ) -> Option<String> {
     let known: Vec<&str> = known.into_iter().take(MOST_KNOWN).collect();
-    if let Some(near) = nearest(name, beside.iter().chain(&known).copied()) {
+    if let Some(near) = nearest(name, known.iter().chain(beside).copied()) {
         return Some(format!("did you mean `{near}`?"));
+    }
+    // One word of several: `spring` of `spring_damper`.
+    let has_word = |known: &&&str| name.len() > 3 && known.split('_').any(|word| word == name);
+    if let Some(whole) = known.iter().filter(has_word).min_by_key(|known| known.len()) {
+        return Some(format!("did you mean `{whole}`?"));
     }
     let short: Vec<&str> = known.iter().copied().filter(|name| name.len() <= LONGEST).collect();
     match short.as_slice() {
@@ -117,6 +125,9 @@ mod tests {
         );
         assert_eq!(help("wing", "points", many().take(30)).unwrap().matches("point").count(), 31);
         assert_eq!(help("wing", "points", []).unwrap(), "there are no points");
+        let kinds = ["torsional_spring_damper", "spring_damper", "gravity"];
+        assert_eq!(help("spring", "kinds", kinds).unwrap(), "did you mean `spring_damper`?");
+        assert_eq!(help_beside("enrgy", "parameters", ["l"], &["energy"]).unwrap(), "did you mean `energy`?");
         assert_eq!(clip(&"x".repeat(100)).chars().count(), 61);
     }
 }

@@ -1,5 +1,6 @@
 //! Whether a mechanism locks: then a constraint cannot be closed wherever positions are sought.
 
+use crate::assemble::ConstraintId;
 use crate::compile::{ClosureRow, compile_start};
 use crate::simulate::error::{NamedValues, SimulationError, residual_text};
 use crate::simulate::simulator::Simulator;
@@ -8,8 +9,8 @@ use crate::simulate::start::Assembly;
 /// A constraint that cannot be closed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenConstraint {
-    /// Number of the constraint.
-    pub constraint: usize,
+    /// Which.
+    pub constraint: ConstraintId,
     /// The size of the smallest residual found, in the constraint's unit.
     pub residual: f64,
 }
@@ -40,7 +41,7 @@ impl Simulator {
 
     /// The error of a mechanism that locks at a time.
     pub fn locked(&self, open: OpenConstraint, time: f64, parameters: NamedValues) -> SimulationError {
-        let constraint = &self.system.constraints[open.constraint];
+        let constraint = &self.system[open.constraint];
         let residual = residual_text(open.residual, constraint, false);
         SimulationError::Locked { time, constraint: constraint.name.clone(), residual, parameters }
     }

@@ -5,6 +5,7 @@
 //! constraint is therefore sought on positions interpolated between the steps. Its independence vanishes in a singular
 //! configuration, and stays positive where the mechanism only comes near to one.
 
+use crate::assemble::ConstraintId;
 use crate::simulate::simulator::Simulator;
 use crate::simulate::start::{DEPENDENT, jacobian_rows, row_independence, usual_row_sizes};
 use crate::simulate::step::Stepper;
@@ -29,7 +30,7 @@ pub struct SingularPass {
     /// s
     pub time: f64,
     /// Constraints that depend on earlier ones there.
-    pub constraints: Vec<usize>,
+    pub constraints: Vec<ConstraintId>,
 }
 
 /// The state at a step's end.
@@ -110,10 +111,11 @@ impl<'s> SingularWatch<'s> {
     }
 
     /// Independence of each constraint that is not redundant everywhere from the constraints before it.
-    fn independence(&self, time: f64) -> Vec<(usize, f64)> {
+    fn independence(&self, time: f64) -> Vec<(ConstraintId, f64)> {
         let rows = jacobian_rows(&self.simulator.system, &self.simulator.start, &self.between(time));
         let redundant = &self.simulator.mobility.redundant;
-        let independence = row_independence(&rows, &self.usual, DEPENDENT).into_iter().enumerate();
+        let constraints = (0..rows.len()).map(ConstraintId::new);
+        let independence = constraints.zip(row_independence(&rows, &self.usual, DEPENDENT));
         independence.filter(|(constraint, _)| !redundant.contains(constraint)).collect()
     }
 

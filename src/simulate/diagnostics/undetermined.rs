@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use rustc_hash::FxHashMap;
 use symdiff::Expr;
 
-use crate::assemble::System;
+use crate::assemble::{OutputId, System};
 use crate::compile::{Layout, StartProgram};
 use crate::simulate::start::{Mobility, jacobian_rows, move_apart, spread};
 
@@ -16,7 +16,12 @@ use crate::simulate::start::{Mobility, jacobian_rows, move_apart, spread};
 const NEGLIGIBLE: f64 = 1e-7;
 
 /// Outputs that change when reactions are shifted along null vectors of Φ_qᵀ, at a state in general position.
-pub fn undetermined_outputs(system: &System, start: &StartProgram, nominal: &[f64], mobility: &Mobility) -> Vec<usize> {
+pub fn undetermined_outputs(
+    system: &System,
+    start: &StartProgram,
+    nominal: &[f64],
+    mobility: &Mobility,
+) -> Vec<OutputId> {
     if mobility.redundant.is_empty() {
         return Vec::new();
     }
@@ -33,7 +38,7 @@ pub fn undetermined_outputs(system: &System, start: &StartProgram, nominal: &[f6
     places.into_iter().zip(numbers).for_each(|(place, number)| gradient[place] = number);
     let along = &gradient * shifts;
     let depends = |output: &usize| along.row(*output).norm() > NEGLIGIBLE * gradient.row(*output).norm();
-    (0..outputs.len()).filter(depends).collect()
+    (0..outputs.len()).filter(depends).map(OutputId::new).collect()
 }
 
 /// This many left null vectors of Φ_q, one a column.

@@ -10,7 +10,7 @@ use super::eigen::{Mode, modes};
 use super::follow::followed;
 use super::gradients::Gradients;
 use super::response::Response;
-use crate::assemble::{OutputInfo, System};
+use crate::assemble::{ConstraintId, OutputInfo, System};
 use crate::compile::{EquationsProgram, compile_equations};
 use crate::grammar::quantity::Dimension;
 use crate::model::ModesRequest;
@@ -25,7 +25,7 @@ pub const ALIKE: f64 = 0.8;
 pub struct Vibrations {
     program: EquationsProgram,
     scale: Vec<f64>,
-    redundant: Vec<usize>,
+    redundant: Vec<ConstraintId>,
     gradients: Gradients,
     /// Outputs of the model itself.
     outputs: usize,
@@ -77,7 +77,7 @@ pub fn further_outputs(system: &mut System, freedom: usize) {
 
 impl Vibrations {
     /// Of a mechanism with so many degrees of freedom, whose outputs are complete.
-    pub fn new(system: &System, redundant: &[usize], freedom: usize) -> Self {
+    pub fn new(system: &System, redundant: &[ConstraintId], freedom: usize) -> Self {
         let ModesRequest { number, responses } = &system.modes;
         let number = (*number).min(freedom);
         let further: usize = responses.iter().map(|response| 2 * response.frequencies.len()).sum();

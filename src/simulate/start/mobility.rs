@@ -4,7 +4,7 @@ use symdiff::Tile;
 
 use super::general_position::{move_apart, pivot_samples};
 use super::rank::{dependent_of_sizes, row_size};
-use crate::assemble::System;
+use crate::assemble::{ConstraintId, System};
 use crate::compile::{StartProgram, Tapes};
 
 /// Rows of Φ_q that are independent of the others by less than this (scaled) count as dependent.
@@ -16,16 +16,19 @@ pub struct Mobility {
     /// Coordinates less independent constraints.
     pub degrees_of_freedom: usize,
     /// Constraints that depend on earlier ones wherever the mechanism moves.
-    pub redundant: Vec<usize>,
+    pub redundant: Vec<ConstraintId>,
     /// Constraints that depend on earlier ones at the start only, which is then a singular configuration.
-    pub singular_at_start: Vec<usize>,
+    pub singular_at_start: Vec<ConstraintId>,
 }
 
 /// Rank of Φ_q at the nominal start and, where rows depend on others there, at a configuration in general position near
 /// the start. A row that depends on others at the start only is not redundant: the start is singular.
 pub fn mobility(system: &System, start: &StartProgram, nominal: &[f64]) -> Mobility {
     let usual = usual_row_sizes(system, start, nominal);
-    let dependent = |state: &[f64]| dependent_of_sizes(&jacobian_rows(system, start, state), &usual, DEPENDENT);
+    let dependent = |state: &[f64]| -> Vec<ConstraintId> {
+        let rows = dependent_of_sizes(&jacobian_rows(system, start, state), &usual, DEPENDENT);
+        rows.into_iter().map(ConstraintId::new).collect()
+    };
     let at_start = dependent(nominal);
     let elsewhere = if at_start.is_empty() { None } else { move_apart(system, nominal) };
     let redundant = match elsewhere.map(|state| dependent(&state)) {

@@ -9,6 +9,7 @@
 use nalgebra::DMatrix;
 use symdiff::Tile;
 
+use crate::assemble::ConstraintId;
 use crate::compile::{EquationsProgram, Tapes};
 
 /// The tapes of the equations with one state.
@@ -17,7 +18,7 @@ pub struct Configuration<'p> {
     program: &'p EquationsProgram,
     scale: &'p [f64],
     /// Constraints that others imply: they have no multipliers.
-    redundant: &'p [usize],
+    redundant: &'p [ConstraintId],
     tile: Tile,
 }
 
@@ -40,7 +41,12 @@ pub struct Linearised {
 
 impl<'p> Configuration<'p> {
     /// At rest at the origin, with these parameters.
-    pub fn new(program: &'p EquationsProgram, scale: &'p [f64], redundant: &'p [usize], parameters: &[f64]) -> Self {
+    pub fn new(
+        program: &'p EquationsProgram,
+        scale: &'p [f64],
+        redundant: &'p [ConstraintId],
+        parameters: &[f64],
+    ) -> Self {
         let mut tile = Tile::new(1, program.registers(), program.constants());
         let mut configuration = {
             tile.lane_mut(program.layout.time)[0] = 0.0;
@@ -80,7 +86,10 @@ impl<'p> Configuration<'p> {
         let [stiffness, damping, mass, _] = &program.motion_by;
         let [stiffness, damping, mass] = [stiffness, damping, mass].map(|entries| matrix(entries));
         let mut jacobian = vec![vec![0.0; n]; program.constraint.len()];
-        let independent = program.constraint_by_position.iter().filter(|(row, ..)| !self.redundant.contains(row));
+        let independent = program
+            .constraint_by_position
+            .iter()
+            .filter(|(row, ..)| !self.redundant.contains(&ConstraintId::new(*row)));
         for &(row, column, register) in independent {
             jacobian[row][column] = self.tile.lane(register)[0] * self.scale[column];
         }

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::configuration::{Configuration, Linearised, reduced, times};
 use super::stability::Stability;
-use crate::assemble::System;
+use crate::assemble::{ConstraintId, CoordinateId, System};
 use crate::compile::{EquationsProgram, compile_equations};
 use crate::numerics::{RowSpace, combined, dot};
 
@@ -45,14 +45,14 @@ const FAR: f64 = 0.25;
 pub struct Equilibrium {
     pub(super) program: EquationsProgram,
     pub(super) scale: Vec<f64>,
-    pub(super) redundant: Vec<usize>,
+    pub(super) redundant: Vec<ConstraintId>,
 }
 
 /// Why there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoEquilibrium {
     /// The coordinate that is pushed most.
-    pub coordinate: usize,
+    pub coordinate: CoordinateId,
     /// By this much, in N or N m.
     pub force: f64,
     /// Whether nothing holds it, wherever it is.
@@ -61,7 +61,7 @@ pub struct NoEquilibrium {
 
 impl Equilibrium {
     /// Of a mechanism with these redundant constraints.
-    pub fn new(system: &System, redundant: &[usize]) -> Self {
+    pub fn new(system: &System, redundant: &[ConstraintId]) -> Self {
         let scale = system.coordinates.iter().map(|coordinate| coordinate.scale).collect();
         Self { program: compile_equations(system), scale, redundant: redundant.to_vec() }
     }
@@ -227,7 +227,7 @@ impl Balance {
         let is_free =
             largest <= NOTHING * longest_of(&self.linear.stiffness).max(1e-300) * dot(&forces, &forces).sqrt();
         NoEquilibrium {
-            coordinate,
+            coordinate: CoordinateId::new(coordinate),
             force: pushed.get(coordinate).map_or(0.0, |force| force / scale[coordinate]),
             is_free,
         }

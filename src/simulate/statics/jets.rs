@@ -5,6 +5,7 @@ use symdiff::JetMemory;
 use symdiff::jet::JetSpace;
 
 use super::equilibrium::Equilibrium;
+use crate::assemble::ConstraintId;
 use crate::compile::Tapes;
 
 /// Pivots of the equations below this share of the largest are zero: what is indifferent has no jet of its own.
@@ -62,7 +63,7 @@ impl Equilibrium {
         let (n, m) = (self.scale.len(), self.program.layout.lambda.len());
         let linear = self.at(state, parameters).linearise();
         let kept: Vec<usize> =
-            (0..n + m).filter(|&place| place < n || !self.redundant.contains(&(place - n))).collect();
+            (0..n + m).filter(|&place| place < n || !self.redundant.contains(&ConstraintId::new(place - n))).collect();
         let entry = |row: usize, column: usize| match (row < n, column < n) {
             (true, true) => linear.stiffness[(row, column)],
             (false, true) => linear.jacobian[row - n][column],

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::configuration::{Linearised, reduced};
+use crate::assemble::CoordinateId;
 use crate::numerics::RowSpace;
 
 /// Eigenvalues below this share of the largest are zero.
@@ -16,8 +17,8 @@ const LEAST_MASS: f64 = 1e-12;
 pub struct Stability {
     /// The smallest eigenvalue of K φ = ω² M φ, rad²/s²: negative where the equilibrium is unstable; infinite where nothing can move.
     pub smallest: f64,
-    /// Numbers of the coordinates that move most in directions without stiffness.
-    pub indifferent: Vec<usize>,
+    /// The coordinates that move most in directions without stiffness.
+    pub indifferent: Vec<CoordinateId>,
 }
 
 impl Stability {
@@ -32,12 +33,13 @@ impl Stability {
         };
         let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let is_none = |value: &f64| value.abs() <= INDIFFERENT * largest;
-        let mut indifferent: Vec<usize> = (0..values.len())
+        let mut indifferent: Vec<CoordinateId> = (0..values.len())
             .filter(|&place| is_none(&values[place]))
             .filter_map(|place| {
                 let shape = &vectors[place];
                 (0..shape.len()).max_by(|&a, &b| shape[a].abs().total_cmp(&shape[b].abs()))
             })
+            .map(CoordinateId::new)
             .collect();
         indifferent.sort_unstable();
         indifferent.dedup();

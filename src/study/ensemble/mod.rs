@@ -20,8 +20,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, OpenConstraint, Points,
-    SampleRun, Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, Points, SampleRun,
+    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
 use jet::SampleJet;
@@ -231,7 +231,7 @@ fn effort(counters: Counters) -> Effort {
 pub(super) fn stopped_at(stop: &Stop) -> methods::Stop {
     let cause = match stop.open {
         _ if stop.singular => StopCause::SingularJet,
-        Some(OpenConstraint { constraint, residual }) => StopCause::Locked { constraint, residual },
+        Some(open) => StopCause::Locked { constraint: open.constraint.number(), residual: open.residual },
         None => StopCause::NotConverged { equation: stop.equation },
     };
     methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }

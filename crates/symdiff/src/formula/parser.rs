@@ -83,6 +83,9 @@ impl Parser<'_> {
                 help: Some(match found {
                     '=' => "equality is written `==`".to_owned(),
                     '*' => "a power is written `^`".to_owned(),
+                    '·' | '×' => "a product is written `*`".to_owned(),
+                    ',' if self.is_between_digits() => "decimals stand behind a point: `0.5`".to_owned(),
+                    '.' if self.is_doubled() => "an interval is written `[0.1, 0.2]`".to_owned(),
                     _ => format!("expected {expected}"),
                 }),
             },
@@ -92,6 +95,19 @@ impl Parser<'_> {
                 help: Some(format!("expected {expected}")),
             },
         }
+    }
+
+    /// Whether digits stand on both sides of the next character.
+    fn is_between_digits(&self) -> bool {
+        let is_digit = |c: char| c.is_ascii_digit();
+        let (before, after) = self.text.split_at(self.position);
+        before.ends_with(is_digit) && after.chars().nth(1).is_some_and(is_digit)
+    }
+
+    /// Whether the next character is one of two full stops.
+    fn is_doubled(&self) -> bool {
+        let (before, after) = self.text.split_at(self.position);
+        before.ends_with('.') || after.starts_with("..")
     }
 
     /// Runs `inner` one level deeper.

@@ -100,6 +100,19 @@ fn comparisons_are_one_where_they_hold() {
 }
 
 #[test]
+fn habits_of_other_languages_are_answered() {
+    for (text, wanted) in [
+        ("0,5", "decimals stand behind a point: `0.5`"),
+        ("0.49..0.51", "an interval is written `[0.1, 0.2]`"),
+        ("2·a", "a product is written `*`"),
+        ("l**2", "a power is written `^`"),
+        ("a, 5", "expected an operator or the end of the formula"),
+    ] {
+        assert_eq!(Formula::parse(text).unwrap_err().help.as_deref(), Some(wanted), "{text}");
+    }
+}
+
+#[test]
 fn units_are_the_callers() {
     let unit = |value: f64, text: &str| match text.strip_prefix("mm") {
         Some(_) => Ok(Quantity { value: value / 1e3, mark: 7, length: 2 }),
