@@ -8,7 +8,7 @@
 use symdiff::{Tile, Vectorise, vectorised};
 
 use super::rank_revealing::solve_rank_deficient;
-use super::rounding::{is_rounding, matrix_entries, rounding_of_residuals};
+use super::rounding::{ROUND_OFF, is_rounding, matrix_entries, rounding_of_residuals};
 use crate::compile::{Program, Watched};
 use crate::simulate::start::allowed_residual;
 
@@ -36,9 +36,6 @@ const LEAST_CONTRACTION: f64 = 1e-9;
 
 /// After this many steps the observed contraction is discarded, so that it is observed again.
 const STEPS_BETWEEN_LOOKS: u64 = 16;
-
-/// Corrections below this (relative positions) are round-off, whatever their contraction.
-pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// Work of the iteration, summed over all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

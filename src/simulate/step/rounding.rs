@@ -2,8 +2,10 @@
 
 use symdiff::Tile;
 
-use super::newton::ROUND_OFF;
 use crate::compile::Program;
+
+/// Corrections below this (relative positions) are round-off, whatever their contraction.
+pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 /// Corrections up to this (relative positions) may be rounding over the distance to a singular position, if constraints hold.
 const STALLED: f64 = 1e-10;
