@@ -4,7 +4,7 @@
 //! instructions is only known when both are compiled, so both are; but for long chains, where it is known before, and not to
 //! the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
 //! assembled first, and joint ones start from there, so that both close the loops in the same branch. A start in a singular
-//! configuration is left to absolute coordinates.
+//! configuration, or with redundant constraints, is left to absolute coordinates.
 
 use crate::assemble::{self, BuildError, FormulationInfo, System};
 use crate::model::{Description, Formulation};
@@ -98,6 +98,10 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     };
     if !absolute.mobility.singular_at_start.is_empty() {
         return keep(absolute, "the start is singular".to_owned());
+    }
+    // Joint coordinates do not have them, and would not show what they leave undetermined.
+    if !absolute.mobility.redundant.is_empty() {
+        return keep(absolute, "constraints are redundant".to_owned());
     }
     let start = &absolute.nominal[absolute.start.layout.q.clone()];
     let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), Some(start))? {

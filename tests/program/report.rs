@@ -53,6 +53,6 @@ fn a_folder_without_results_is_named() {
     let done = place.command("report nowhere").output().unwrap();
     assert_eq!(done.status.code(), Some(2));
     let message = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(message.contains("summary.json"), "{message}");
+    assert!(message.contains("there is no folder nowhere"), "{message}");
     assert_eq!(place.files(""), [""; 0]);
 }
