@@ -63,7 +63,7 @@ pub(super) fn trajectories(
         }
         let setting = Setting { method: CostMethod::By(integrator), count: 0, stepping };
         let without = CostPoint::without_result(setting.method, stepping);
-        points.push(match timed(model, &setting, &options, &|_| ()) {
+        let point = match timed(model, &setting, &options, &|_| ()) {
             Ok(((bounds, summary), seconds)) => CostPoint {
                 simulations: 1,
                 steps: method(&summary, &setting).steps,
@@ -73,7 +73,12 @@ pub(super) fn trajectories(
                 ..without
             },
             Err(error) => CostPoint { failure: Some(error.to_string()), ..without },
-        });
+        };
+        // A run that was cut short measures nothing.
+        if interrupted() {
+            break;
+        }
+        points.push(point);
         progress(points.len() as f64 / total);
     }
     Ok(points)
