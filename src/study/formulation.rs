@@ -4,11 +4,12 @@
 //! instructions is only known when both are compiled, so both are; but for long chains, where it is known before, and not to
 //! the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
 //! assembled first, and joint ones start from there, so that both close the loops in the same branch. A start in a singular
-//! configuration, or with redundant constraints, is left to absolute coordinates.
+//! configuration, a motion that passes one, and redundant constraints are left to absolute coordinates.
 
 use crate::assemble::{self, BuildError, FormulationInfo, System};
-use crate::model::{Description, Formulation};
-use crate::simulate::{Assembled, SimulationError, Simulator};
+use crate::model::{Description, Formulation, Stepping};
+use crate::numerics::Sample;
+use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
 
 use super::{RunError, first_step, scheme};
 
@@ -31,6 +32,10 @@ const MOST_TO_CHECK: usize = 1_000_000;
 
 /// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what closures leave.
 const ALIKE: f64 = 1e-6;
+
+/// Steps in which the nominal motion is looked at for singular configurations: s, where a tolerance chooses them, and how many at most.
+const LONGEST_LOOK: f64 = 1e-3;
+const MOST_LOOKS: f64 = 10_000.0;
 
 /// Eliminations of the start.
 const ELIMINATIONS: usize = 3;
@@ -103,6 +108,9 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     if !absolute.mobility.redundant.is_empty() {
         return keep(absolute, "constraints are redundant".to_owned());
     }
+    if passes_singular(description, &absolute) {
+        return keep(absolute, "the nominal motion passes singular configurations".to_owned());
+    }
     let start = &absolute.nominal[absolute.start.layout.q.clone()];
     let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), Some(start))? {
         Ok(joint) => joint,
@@ -117,6 +125,36 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         }
         Err(_) => keep(absolute, "joint coordinates have no start".to_owned()),
     }
+}
+
+/// Whether the nominal motion passes a singular configuration, or does not get to its end: there joint coordinates amplify rounding more the
+/// shorter the steps are.
+fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
+    let simulation = &description.simulation;
+    if simulator.system.analysis.is_without_steps() {
+        return false;
+    }
+    let step = match simulation.stepping {
+        Stepping::Fixed(step) => step,
+        Stepping::Tolerance(_) => LONGEST_LOOK.min(simulation.output_step),
+    };
+    let step = step.max(simulation.duration / MOST_LOOKS);
+    let steps = (simulation.output_step / step).round().max(1.0);
+    let schedule = Schedule::fixed(simulation.duration, simulation.output_step / steps, simulation.output_step);
+    let nominal: Sample = simulator.system.parameters.iter().map(|parameter| parameter.nominal).collect();
+    let Ok(start) = simulator.assemble(1, schedule.first_step(), |_| nominal.clone()) else { return true };
+    let mut stepper = Stepper::new(&simulator.program, &start);
+    let mut watch = SingularWatch::new(simulator, &stepper);
+    for (h, end) in (0..schedule.rows).flat_map(|row| schedule.steps_to(row)) {
+        if !stepper.step(h, end).is_empty() {
+            return true;
+        }
+        watch.look(&stepper, end);
+        if watch.has_passed() {
+            return true;
+        }
+    }
+    false
 }
 
 /// Whether both have the same degrees of freedom and the same outputs at the start.

@@ -68,6 +68,11 @@ impl<'s> SingularWatch<'s> {
         self.passes.clone()
     }
 
+    /// Whether one was found so far.
+    pub fn has_passed(&self) -> bool {
+        !self.passes.is_empty()
+    }
+
     /// Examines the step that has just ended.
     pub fn look(&mut self, stepper: &Stepper, time: f64) {
         self.moments.rotate_left(1);
