@@ -41,6 +41,7 @@ mod massless;
 mod metamorphic;
 mod mjcf;
 mod modes;
+mod moving_machines;
 mod pruning;
 mod questions_apart;
 mod random;
