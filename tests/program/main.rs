@@ -29,3 +29,4 @@ mod show;
 mod snapshot;
 mod statistics;
 mod structure;
+mod tolerance_forms;
