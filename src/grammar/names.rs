@@ -115,9 +115,12 @@ fn of_instance(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
         .or_else(|| reaction(table, owner, part, Some(member)))
 }
 
-/// A body, or a point of a body, by its name: `front_left.upright.hub`, or a port that is one.
+/// A body, a link, or a point of one, by its name: `front_left.upright.hub`, or a port that is one.
 pub(super) fn place(table: &impl SymbolTable, name: &str) -> Option<PointRef> {
     let name = table.port(name).unwrap_or(name);
+    if let Some(place) = table.link(name) {
+        return Some(place);
+    }
     if let Some(body) = table.body(name) {
         return Some(PointRef { body, point: None });
     }
@@ -153,8 +156,8 @@ fn of_robot(table: &impl SymbolTable, name: &str) -> Option<Symbol> {
         };
     }
     let rest = name.strip_prefix("link.").unwrap_or(name);
-    let (link, member) = rest.split_once('.')?;
-    let place = table.link(link)?;
+    let placed = |(link, member)| Some((table.link(link)?, member));
+    let (place, member) = rest.rsplit_once('.').and_then(placed).or_else(|| rest.split_once('.').and_then(placed))?;
     let Some(point) = place.point else {
         // A body of that name: the usual way.
         return if rest.len() < name.len() { symbol(table, rest) } else { None };

@@ -206,7 +206,10 @@ fn parts_of_joint(table: &impl SymbolTable, name: &str) -> String {
             parts.extend(["axial", "radial", "torque.axial"]);
         }
         if table.has_place(joint) {
-            parts.extend(["force_body.x", "force_body.y", "torque_at.BODY.POINT"]);
+            parts.extend(match table.is_spatial() {
+                true => &["force_body.x", "torque_body.x", "torque_at.BODY.POINT.x"][..],
+                false => &["force_body.x", "force_body.y", "torque_at.BODY.POINT"],
+            });
         }
         let coordinates = JOINT_MOTIONS.iter().filter(|(_, coordinate, _)| table.has_coordinate(joint, *coordinate));
         parts.extend(coordinates.map(|(motion, ..)| *motion));

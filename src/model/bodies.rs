@@ -274,10 +274,7 @@ fn prescribed(
 fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     let Some(node) = fields.get("points") else { return };
     for (index, entry) in reader.entries(node, "points").iter().enumerate() {
-        if reader.name(entry, "a point") && is_motion(&entry.key) {
-            let message = format!("`{}` cannot be the name of a point: it is a part of the body's motion", entry.key);
-            reader.error(entry.key_span.clone(), message, None);
-        }
+        is_name_of_point(reader, entry);
         let Some((position, rotation)) = point(reader, entry) else { continue };
         if let Some(point) = reader.model.bodies[body].points.get_mut(index) {
             point.position = position;
@@ -286,8 +283,19 @@ fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     }
 }
 
+/// Whether a point may be called so; reported where it may not.
+pub(super) fn is_name_of_point(reader: &mut Reader, entry: &Entry) -> bool {
+    let named = reader.name(entry, "a point");
+    if named && is_motion(&entry.key) {
+        let message = format!("`{}` cannot be the name of a point: it is a part of the body's motion", entry.key);
+        reader.error(entry.key_span.clone(), message, None);
+        return false;
+    }
+    named
+}
+
 /// `[x, y, z]` or `{ position: …, rotation: … }`.
-fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3], Option<Rotation>)> {
+pub(super) fn point(reader: &mut Reader, entry: &Entry) -> Option<([Formula; 3], Option<Rotation>)> {
     let Value::Mapping(_) = entry.value.value else {
         return Some((reader.components(&entry.value, Context::Constant, Dimension::LENGTH)?, None));
     };

@@ -233,7 +233,7 @@ fn describe(
     let start = root.span.start..root.span.start;
     let Some(fields) = reader.fields::<file::File>(root, start) else { return (reader.model, Vec::new()) };
     sections::title(&mut reader, &fields, variant.scene.as_deref());
-    let robot = match fields.get("urdf") {
+    let mut robot = match fields.get("urdf") {
         None => None,
         Some(node) => {
             let Some(robot) = Urdf::read(&mut reader, node, &fields, Path::new(name), root, overrides) else {
@@ -247,6 +247,8 @@ fn describe(
         None => space::read(&mut reader, &fields),
     };
     let body_entries = section(&mut reader, fields.get("bodies"), "bodies");
+    let own_bodies = robot.as_mut().map(|robot| robot.keep_of_links(body_entries));
+    let body_entries = own_bodies.as_deref().unwrap_or(body_entries);
     let joint_entries = section(&mut reader, fields.get("joints"), "joints");
     let effect_entries = section(&mut reader, fields.get("effects"), "effects");
     let state_entries = section(&mut reader, fields.get("states"), "states");
@@ -272,6 +274,7 @@ fn describe(
     parameters::read(&mut reader, parameter_entries, overrides);
     trajectories::read(&mut reader, &fields);
     bodies::read(&mut reader, body_entries);
+    robot.iter().for_each(|robot| robot.read_points(&mut reader));
     states::declare(&mut reader, state_entries, effect_entries);
     joints::read(&mut reader, joint_entries);
     effects::read(&mut reader, effect_entries);

@@ -82,7 +82,17 @@ impl SymbolTable for Description {
     }
 
     fn link(&self, name: &str) -> Option<PointRef> {
-        self.robot.as_ref()?.links.iter().find(|link| link.name == name)?.place
+        let links = &self.robot.as_ref()?.links;
+        let link = |name: &str| links.iter().find(|link| link.name == name);
+        if let Some(link) = link(name) {
+            return link.place;
+        }
+        // A point that the model gives to a link: one that is welded to another is a point itself.
+        let (owner, own) = name.rsplit_once('.')?;
+        let place = link(owner)?.place?;
+        let called = if place.point.is_some() { name } else { own };
+        let point = self.bodies[place.body].points.iter().position(|point| point.name == called)?;
+        Some(PointRef { body: place.body, point: Some(point) })
     }
 
     fn parts_of_beam(&self, beam: &str) -> Option<String> {

@@ -157,6 +157,40 @@ fn welded_links_are_one_body() {
 }
 
 #[test]
+fn the_model_gives_points_to_links() {
+    let files = welded(&link("b", 3.0, "0.2 0 0", [0.05, 0.04, 0.03]));
+    let description = files.model(&format!(
+        "{GRAVITY}parameters: {{ l: 0.3 }}
+bodies:
+  base: {{ points: {{ foot: [1, 2, 3] }} }}
+  a: {{ points: {{ tip: [0.1, 0, -l] }} }}
+  b: {{ points: {{ edge: [l, 0.05, 0.01] }} }}
+  ball: {{ mass: 0.1, inertia: 1e-3 }}
+joints: {{ glue: {{ fixed: [b.edge, ball] }} }}
+initial: {{ hinge.angle: 0.4 }}
+outputs: {{ angle: hinge.angle, tip_x: a.tip.x, tip_z: a.tip.z, edge_x: b.edge.x, edge_y: b.edge.y, edge_z: link.b.edge.z, glued: ball.x, foot: base.foot.y + 0*a.x, torque: glue.torque_at.b.edge.x }}"
+    ));
+    let bounds = nominal(&description);
+    let angle = curve(&bounds, "angle");
+    // The hinge turns about y: (x, z) → (x cos + z sin, z cos − x sin). b's axes are turned by 90° about z.
+    let turned = |x: f64, z: f64| angle.iter().map(move |a| (x * a.cos() + z * a.sin(), z * a.cos() - x * a.sin()));
+    let expected = |name: &str| -> Vec<f64> {
+        match name {
+            "tip_x" => turned(0.1, -0.3).map(|place| place.0).collect(),
+            "tip_z" => turned(0.1, -0.3).map(|place| place.1).collect(),
+            "edge_x" | "glued" => turned(0.1 - 0.05, -1.0 + 0.01).map(|place| place.0).collect(),
+            "edge_z" => turned(0.1 - 0.05, -1.0 + 0.01).map(|place| place.1).collect(),
+            "edge_y" => vec![0.3; angle.len()],
+            _ => vec![2.0; angle.len()],
+        }
+    };
+    for name in ["tip_x", "tip_z", "edge_x", "edge_y", "edge_z", "glued", "foot"] {
+        assert!(distance(curve(&bounds, name), &expected(name)) < 1e-10, "{name}");
+    }
+    assert!((angle[angle.len() - 1] - 0.4).abs() > 0.1);
+}
+
+#[test]
 fn an_uncertain_mass_of_a_welded_link_is_that_of_a_file_with_it() {
     let at = |mass: f64| {
         let files = welded(&link("b", mass, "0.2 0 0", [0.05, 0.04, 0.03]));

@@ -43,7 +43,12 @@ fn of_model(root: &mut Map<String, Value>) {
         "required": ["outputs"],
         "anyOf": [{ "required": ["bodies"] }, { "required": ["instances"] }],
         "properties": {
-            "bodies": { "type": "object", "minProperties": 1 },
+            "bodies": {
+                "type": "object",
+                "minProperties": 1,
+                "properties": { "ground": true },
+                "additionalProperties": { "not": only_points() }
+            },
             "outputs": { "type": "object", "minProperties": 1 }
         }
     });
@@ -133,7 +138,12 @@ fn of_parameter(parameter: &mut Value) {
     }
 }
 
-/// A body has mass where it can move and inertia where it can turn; a beam has its own.
+/// Of a link of a robot, to which the model gives points.
+fn only_points() -> Value {
+    json!({ "required": ["points"], "maxProperties": 1 })
+}
+
+/// A body has mass where it can move and inertia where it can turn; a beam has its own, and a link of a robot.
 fn of_body(body: &mut Value) {
     let moves_by =
         |coordinates: Value| json!({ "properties": { "coordinates": { "contains": { "enum": coordinates } } } });
@@ -143,10 +153,13 @@ fn of_body(body: &mut Value) {
     insert(
         body,
         "else",
-        json!({ "allOf": [
-            { "if": moves_by(json!(["x", "y", "z"])), "then": { "required": ["mass"] } },
-            { "if": moves_by(json!(["angle", "orientation"])), "then": { "required": ["inertia"] } }
-        ] }),
+        json!({
+            "if": only_points(),
+            "else": { "allOf": [
+                { "if": moves_by(json!(["x", "y", "z"])), "then": { "required": ["mass"] } },
+                { "if": moves_by(json!(["angle", "orientation"])), "then": { "required": ["inertia"] } }
+            ] }
+        }),
     );
     limited(body, "mass", NONNEGATIVE);
     let coordinates = &mut body["properties"]["coordinates"];

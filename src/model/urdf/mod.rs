@@ -10,6 +10,7 @@ mod check;
 mod effects;
 mod format;
 mod joints;
+mod link_points;
 mod number_names;
 mod read;
 mod robot;
@@ -59,6 +60,8 @@ pub struct Urdf {
     robot: Robot,
     floating: bool,
     words: HashSet<String>,
+    /// What `bodies:` says of links.
+    of_links: Vec<Entry>,
 }
 
 /// With its bodies and joints in the model.
@@ -101,7 +104,7 @@ impl Urdf {
         // A drone or a brick by itself: fixed, nothing of it would be left.
         let loose = || is_urdf(model) && robot.is_rigid() && robot.has_mass();
         let floating = base.unwrap_or_else(loose);
-        Some(Self { robot, floating, words: numbers::words(root, overrides) })
+        Some(Self { robot, floating, words: numbers::words(root, overrides), of_links: Vec::new() })
     }
 
     /// The model's parameters, with those of the robot.
@@ -109,17 +112,24 @@ impl Urdf {
         numbers::entries(reader, &FORMAT, self.robot.numbers(), &self.words, written)
     }
 
+    /// Keeps the entries of `bodies:` that name links; the others, which are of the model's own bodies.
+    pub fn keep_of_links(&mut self, entries: &[Entry]) -> Vec<Entry> {
+        let links: HashSet<&str> = self.robot.links.iter().map(|link| link.name.as_str()).collect();
+        let (of_links, others) = entries.iter().cloned().partition(|entry| links.contains(entry.key.as_str()));
+        self.of_links = of_links;
+        others
+    }
+
+    /// The entries of `bodies:` that name links, with the links.
+    fn entries_of_links(&self) -> impl Iterator<Item = (usize, &Entry)> {
+        let place = |name: &str| self.robot.links.iter().position(|link| link.name == name);
+        self.of_links.iter().filter_map(move |entry| Some((place(&entry.key)?, entry)))
+    }
+
     /// Adds the robot's bodies and joints to the model, behind those that it has.
     pub fn declare(self, reader: &mut Reader, parameters: &[Entry]) -> Declared {
         let named: HashSet<String> =
             parameters.iter().filter(|entry| is_number(&entry.key)).map(|entry| entry.key.clone()).collect();
-        let links = self.robot.links.iter().map(|link| (&link.name, &link.span));
-        for (name, span) in links {
-            if reader.model.bodies.iter().any(|body| body.name == *name) {
-                let message = format!("the model has a body that is called like the link `{name}`");
-                reader.diagnostics.push(Diagnostic::error(span.clone(), message));
-            }
-        }
         for joint in &self.robot.joints {
             if reader.model.joints.iter().any(|known| known.name == joint.name) {
                 let message = format!("the model has a joint that is called like the URDF's `{}`", joint.name);
@@ -128,6 +138,8 @@ impl Urdf {
         }
         let source = Source { robot: &self.robot, floating: self.floating, words: &self.words, named: &named };
         let built = build::declare(reader, &source);
+        let of_links: Vec<(usize, &Entry)> = self.entries_of_links().collect();
+        link_points::declare(reader, &built, &of_links);
         let at = self.robot.links[self.robot.root].span.clone();
         Declared { urdf: self, named, built, at }
     }
@@ -137,7 +149,7 @@ impl Declared {
     /// Effects that are not left out, start values and, where the model has none, outputs; and whether masses stay positive.
     /// `limits` is the section of that name.
     pub fn finish(&self, reader: &mut Reader, left_out: &LeftOut, limits: Option<(&Node, Span)>, observe: bool) {
-        let Urdf { robot, floating, words } = &self.urdf;
+        let Urdf { robot, floating, words, .. } = &self.urdf;
         let source = Source { robot, floating: *floating, words, named: &self.named };
         let effects = effects::read(reader, &source, &self.built, limits);
         effects::add(reader, &source, effects, left_out);
