@@ -103,3 +103,22 @@ fn inertias_of_geoms_follow_the_mass() {
     };
     assert!(distance(&angles("2"), &angles("7")) < 1e-9);
 }
+
+#[test]
+fn the_model_gives_points_to_bodies() {
+    let files = Files::new(
+        "<mujoco><worldbody><body name='arm' pos='0 0 1'><joint name='h' type='hinge' axis='0 1 0'/>\
+         <geom type='capsule' size='0.02' fromto='0 0 0 0.3 0 0' mass='1'/><site name='mark' pos='0.1 0 0'/></body></worldbody></mujoco>",
+    );
+    let yaml = "bodies: { arm: { points: { tip: [0.3, 0, 0.1] } } }\n\
+                outputs: { angle: h.angle, x: arm.tip.x, z: arm.tip.z, mark: arm.mark.x }";
+    let bounds = nominal(&description(files.with(yaml)));
+    let angle = curve(&bounds, "angle");
+    let expected = |x: f64, z: f64| -> [Vec<f64>; 2] {
+        let across = angle.iter().map(|a| x * a.cos() + z * a.sin()).collect();
+        [across, angle.iter().map(|a| 1.0 + z * a.cos() - x * a.sin()).collect()]
+    };
+    let [x, z] = expected(0.3, 0.1);
+    assert!(distance(curve(&bounds, "x"), &x) < 1e-12 && distance(curve(&bounds, "z"), &z) < 1e-12);
+    assert!(distance(curve(&bounds, "mark"), &expected(0.1, 0.0)[0]) < 1e-12);
+}

@@ -102,7 +102,7 @@ pub fn bodies(sections: &mut Sections, source: &Source) {
                 ground(sections, &body.span, own);
             }
         } else if source.holders[index].0 == index {
-            sections.add("bodies", &body.name, rigid(source, index, own));
+            sections.add_body(&body.name, rigid(source, index, own));
         }
     }
     for entry in between {

@@ -68,4 +68,27 @@ impl Sections {
             entries.push(Entry { key: name.to_owned(), key_span: span, value: node });
         }
     }
+
+    /// Adds a body. An entry of the model with nothing but `points` gives them to it, before what it has by their names; any other is
+    /// a body of its own in its place.
+    pub fn add_body(&mut self, name: &str, mut node: Node) {
+        let Some(entries) = self.of("bodies", &node.span.clone()) else { return };
+        let Some(own) = entries.iter_mut().find(|entry| entry.key == name) else {
+            return self.add("bodies", name, node);
+        };
+        let Tree::Mapping(keys) = &mut own.value.value else { return };
+        let [Entry { key, value: Node { value: Tree::Mapping(points), .. }, .. }] = keys.as_mut_slice() else { return };
+        if key != "points" {
+            return;
+        }
+        let mut points = std::mem::take(points);
+        let Tree::Mapping(of_robot) = &mut node.value else { return };
+        for entry in of_robot.iter_mut().filter(|entry| entry.key == "points") {
+            if let Tree::Mapping(known) = &mut entry.value.value {
+                known.retain(|point| points.iter().all(|own| own.key != point.key));
+                known.append(&mut points);
+            }
+        }
+        own.value = node;
+    }
 }
