@@ -29,4 +29,5 @@ mod show;
 mod snapshot;
 mod statistics;
 mod structure;
+mod tables;
 mod tolerance_forms;

@@ -65,6 +65,10 @@ impl Spec {
         if self.value.is_none() && self.interval.is_none() {
             self.value = before.value;
         }
+        if !self.is_uncertain() {
+            // What is set to one number varies no more.
+            (self.distribution, self.cost) = (None, None);
+        }
     }
 
     pub fn is_uncertain(&self) -> bool {

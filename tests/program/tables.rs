@@ -1,0 +1,84 @@
+//! Tables of sweeps, allocations and statistics as they were when they were last looked at: `snapshots/tables/`, in four digits, without
+//! errors.
+//!
+//! `INSTA_UPDATE=always cargo test --test program tables` takes changes over.
+
+use std::fs;
+use std::path::Path;
+
+use super::place::Place;
+
+/// What is smaller is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A table in four digits; columns of errors, which search by samples, left out.
+fn rounded(table: &str) -> String {
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let kept: Vec<usize> = (0..header.len()).filter(|&column| !header[column].ends_with(".error")).collect();
+    let number = |text: &str| match text.parse::<f64>() {
+        Ok(value) if value.abs() < ROUNDING => "0".to_owned(),
+        Ok(value) => format!("{value:.3e}"),
+        Err(_) => text.to_owned(),
+    };
+    let mut rows = vec![kept.iter().map(|&column| header[column].to_owned()).collect::<Vec<_>>()];
+    rows.extend(lines.map(|row| kept.iter().map(|&column| number(row[column])).collect()));
+    rows.iter().map(|row| row.join(",") + "\n").collect()
+}
+
+/// The example of the guide to statistics.
+const STATISTICS: &str = "
+model: stack
+parameters:
+  a: { value: 30 mm, tolerance: 0.1 mm, distribution: normal }
+  b: { value: 20 mm, tolerance: 0.2 mm, distribution: triangular }
+  c: { value: 51 mm, tolerance: 0.1 mm }
+  d: { value: c, tolerance: 0.01 mm }
+bodies: { block: { mass: 1, coordinates: [x] } }
+initial: { block.x: d - a - b, block.vx: 0 }
+outputs: { gap: block.x }
+simulation: { duration: 0.1, step: 0.01, output_step: 0.05 }
+statistics:
+  quantiles: [5%, 50%, 95%]
+  correlation: [{ of: [a, b], coefficient: 0.5 }]
+";
+
+#[track_caller]
+fn assert_table(name: &str, arguments: &str, status: i32, file: &str) {
+    let place = Place::new();
+    fs::write(place.path().join("stack.yaml"), STATISTICS).unwrap();
+    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/examples").display().to_string();
+    place.run(&format!("{} --quiet --output out", arguments.replace("EXAMPLES", &model)), status);
+    let table = fs::read_to_string(place.path().join("out").join(file)).unwrap();
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../../snapshots/tables");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.set_description(format!("mbint {arguments}: {file}"));
+    settings.bind(|| insta::assert_snapshot!(name, rounded(&table)));
+}
+
+#[test]
+fn a_sweep_is_that_of_the_snapshot() {
+    assert_table("sweep_one", "sweep EXAMPLES/tolerance_stack.yaml --set ring=7.95..8.05:3mm", 4, "sweep.csv");
+}
+
+#[test]
+fn a_sweep_of_two_is_that_of_the_snapshot() {
+    assert_table(
+        "sweep_two",
+        "sweep EXAMPLES/tolerance_stack.yaml --set ring=7.95..8.05:3mm --set spacer=39.9..40.1:2mm",
+        4,
+        "sweep.csv",
+    );
+}
+
+#[test]
+fn an_allocation_is_that_of_the_snapshot() {
+    assert_table("allocation", "allocate EXAMPLES/tolerance_stack.yaml", 0, "allocation.csv");
+}
+
+#[test]
+fn statistics_are_those_of_the_snapshot() {
+    assert_table("statistics", "run stack.yaml", 0, "statistics.csv");
+}
