@@ -126,8 +126,10 @@ fn reduced(all: &[ReducedSummary]) -> String {
         let shares = own.contributions.iter().filter(|own| several && own.total >= 0.005).take(3);
         let mut notes: Vec<String> =
             shares.map(|own| format!("{} {:.0} %", own.parameter, 100.0 * own.total)).collect();
-        if let Some(occurs) = own.occurs {
+        if let Some(occurs) = &own.occurs {
             notes.push(format!("occurs in {} of {} samples", occurs.samples, occurs.of));
+            let ends = own.worst.as_ref().map(|ends| ends.each_ref().map(|end| short(shown(end.value))));
+            notes.extend(ends.map(|[least, greatest]| format!("in these {least} to {greatest}")));
         } else if band(own).is_some_and(|band| band.unresolved) {
             notes.push("unreliable".to_owned());
         }

@@ -73,12 +73,15 @@ pub struct WorstCase {
 }
 
 /// How many samples have a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Occurrence {
     /// Those that have one.
     pub samples: usize,
     /// Of so many.
     pub of: usize,
+    /// Parameters of one that has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub absent: Option<Vec<f64>>,
 }
 
 impl ReducedSummary {
@@ -101,11 +104,12 @@ impl ReducedSummary {
             }
             (own, more) => own.or(more),
         };
-        if let (Some(own), Some(more)) = (&mut self.occurs, other.occurs) {
-            own.samples += more.samples;
-            own.of += more.of;
-        } else {
-            self.occurs = self.occurs.or(other.occurs);
+        match (&mut self.occurs, &other.occurs) {
+            (Some(own), Some(more)) => {
+                own.samples += more.samples;
+                own.of += more.of;
+            }
+            (own, more) => *own = own.take().or_else(|| more.clone()),
         }
     }
 }

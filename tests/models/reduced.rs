@@ -180,7 +180,7 @@ bounds: { chebyshev: { order: 5 } }
     let band = &reduced(&summary, "there").bands[0];
     assert!(band.lower > 0.2 && band.lower < 0.31 && band.upper > 0.65 && band.upper < 0.72, "{band:?}");
     let never = reduced(&summary, "never");
-    assert!(never.bands[0].unresolved && never.occurs.is_some_and(|occurs| occurs.samples > 0), "{never:?}");
+    assert!(never.bands[0].unresolved && never.occurs.as_ref().is_some_and(|occurs| occurs.samples > 0), "{never:?}");
     assert_eq!(requirement(&summary, "high").verdict, Verdict::Holds);
     // Where it does not occur, the requirement fails.
     assert_eq!(requirement(&summary, "occurs").verdict, Verdict::Violated);
@@ -288,4 +288,32 @@ bounds: { taylor: { order: 2 } }
     assert!((far.margin - 0.1).abs() < 1e-9 + far.error && far.error < 1e-9, "{far:?}");
     let nearest = far.nearest.as_ref().unwrap();
     assert!((nearest.margin - 0.1).abs() < 1e-9 && nearest.settings.len() == 2, "{nearest:?}");
+}
+
+/// A mass on a spring, thrown from rest at v: it is 0.2 m away at asin(0.2 ω/v)/ω, if v/ω reaches as far.
+#[test]
+fn an_event_that_does_not_always_occur_is_told_from_one_that_does() {
+    let text = "
+parameters: { v: 2 m/s ± 10%, k: 100 N/m ± 5% }
+bodies: { ball: { mass: 1 kg, coordinates: [x] } }
+effects: { spring: { spring_damper: { between: [ground, ball], along: x, stiffness: k, free_length: 0 } } }
+initial: { ball.x: 0, ball.vx: v }
+outputs: { x: ball.x, far: { when: ball.x > 0.2 m }, near: { when: ball.x > 0.1 m } }
+simulation: { duration: 1, step: 5e-4, output_step: 0.05 }
+bounds: { chebyshev: { order: 5 } }
+";
+    let summary = summary(&read(text));
+    let when = |v: f64, k: f64, x: f64| (x * k.sqrt() / v).asin() / k.sqrt();
+    check(&summary, "near", [when(2.2, 95.0, 0.1), when(1.8, 105.0, 0.1)], 1e-6);
+    assert_eq!(reduced(&summary, "near").occurs, None);
+    let far = reduced(&summary, "far");
+    assert!(far.bands[0].unresolved && far.bands[0].lower.is_nan(), "{far:?}");
+    let occurs = far.occurs.as_ref().unwrap();
+    assert!(0 < occurs.samples && occurs.samples < occurs.of, "{occurs:?}");
+    let Some(&[v, k]) = occurs.absent.as_deref() else { panic!("{occurs:?}") };
+    assert!(v / k.sqrt() < 0.2, "it occurs at v = {v}, k = {k}");
+    for case in far.worst.as_ref().unwrap() {
+        let expected = when(case.parameters[0], case.parameters[1], 0.2);
+        assert!((case.value - expected).abs() < 1e-4, "{case:?} instead of {expected}");
+    }
 }

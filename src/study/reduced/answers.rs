@@ -48,8 +48,9 @@ impl Parameters<'_> {
 
     /// A reduced output of a subsystem among all parameters: those that do not reach it contribute nothing.
     fn widen(self, subsystem: &Subsystem, own: &mut ReducedSummary) {
-        for case in own.worst.iter_mut().flatten() {
-            case.parameters = self.spread(subsystem, &case.parameters);
+        let cases = own.worst.iter_mut().flatten().map(|case| &mut case.parameters);
+        for sample in cases.chain(own.occurs.iter_mut().flat_map(|occurs| &mut occurs.absent)) {
+            *sample = self.spread(subsystem, sample);
         }
         let band = own.bands.iter().find(|band| band.method == Method::Chebyshev.name());
         let Some(width_without) = band.map(|band| band.upper - band.lower).filter(|_| !own.contributions.is_empty())

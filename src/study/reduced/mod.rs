@@ -266,7 +266,9 @@ impl Study<'_> {
             |(sample, values): &(Sample, Vec<f64>)| WorstCase { parameters: sample.to_vec(), value: values[place] };
         let least = known().min_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
         let greatest = known().max_by(|a, b| a.1[place].total_cmp(&b.1[place])).map(case);
-        let occurs = Occurrence { samples: known().count(), of: values.whole };
+        let absent = values.samples.iter().find(|(_, values)| values[place].is_nan());
+        let absent = absent.map(|(sample, _)| sample.to_vec());
+        let occurs = Occurrence { samples: known().count(), of: values.whole, absent };
         ReducedSummary {
             name: reduced.name.clone(),
             of: reduced.text.clone(),
