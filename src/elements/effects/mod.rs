@@ -54,6 +54,7 @@ effects! {
     rate_limit::RateLimit,
     hydraulic_cylinder::HydraulicCylinder,
     gas_spring::GasSpring,
+    tyre::Tyre,
 }
 
 /// Something that an effect measures, and what it is.

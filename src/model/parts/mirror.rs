@@ -28,7 +28,7 @@ enum Image {
 use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 31] = [
+const KINDS: [(&str, &[(&str, Image)]); 32] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -59,6 +59,7 @@ const KINDS: [(&str, &[(&str, Image)]); 31] = [
     ("dc_motor", &[("voltage", Turning), ("initial", Turning)]),
     ("hydraulic_cylinder", &[]),
     ("gas_spring", &[]),
+    ("tyre", &[("steer", Axial)]),
     (
         "contact",
         &[
