@@ -161,7 +161,7 @@ impl<S: SymbolTable> Reader<'_, S> {
     }
 
     /// What a name stands for where it may stand for that.
-    fn resolve(&self, name: &str, context: Context) -> Result<Symbol, NameError> {
+    pub fn resolve(&self, name: &str, context: Context) -> Result<Symbol, NameError> {
         match names::symbol(&self.model, name) {
             Some(symbol) => names::allowed(name, symbol, context),
             None => match self.unread_measure(name) {

@@ -29,6 +29,8 @@ impl Dimension {
     pub const LENGTH: Self = Self::of(1, 0, 0, 0);
     /// m³
     pub const VOLUME: Self = Self::of(3, 0, 0, 0);
+    /// m³/s
+    pub const VOLUME_FLOW: Self = Self::of(3, 0, -1, 0);
     /// kg
     pub const MASS: Self = Self::of(0, 1, 0, 0);
     /// s

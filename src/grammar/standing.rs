@@ -7,6 +7,9 @@ use super::symbols::{JointCoordinate, Sensor, Symbol, SymbolTable};
 use crate::syntax::scope::{Scope, Stands};
 use crate::syntax::yaml::Node;
 
+/// What effects measure along a joint's angle: in a mirror it counts the other way.
+const COUNT_BACK: [&str; 4] = [Sensor::ANGLE.name(), "integral", "filtered_rate", "current"];
+
 impl<S: SymbolTable> Reader<'_, S> {
     /// A formula of a mirrored instance, in which angles of joints count the other way.
     pub(super) fn in_mirror(&self, formula: &Formula) -> Formula {
@@ -24,7 +27,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         match (scope.map_or(Stands::AsWritten, Scope::stands), symbol) {
             (Stands::AsWritten, _) => false,
             (_, Symbol::Coordinate { .. } | Symbol::Point { .. } | Symbol::AngularMotion { .. }) => true,
-            (Stands::Mirrored, Symbol::Sensor { measure, .. }) => measure == Sensor::ANGLE,
+            (Stands::Mirrored, Symbol::Sensor { measure, .. }) => COUNT_BACK.contains(&measure.name()),
             _ => false,
         }
     }

@@ -358,7 +358,7 @@ impl Sensor {
     }
 
     /// Its name, as in `spring.length`.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         self.name
     }
 

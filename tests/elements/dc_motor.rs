@@ -55,3 +55,37 @@ fn without_inductance_it_is_a_lag() {
         assert!((band.upper[last] - ends[1]).abs() < exact + 1.01 * band.error.total[last]);
     }
 }
+
+/// A motor and its controller in an image turn the other way.
+#[test]
+fn an_image_turns_the_other_way() {
+    let text = "
+assemblies:
+  arm:
+    bodies: { arm: { mass: 1, inertia: 0.3, points: { end: [0.4, 0] } }, hand: { mass: 0.2, inertia: 0.02 } }
+    joints: { hinge: { revolute: [ground, arm] }, wrist: { revolute: [arm.end, hand] } }
+    effects:
+      motor: { dc_motor: { on: hinge, voltage: 20 - 15*hinge.angle, limit: 12, resistance: 0.8, inductance: 4e-3, constant: 0.05, ratio: 20, initial: 1 } }
+      holder: { pid: { on: wrist, target: 0.5 + 0.1*t, proportional: 2, integral: 3, derivative: 0.2, filter: 10 ms, limit: 0.4 N*m, initial: 0.1 N*m } }
+    initial: { hinge.angle: 0.1, hinge.angular_velocity: 0, wrist.angle: 0, wrist.angular_velocity: 0 }
+instances: { one: { of: arm }, two: { of: arm, mirror: y }, three: { of: arm, mirror: x } }
+outputs:
+  a: one.hinge.angle
+  b: two.hinge.angle
+  c: three.hinge.angle
+  current: one.motor.current
+  its: two.motor.current
+  wrist: one.wrist.angle
+  image: two.wrist.angle
+  torque: one.holder.torque
+  other: two.holder.torque
+simulation: { duration: 0.4, step: 1e-3, output_step: 0.02 }
+";
+    let bounds = nominal(&read(text));
+    for (name, other) in [("a", "b"), ("a", "c"), ("current", "its"), ("wrist", "image"), ("torque", "other")] {
+        let [one, two] = [name, other].map(|name| curve(&bounds, name));
+        assert!(crate::common::largest(one.iter().zip(two).map(|(one, two)| one + two)) < 1e-9);
+        // The holder's torque is at its limit.
+        assert!(name == "torque" || crate::common::largest(one.iter().map(|value| value - one[0])) > 0.01, "{name}: {one:?}");
+    }
+}

@@ -90,3 +90,31 @@ simulation: { duration: 12, step: 2e-3, output_step: 1 }
         assert_eq!(output(&bounds, name).unit, if name == "y" { "m" } else { "N" });
     }
 }
+
+/// A target that follows another joint, with the rate of that: what `states` and a torque write out.
+#[test]
+fn a_target_may_follow_a_joint() {
+    let text = |states: &str, drive: &str| {
+        format!(
+            "
+bodies: {{ arm: {{ mass: 1, inertia: 0.5 }}, other: {{ mass: 1, inertia: 0.3 }} }}
+joints: {{ hinge: {{ revolute: [ground, arm] }}, leader: {{ revolute: [ground, other] }} }}
+{states}
+effects:
+  wire: {{ torsional_spring_damper: {{ on: leader, stiffness: 5 }} }}
+  drive: {{ {drive} }}
+initial: {{ hinge.angle: 0, hinge.angular_velocity: 0, leader.angle: 0.6, leader.angular_velocity: 0 }}
+outputs: {{ s: arm.angle }}
+simulation: {{ duration: 2, step: 1e-3, output_step: 0.05 }}
+"
+        )
+    };
+    let own = text("", "pid: { on: hinge, target: 2*leader.angle, target_rate: 2*leader.angular_velocity, proportional: 20, integral: 30, derivative: 4 }");
+    let written = text(
+        "states: { I: { rate: 30 N*m/s*(2*leader.angle - hinge.angle), initial: 0 N*m } }",
+        "torque: { on: hinge, value: 20 N*m*(2*leader.angle - hinge.angle) + I + 4 N*m*s*(2*leader.angular_velocity - hinge.angular_velocity) }",
+    );
+    let [own, written] = [own, written].map(|text| nominal(&read(&text)));
+    assert!(distance(curve(&own, "s"), curve(&written, "s")) < 1e-9);
+    assert!(curve(&own, "s").iter().any(|s| s.abs() > 0.5), "it moves");
+}

@@ -1,7 +1,8 @@
 //! Servos: step response and limit.
 
 use crate::common::power::{assert_balance, pair};
-use crate::common::{Vary, curve, distance_from, nominal, read, richardson};
+use crate::common::{Vary, band, curve, distance, distance_from, nominal, output, read, richardson, run};
+use mbint::inner::results::Method;
 
 /// J θ̈ + k_d θ̇ + k_p θ = k_p θ₀ from rest: the step response of a damped oscillator.
 #[test]
@@ -45,4 +46,30 @@ simulation: { duration: 1, step: 1e-3, output_step: 0.01 }
 #[test]
 fn its_power_is_torque_times_rate() {
     assert_balance(&pair("  j: { revolute: [a.P, b.P] }", "  e: { servo: { on: j, target: 0.5, proportional: 40, derivative: 1.2 } }", "  j.angle: 0.3\n  j.angular_velocity: -0.8"), "(40*(0.5 - j.angle) - 1.2*j.angular_velocity)*j.angular_velocity");
+}
+
+/// A target may be a state: an arm that follows a lagging command is what `states` and a torque write out, with a gain that is uncertain.
+#[test]
+fn a_target_may_follow_a_state() {
+    let text = |drive: &str| {
+        format!(
+            "
+parameters: {{ k: {{ value: 20, unit: N*m/rad, tolerance: 10% }} }}
+bodies: {{ arm: {{ mass: 1, inertia: 0.5 }} }}
+joints: {{ hinge: {{ revolute: [ground, arm] }} }}
+states: {{ command: {{ rate: (1 rad - command)/(0.2 s), initial: 0 rad }} }}
+effects: {{ drive: {{ {drive} }} }}
+initial: {{ hinge.angle: 0.1, hinge.angular_velocity: 0 }}
+outputs: {{ s: arm.angle }}
+simulation: {{ duration: 1, step: 1e-3, output_step: 0.05 }}
+"
+        )
+    };
+    let servo = "servo: { on: hinge, target: command, target_rate: (1 rad - command)/(0.2 s), proportional: k, derivative: 3 }";
+    let written = "torque: { on: hinge, value: k*(command - hinge.angle) + 3 N*m*s/rad*((1 rad - command)/(0.2 s) - hinge.angular_velocity) }";
+    let [servo, written] = [servo, written].map(|drive| run(&read(&text(drive))));
+    let bands = [&servo, &written].map(|bounds| band(output(bounds, "s"), Method::Chebyshev));
+    assert!(distance(&bands[0].lower, &bands[1].lower) < 1e-10 && distance(&bands[0].upper, &bands[1].upper) < 1e-10);
+    // Without derivative nothing asks for the rate.
+    nominal(&read(&text("servo: { on: hinge, target: 2*command, proportional: k }")));
 }

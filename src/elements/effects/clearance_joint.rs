@@ -62,7 +62,7 @@ impl ForceElement for ClearanceJoint {
         let shape = Shape::Hollow(clearance);
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
-        Touch { shape, radius, axis, impact, friction }.act(forces, (&pair, centre)).measured(forces);
+        Touch { shape, radius, axis, impact, friction, along: None }.act(forces, (&pair, centre)).measured(forces);
         Ok(())
     }
 }

@@ -5,6 +5,7 @@
 //! round, radius R:              gap = |d| − R − r,     n = d/|d|,      d = r_B − r_A
 //! hollow, radius R > r:         gap = R − r − |d|,     n = −d/|d|
 //! edges, rounding ρ:            see `outline`
+//! capsule, block, rounding ρ:   see `solid`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
 //! ```
 //!
@@ -22,14 +23,15 @@ use super::dry_friction::Resistance;
 use super::felt::{Felt, SENSORS};
 use super::impact::Push;
 use super::outline::{Outline, Points, placed};
-use super::{ForceElement, Forces, Friction, Impact, TypedSensor};
-use crate::grammar::{Axis, Checked, Direction, Fields, PointRef, Reader, SymbolTable};
+use super::solid::{self, Gap, Solid};
+use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
+use crate::grammar::{Axis, Checked, Components, Direction, Fields, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Pair, Vector};
 
 /// ε over R − r.
 const CENTRED: f64 = 1e-4;
 
-/// Contact of a plane, circle, sphere or cylinder on one body with a circle, sphere, cylinder or point on another.
+/// Contact of a plane, a circle, a sphere, a cylinder, a capsule, a block or edges on one body with a circle, sphere, cylinder or point on another.
 #[derive(Clone, Debug, Element)]
 #[element(
     keyword = "contact",
@@ -59,7 +61,13 @@ pub struct Contact {
     /// Instead of `plane`: corners of a closed line of straight edges, in their order.
     #[quantity(unit = "m", constant)]
     pub polygon: Option<Points>,
-    /// How far the surface lies outside of a `path` or `polygon`.
+    /// Instead of `plane`: both ends of the line in the middle of a capsule, in the first point's frame; its radius is the `rounding`.
+    #[quantity(unit = "m", constant)]
+    pub capsule: Option<Points>,
+    /// Instead of `plane`: lengths of a block along the axes of the first point's frame, about that point.
+    #[quantity(unit = "m", constant)]
+    pub block: Option<Components>,
+    /// How far the surface lies outside of a `path`, `polygon`, `capsule` or `block`.
     #[quantity(unit = "m", constant, nonnegative, default = 0)]
     pub rounding: Formula,
     /// Points of the second point's frame that touch, each with the `radius`.
@@ -73,10 +81,13 @@ pub struct Contact {
     /// How they resist sliding.
     #[key(otherwise = "not at all")]
     pub friction: Option<Friction>,
+    /// Another coefficient of friction along one direction.
+    #[key(otherwise = "all directions are alike")]
+    pub friction_along: Option<FrictionAlong>,
 }
 
 /// Keys of the first body's surface.
-const SURFACES: [&str; 5] = ["plane", "circle", "hollow", "path", "polygon"];
+const SURFACES: [&str; 7] = ["plane", "circle", "hollow", "path", "polygon", "capsule", "block"];
 
 impl ForceElement for Contact {
     const RESISTS: bool = true;
@@ -87,16 +98,27 @@ impl ForceElement for Contact {
         let direction = |formulas: &[Formula; 3]| forces.prescribed_vector(formulas).map(Vector::unit);
         let axis = self.axis.as_ref().filter(|_| forces.is_spatial()).map(|axis| direction(axis)).transpose()?;
         let corners = self.corners.as_ref().map(|corners| placed(forces, corners)).transpose()?;
-        let surface = match (&self.plane, &self.circle, &self.hollow, &self.path, &self.polygon) {
-            (Some(normal), ..) => Surface::Whole(Shape::Plane(direction(normal)?)),
-            (_, Some(outer), ..) => Surface::Whole(Shape::Round(forces.prescribed(outer)?)),
-            (_, _, Some(bore), ..) => Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius)),
-            (.., Some(points), _) => Surface::Edges(self.outline(forces, points, false)?),
-            (.., Some(points)) => Surface::Edges(self.outline(forces, points, true)?),
-            _ => return Ok(()),
+        let surface = if let Some(normal) = &self.plane {
+            Surface::Whole(Shape::Plane(direction(normal)?))
+        } else if let Some(outer) = &self.circle {
+            Surface::Whole(Shape::Round(forces.prescribed(outer)?))
+        } else if let Some(bore) = &self.hollow {
+            Surface::Whole(Shape::Hollow(forces.prescribed(bore)? - radius))
+        } else if let Some(points) = &self.path {
+            Surface::Edges(self.outline(forces, points, false)?)
+        } else if let Some(points) = &self.polygon {
+            Surface::Edges(self.outline(forces, points, true)?)
+        } else if let Some(solid) = self.solid(forces)? {
+            Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + radius))
+        } else {
+            return Ok(());
         };
         let impact = Push::of(forces, &self.impact)?;
         let friction = self.friction.as_ref().map(|friction| friction.resistance(forces)).transpose()?;
+        let along = match &self.friction_along {
+            Some(along) => Some((direction(&along.direction)?, forces.value(&along.coefficient)?)),
+            None => None,
+        };
         let pair = forces.pair(self.between);
         let centre = pair.second.point.position;
         let centres = corners.map_or_else(
@@ -105,7 +127,7 @@ impl ForceElement for Contact {
         );
         let felt = centres.into_iter().map(|centre| match &surface {
             &Surface::Whole(shape) => {
-                Touch { shape, radius, axis, impact, friction }.act(forces, (&pair, centre))
+                Touch { shape, radius, axis, impact, friction, along }.act(forces, (&pair, centre))
             }
             Surface::Edges(outline) => outline.apply(forces, (&pair, centre), &impact, friction.as_ref()),
         });
@@ -117,6 +139,17 @@ impl ForceElement for Contact {
 }
 
 impl Contact {
+    fn solid<'g>(&self, forces: &dyn Forces<'g>) -> Result<Option<Solid<'g>>, BuildError> {
+        if let Some(ends) = &self.capsule {
+            let ends = placed(forces, ends)?;
+            return Ok(ends.first().zip(ends.last()).map(|(start, end)| Solid::between(*start, *end)));
+        }
+        let Some(lengths) = &self.block else { return Ok(None) };
+        let half = forces.prescribed_vector(lengths)?.map(|length| 0.5 * length).components().map(Some);
+        let [x, y, z] = half;
+        Ok(Some(Solid::Block { half: [x, y, z.filter(|_| forces.is_spatial())] }))
+    }
+
     fn outline<'g>(
         &self,
         forces: &dyn Forces<'g>,
@@ -132,13 +165,27 @@ impl Contact {
 impl Checked for Contact {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         let given = SURFACES.into_iter().filter(|key| fields.get(key).is_some());
+        if fields.get("friction_along").is_some() {
+            let at = fields.key_span("friction_along");
+            if fields.get("friction").is_none() {
+                reader.error(at, "`friction_along` needs `friction`, which holds across it", None);
+            } else if let Some(edges) = ["path", "polygon"].into_iter().find(|key| fields.get(key).is_some()) {
+                reader.error(at, format!("`friction_along` does not go with `{edges}`"), None);
+            }
+        }
         match given.collect::<Vec<_>>().as_slice() {
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
-                let message = "a contact needs `plane`, `circle`, `hollow`, `path` or `polygon`";
+                let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `capsule` or `block`";
                 reader.error(fields.at.clone(), message, help);
             }
-            [edges @ ("path" | "polygon")] => {
+            ["capsule"] => {
+                if fields.get("rounding").is_none() {
+                    let message = "a `capsule` needs `rounding`, which is its radius";
+                    reader.error(fields.key_span("capsule"), message, None);
+                }
+            }
+            [edges @ ("path" | "polygon" | "block")] => {
                 if ["rounding", "radius"].into_iter().all(|key| fields.get(key).is_none()) {
                     let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
                     let help = "surfaces are told apart to that depth".to_owned();
@@ -147,7 +194,7 @@ impl Checked for Contact {
             }
             [surface] => {
                 if fields.get("rounding").is_some() {
-                    let message = format!("`rounding` goes with `path` or `polygon`, not with `{surface}`");
+                    let message = format!("`rounding` goes with `path`, `polygon`, `capsule` or `block`, not with `{surface}`");
                     reader.error(fields.key_span("rounding"), message, None);
                 }
             }
@@ -162,6 +209,12 @@ impl Checked for Contact {
             if let Some(points) = points {
                 points.check_edges(reader, fields.key_span(key), (key, least));
             }
+        }
+        if let Some(ends) = &self.capsule {
+            solid::check_ends(reader, fields.key_span("capsule"), ends);
+        }
+        if let Some(lengths) = &self.block {
+            solid::check_lengths(reader, fields.key_span("block"), lengths);
         }
     }
 }
@@ -181,6 +234,8 @@ pub(super) enum Shape<'g> {
     Round(Scalar<'g>),
     /// R − r, m
     Hollow(Scalar<'g>),
+    /// With ρ + r, m
+    Solid(Solid<'g>, Scalar<'g>),
 }
 
 /// Two surfaces and what they do to one another.
@@ -193,17 +248,8 @@ pub(super) struct Touch<'g> {
     pub axis: Option<Vector<'g>>,
     pub impact: Push<'g>,
     pub friction: Option<Resistance<'g>>,
-}
-
-/// Where two surfaces are to one another.
-#[derive(Clone, Copy, Debug)]
-struct Gap<'g> {
-    /// How far they are apart, m.
-    gap: Scalar<'g>,
-    /// The direction in which the second is pushed.
-    normal: Vector<'g>,
-    /// Positive where they overlap; as few operations as tell.
-    overlap: Scalar<'g>,
+    /// A unit vector in the first frame and the coefficient of friction along it.
+    pub along: Option<(Vector<'g>, Scalar<'g>)>,
 }
 
 impl<'g> Touch<'g> {
@@ -222,7 +268,13 @@ impl<'g> Touch<'g> {
         if let Some(friction) = &self.friction {
             let sliding = velocity - parting * normal;
             let resistance = friction.by_speed(sliding.dot(sliding));
-            let drag = friction.coefficient * push * resistance * sliding;
+            let mut drag = friction.coefficient * push * resistance * sliding;
+            if let Some((direction, coefficient)) = self.along {
+                let direction = pair.outward(direction);
+                let direction = direction - direction.dot(normal) * normal;
+                let excess = (coefficient - friction.coefficient) * push * resistance;
+                drag += excess * direction.dot(sliding) * direction;
+            }
             force = force - drag;
             let felt = if forces.is_spatial() {
                 drag.norm()
@@ -264,6 +316,7 @@ impl<'g> Touch<'g> {
                 let square_of_clearance = clearance * clearance;
                 Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward }
             }
+            Shape::Solid(solid, reach) => solid.gap(pair, offset, reach),
         }
     }
 

@@ -8,12 +8,15 @@
 //! u/√(|u|² + u₀²) (Oden & Martins, Comput. Methods Appl. Mech. Eng. 52 (1985) 527), which is smooth and falls short of it by
 //! ½(u₀/u)²; s is that of Armstrong-Hélouvry, *Control of Machines with Friction* (1991). What sticks creeps: under a part κ
 //! of the friction that it could bear at u₀ κ/√(1 − κ²).
+//!
+//! With another coefficient μ_e along a direction e, μ u becomes μ u + (μ_e − μ) (e · u) e: an ellipse of friction, of which the force
+//! stands against u along its axes alone (Zmitrowicz, Int. J. Solids Struct. 25 (1989) 837).
 
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
 use super::Forces;
-use crate::grammar::{Checked, Fields, Reader, Requirement, SymbolTable};
+use crate::grammar::{Checked, Direction, Fields, Reader, Requirement, SymbolTable};
 use crate::multibody::BuildError;
 
 const AT_LEAST_SLIDING: Requirement = Requirement {
@@ -31,6 +34,17 @@ pub struct Friction {
     /// How it depends on the speed.
     #[group]
     pub speed: DryFriction,
+}
+
+/// Another coefficient of friction along a direction.
+#[derive(Clone, Debug, Element)]
+#[element(what = "`friction_along`")]
+pub struct FrictionAlong {
+    /// Along the surface, in the first point's frame.
+    pub direction: Direction,
+    /// Over the force across the contact, while sliding along that direction; `friction` holds across it.
+    #[quantity(unit = "1", constant, nonnegative)]
+    pub coefficient: Formula,
 }
 
 /// How dry friction depends on the speed of sliding.

@@ -6,17 +6,19 @@
 mod dry_friction;
 mod felt;
 mod forces;
+mod goal;
 mod impact;
 mod outline;
 mod positive_part;
 mod registry;
 mod saturation;
+mod solid;
 mod spatial_beam;
 
 use schemars::JsonSchema;
 use symdiff::Formula;
 
-pub use self::dry_friction::{DryFriction, Friction};
+pub use self::dry_friction::{DryFriction, Friction, FrictionAlong};
 pub use self::forces::Forces;
 pub use self::impact::Impact;
 #[cfg(test)]
@@ -49,6 +51,10 @@ effects! {
     pid::Pid,
     dc_motor::DcMotor,
     filter::Filter,
+    rate_limit::RateLimit,
+    hydraulic_cylinder::HydraulicCylinder,
+    gas_spring::GasSpring,
+    tyre::Tyre,
 }
 
 /// Something that an effect measures, and what it is.

@@ -14,11 +14,12 @@ use std::sync::LazyLock;
 use mbint_derive::Element;
 use symdiff::Formula;
 
+use super::goal::{check_rate, goal};
 use super::saturation::saturated;
 use super::{ForceElement, Forces, StateVariable, TypedSensor, effort};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{JointCoordinate, OnJoint, Sensor};
+use crate::grammar::{Checked, Fields, JointCoordinate, OnJoint, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
 /// I.
@@ -36,15 +37,19 @@ static ZERO: LazyLock<Formula> = LazyLock::new(|| Formula::number(0.0));
     what = "a PID controller",
     equation = "f = sat(u),  u = k_p e + I + k_d d,  e = target − s,  İ = k_i e + (f − u)/T_t,  ḋ = (ė − d)/T_f",
     source = "Åström & Murray, Feedback Systems, 2nd ed. (2021), sec. 11.4",
-    example = "{ on: hinge, target: 0.5, proportional: 200, integral: 400, derivative: 8, filter: 5 ms, limit: 30 N*m }"
+    example = "{ on: hinge, target: 0.5, proportional: 200, integral: 400, derivative: 8, filter: 5 ms, limit: 30 N*m }",
+    checked
 )]
 pub struct Pid {
     /// The joint's coordinate.
     #[group]
     on: OnJoint,
-    /// What the coordinate should be; may depend on t.
-    #[quantity(unit = "m or rad", time)]
+    /// What the coordinate should be; may depend on t, states, positions and velocities.
+    #[quantity(unit = "m or rad")]
     target: Formula,
+    /// How fast the target changes, where it depends on more than t.
+    #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
+    target_rate: Option<Formula>,
     /// Force by error.
     #[quantity(unit = "N/m or N*m/rad", positive)]
     proportional: Formula,
@@ -97,12 +102,12 @@ impl ForceElement for Pid {
     }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let target = forces.prescribed(&self.target)?;
+        let [target, target_rate] = goal(forces, &self.target, self.target_rate.as_ref())?;
         let proportional = forces.value(&self.proportional)?;
         let gain = forces.value(&self.integral)?;
         let derivative = forces.value(&self.derivative)?;
         let [place, rate] = forces.coordinate_and_rate(self.on);
-        let (error, error_rate) = (target - place, target.derivative(forces.time()) - rate);
+        let (error, error_rate) = (target - place, target_rate - rate);
         let felt_rate = match &self.filter {
             None => error_rate,
             Some(filter) => {
@@ -126,5 +131,11 @@ impl ForceElement for Pid {
         forces.state_rate(0, change);
         forces.sensor(Sensor::of_effort(self.on.coordinate), effort);
         forces.effort(self.on, effort)
+    }
+}
+
+impl Checked for Pid {
+    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        check_rate(reader, fields, &self.target, &["derivative", "filter"]);
     }
 }

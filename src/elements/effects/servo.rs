@@ -5,16 +5,17 @@
 //! sat(x) = ½ [√((x + L)² + ε²) − √((x − L)² + ε²)],   ε = L/100
 //! ```
 //!
-//! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. The target is a formula of t.
+//! sat is x well within the limit L (its derivative there is 1 − 5·10⁻⁵), L beyond, and smooth between. d target/dt is `target_rate` where it is said.
 
 use mbint_derive::Element;
 use symdiff::Formula;
 
+use super::goal::{check_rate, goal};
 use super::saturation::saturated;
 use super::{ForceElement, Forces, TypedSensor, effort};
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
-use crate::grammar::{Sensor, OnJoint};
+use crate::grammar::{Checked, Fields, OnJoint, Reader, Sensor, SymbolTable};
 use crate::multibody::BuildError;
 
 /// A drive that controls a joint's coordinate, with a limit.
@@ -24,15 +25,19 @@ use crate::multibody::BuildError;
     what = "a servo",
     equation = "f = sat(k_p (target − s) + k_d (d target/dt − ṡ))",
     source = "Åström & Murray, Feedback Systems, 2nd ed. (2021)",
-    example = "{ on: hinge, target: 0.5*sin(2*t), proportional: 200, derivative: 8, limit: 30 N*m }"
+    example = "{ on: hinge, target: 0.5*sin(2*t), proportional: 200, derivative: 8, limit: 30 N*m }",
+    checked
 )]
 pub struct Servo {
     /// The joint's coordinate.
     #[group]
     on: OnJoint,
-    /// What the coordinate should be; may depend on t.
-    #[quantity(unit = "m or rad", time)]
+    /// What the coordinate should be; may depend on t, states, positions and velocities.
+    #[quantity(unit = "m or rad")]
     target: Formula,
+    /// How fast the target changes, where it depends on more than t.
+    #[quantity(unit = "m/s or rad/s", otherwise = "the target's derivative by t")]
+    target_rate: Option<Formula>,
     /// Force by error.
     #[quantity(unit = "N/m or N*m/rad")]
     proportional: Formula,
@@ -57,10 +62,9 @@ impl ForceElement for Servo {
     }
 
     fn apply<'g>(&self, forces: &mut dyn Forces<'g>) -> Result<(), BuildError> {
-        let target = forces.prescribed(&self.target)?;
+        let [target, target_rate] = goal(forces, &self.target, self.target_rate.as_ref())?;
         let proportional = forces.value(&self.proportional)?;
         let derivative = forces.value(&self.derivative)?;
-        let target_rate = target.derivative(forces.time());
         let [place, rate] = forces.coordinate_and_rate(self.on);
         let mut effort = proportional * (target - place) + derivative * (target_rate - rate);
         if let Some(limit) = &self.limit {
@@ -68,5 +72,11 @@ impl ForceElement for Servo {
         }
         forces.sensor(Sensor::of_effort(self.on.coordinate), effort);
         forces.effort(self.on, effort)
+    }
+}
+
+impl Checked for Servo {
+    fn check<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
+        check_rate(reader, fields, &self.target, &["derivative"]);
     }
 }

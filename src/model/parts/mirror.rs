@@ -17,16 +17,18 @@ enum Image {
     Axial,
     /// A list of polar vectors.
     Polars,
+    /// A mapping with a polar vector `direction`.
+    Directed,
     /// A number that counts the other way where the joint of `on` turns, or there is none.
     Turning,
     /// The name of its key changes place with the other's, and it counts the other way.
     End,
 }
 
-use Image::{Axial, End, Polar, Polars, Turning};
+use Image::{Axial, Directed, End, Polar, Polars, Turning};
 
 /// Kinds of joints and effects that can be mirrored, with the keys whose values have another image than themselves.
-const KINDS: [(&str, &[(&str, Image)]); 26] = [
+const KINDS: [(&str, &[(&str, Image)]); 32] = [
     ("revolute", &[("axis", Polar)]),
     ("prismatic", &[("axis", Polar), ("angle", Turning)]),
     ("spherical", &[]),
@@ -44,7 +46,7 @@ const KINDS: [(&str, &[(&str, Image)]); 26] = [
     ("force", &[("value", Polar)]),
     ("joint_friction", &[]),
     ("stop", &[("lower", End), ("upper", End)]),
-    ("servo", &[("target", Turning)]),
+    ("servo", &[("target", Turning), ("target_rate", Turning)]),
     ("torsional_spring_damper", &[("free_angle", Turning), ("torque", Turning)]),
     ("clearance_joint", &[("axis", Polar)]),
     ("torque", &[("value", Axial)]),
@@ -52,6 +54,12 @@ const KINDS: [(&str, &[(&str, Image)]); 26] = [
     ("gravity", &[]),
     ("preload", &[]),
     ("filter", &[]),
+    ("rate_limit", &[]),
+    ("pid", &[("target", Turning), ("target_rate", Turning), ("initial", Turning)]),
+    ("dc_motor", &[("voltage", Turning), ("initial", Turning)]),
+    ("hydraulic_cylinder", &[]),
+    ("gas_spring", &[]),
+    ("tyre", &[("steer", Axial)]),
     (
         "contact",
         &[
@@ -61,6 +69,7 @@ const KINDS: [(&str, &[(&str, Image)]); 26] = [
             ("polygon", Polars),
             ("capsule", Polars),
             ("corners", Polars),
+            ("friction_along", Directed),
         ],
     ),
 ];
@@ -107,6 +116,11 @@ impl Writer<'_, '_> {
                 Polars => {
                     if let Value::Sequence(items) = &mut key.value.value {
                         items.iter_mut().for_each(|item| polar(item, axis));
+                    }
+                }
+                Directed => {
+                    if let Value::Mapping(keys) = &mut key.value.value {
+                        keys.iter_mut().filter(|key| key.key == "direction").for_each(|key| polar(&mut key.value, axis));
                     }
                 }
                 Turning if is_turning => negate(&mut key.value),

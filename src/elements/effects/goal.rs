@@ -1,0 +1,40 @@
+//! What a drive's coordinate should be, and how fast that changes.
+//!
+//! The rate of a target that depends on t alone is its derivative by t. Of one that follows states or a motion it is a formula of its
+//! own, `target_rate`: the target's derivative would need rates and accelerations.
+
+use symdiff::{Formula, Scalar};
+
+use super::Forces;
+use crate::grammar::{Context, Fields, Reader, SymbolTable};
+use crate::multibody::BuildError;
+
+/// A target and its rate.
+pub(super) fn goal<'g>(
+    forces: &dyn Forces<'g>,
+    target: &Formula,
+    rate: Option<&Formula>,
+) -> Result<[Scalar<'g>; 2], BuildError> {
+    let target = forces.value(target)?;
+    let rate = match rate {
+        Some(rate) => forces.value(rate)?,
+        None => target.derivative(forces.time()),
+    };
+    Ok([target, rate])
+}
+
+/// Reports a target of more than t whose rate one of the keys needs and nothing says.
+pub(super) fn check_rate<S: SymbolTable>(
+    reader: &mut Reader<'_, S>,
+    fields: &Fields<'_>,
+    target: &Formula,
+    keys: &[&str],
+) {
+    let Some(key) = keys.iter().find(|key| fields.get(key).is_some()) else { return };
+    let moving = target.names().find(|(name, _)| reader.resolve(name, Context::Time).is_err());
+    if let Some((name, _)) = moving.filter(|_| fields.get("target_rate").is_none()) {
+        let message = format!("`target` follows `{}`, so its rate is not known", crate::syntax::suggest::clip(name));
+        let help = format!("`{key}` needs it: say `target_rate`");
+        reader.error(fields.key_span("target"), message, help);
+    }
+}
