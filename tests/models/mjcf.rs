@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use mbint::inner::model::{self, Description, Reading};
 
-use crate::common::{Findings, curve, distance, largest, load, nominal, rows};
+use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
 const ROBOTS: [(&str, &str); 8] = [
@@ -102,4 +102,22 @@ fn inertias_of_geoms_follow_the_mass() {
         curve(&nominal(&description(files.with(&yaml))), "hinge").to_vec()
     };
     assert!(distance(&angles("2"), &angles("7")) < 1e-9);
+}
+
+/// MuJoCo 4.0.0, `implicitfast` at 1e-5 s, contacts off: joints and the crate's floor after each second; it is of order one.
+#[test]
+fn a_crane_moves_as_mujoco_says() {
+    let bounds = nominal(&crate::common::model("crane"));
+    let wanted = [
+        (1.0, [0.18612467, 0.063016236, -0.0058981674, -0.032910286, 0.26071602]),
+        (2.0, [1.1613674, 0.16381799, -0.0066289721, 0.70392536, 0.29022889]),
+        (3.0, [1.9951626, -0.24593244, -0.00022306089, 2.6057226, 0.32204572]),
+        (4.0, [2.1038881, -0.15255151, -0.0050745657, 2.483967, 0.27773817]),
+    ];
+    for (time, values) in wanted {
+        for (name, value) in ["trolley", "swing", "sway", "floor_x", "floor_z"].into_iter().zip(values) {
+            let found = curve(&bounds, name)[row(&bounds, time)];
+            assert!((found - value).abs() < 1e-5, "{name} at {time}: {found}, not {value}");
+        }
+    }
 }
