@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use mbint::inner::model::{self, Description, Reading};
 
-use crate::common::{Findings, curve, distance, largest, load, nominal, rows};
+use crate::common::{Findings, curve, distance, largest, load, nominal, row, rows};
 
 /// Files of the tests with commands to their actuators.
 const ROBOTS: [(&str, &str); 8] = [
@@ -121,4 +121,22 @@ fn the_model_gives_points_to_bodies() {
     let [x, z] = expected(0.3, 0.1);
     assert!(distance(curve(&bounds, "x"), &x) < 1e-12 && distance(curve(&bounds, "z"), &z) < 1e-12);
     assert!(distance(curve(&bounds, "mark"), &expected(0.1, 0.0)[0]) < 1e-12);
+}
+
+/// MuJoCo 4.0.0, `implicitfast` at 1e-5 s, contacts off: joints and the crate's floor after each second; it is of order one.
+#[test]
+fn a_crane_moves_as_mujoco_says() {
+    let bounds = nominal(&crate::common::model("crane"));
+    let wanted = [
+        (1.0, [0.18612467, 0.063016236, -0.0058981674, -0.032910286, 0.26071602]),
+        (2.0, [1.1613674, 0.16381799, -0.0066289721, 0.70392536, 0.29022889]),
+        (3.0, [1.9951626, -0.24593244, -0.00022306089, 2.6057226, 0.32204572]),
+        (4.0, [2.1038881, -0.15255151, -0.0050745657, 2.483967, 0.27773817]),
+    ];
+    for (time, values) in wanted {
+        for (name, value) in ["trolley", "swing", "sway", "floor_x", "floor_z"].into_iter().zip(values) {
+            let found = curve(&bounds, name)[row(&bounds, time)];
+            assert!((found - value).abs() < 1e-5, "{name} at {time}: {found}, not {value}");
+        }
+    }
 }

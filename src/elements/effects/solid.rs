@@ -138,7 +138,8 @@ pub(super) fn check_lengths<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span
     let needed = if reader.model.is_spatial() { 3 } else { 2 };
     for corner in 0..reader.corners.len() {
         let lengths = lengths[..needed].iter().map(|length| reader.evaluate(length, corner));
-        if let Some((axis, length)) = lengths.enumerate().find(|(_, length)| length.is_some_and(|length| length <= 0.0)) {
+        if let Some((axis, length)) = lengths.enumerate().find(|(_, length)| length.is_some_and(|length| length <= 0.0))
+        {
             let (axis, length) = (["x", "y", "z"][axis], length.unwrap_or_default());
             let label = &reader.corners[corner].label;
             let message = format!("a `block` has a length above 0 along {axis}, not {length}{label}");

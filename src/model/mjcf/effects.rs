@@ -41,6 +41,10 @@ pub fn add(
     robot.actuators.iter().for_each(|actuator| drive(sections, source, actuator, controls));
     robot.equalities.iter().for_each(|equality| couple(sections, source, equality));
     for entry in controls {
+        if entry.value.scalar().is_none() {
+            let message = format!("a number or a formula belongs here, but here is {}", entry.value.kind());
+            diagnostics.push(Diagnostic::error(entry.value.span.clone(), message));
+        }
         if !robot.actuators.iter().any(|actuator| actuator.name == entry.key) {
             let names = robot.actuators.iter().map(|actuator| actuator.name.as_str());
             let help = suggest::help(&entry.key, "actuators", names);

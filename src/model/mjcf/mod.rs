@@ -98,10 +98,8 @@ pub fn write_out(reader: &mut Reader, root: &Node, model: &Path, overrides: &[(O
     }
     let source = Source::new(&robot, &named);
     let limits = own.iter().find(|entry| entry.key == "limits");
-    let controls = match own.iter().find(|entry| entry.key == "controls").map(|entry| &entry.value.value) {
-        Some(Value::Mapping(entries)) => entries.as_slice(),
-        _ => &[],
-    };
+    let controls = own.iter().find(|entry| entry.key == "controls");
+    let controls = controls.map_or(&[][..], |entry| reader.entries(&entry.value, "controls"));
     build::bodies(&mut sections, &source);
     effects::add(&mut sections, &source, limits, controls, reader.diagnostics);
     start::start(&mut sections, &source);

@@ -120,7 +120,9 @@ impl Writer<'_, '_> {
                 }
                 Directed => {
                     if let Value::Mapping(keys) = &mut key.value.value {
-                        keys.iter_mut().filter(|key| key.key == "direction").for_each(|key| polar(&mut key.value, axis));
+                        keys.iter_mut()
+                            .filter(|key| key.key == "direction")
+                            .for_each(|key| polar(&mut key.value, axis));
                     }
                 }
                 Turning if is_turning => negate(&mut key.value),
