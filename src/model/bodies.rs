@@ -273,7 +273,7 @@ fn prescribed(
 
 fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     let Some(node) = fields.get("points") else { return };
-    for (index, entry) in reader.entries(node, "points").iter().enumerate() {
+    for (index, entry) in reader.named_entries(node, "points").iter().enumerate() {
         if reader.name(entry, "a point") && is_motion(&entry.key) {
             let message = format!("`{}` cannot be the name of a point: it is a part of the body's motion", entry.key);
             reader.error(entry.key_span.clone(), message, None);

@@ -133,13 +133,14 @@ impl Checked for Contact {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         let given = SURFACES.into_iter().filter(|key| fields.get(key).is_some());
         match given.collect::<Vec<_>>().as_slice() {
+            [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
                 let message = "a contact needs `plane`, `circle`, `hollow`, `path` or `polygon`";
                 reader.error(fields.at.clone(), message, help);
             }
             [edges @ ("path" | "polygon")] => {
-                if ["rounding", "radius"].into_iter().all(|key| fields.get(key).is_none()) {
+                if fields.lacks_all(&["rounding", "radius"]) {
                     let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
                     let help = "surfaces are told apart to that depth".to_owned();
                     reader.error(fields.key_span(edges), message, help);
