@@ -4,43 +4,24 @@
 use std::ops::Index;
 
 use super::system::{ConstraintInfo, CoordinateInfo, OutputInfo, StartCondition, System};
+use crate::multibody::{ConditionId, ConstraintId, CoordinateId, OutputId};
 
-macro_rules! ids {
-    ($($(#[$documentation:meta])* $id:ident: $info:ty, $($list:ident).+;)*) => {$(
-        $(#[$documentation])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-        pub struct $id(usize);
-
-        impl $id {
-            /// With this number, from 0.
-            pub const fn new(number: usize) -> Self {
-                Self(number)
-            }
-
-            /// Its number, from 0.
-            pub const fn number(self) -> usize {
-                self.0
-            }
-        }
-
+macro_rules! lists {
+    ($($id:ident: $info:ty, $($list:ident).+;)*) => {$(
         impl Index<$id> for System {
             type Output = $info;
 
             fn index(&self, id: $id) -> &$info {
-                &self.$($list).+[id.0]
+                &self.$($list).+[id.number()]
             }
         }
     )*};
 }
 
-ids! {
-    /// A coordinate.
+lists! {
     CoordinateId: CoordinateInfo, coordinates;
-    /// A constraint.
     ConstraintId: ConstraintInfo, constraints;
-    /// A condition of the start.
     ConditionId: StartCondition, start.conditions;
-    /// An output.
     OutputId: OutputInfo, outputs;
 }
 

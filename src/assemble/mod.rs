@@ -48,9 +48,8 @@ mod teeth;
 pub(crate) mod tests;
 mod tree;
 
-pub use crate::multibody::BuildError;
+pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
 pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
-pub use ids::{ConditionId, ConstraintId, CoordinateId, OutputId};
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition,

@@ -13,6 +13,10 @@ use crate::simulate::Assembled;
 use crate::study::{self, RunError};
 use crate::syntax::Diagnostics;
 
+/// More names than this are counted, the first few of them named.
+const MOST_NAMED: usize = 12;
+const FEW: usize = 5;
+
 /// Result for a model; an element of the JSON output.
 #[derive(Serialize)]
 struct Checked {
@@ -90,6 +94,9 @@ struct Counts {
     shared_start: Vec<String>,
     undetermined_outputs: Vec<String>,
     outputs: Vec<String>,
+    /// Why it is in space, where the model does not say so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spatial_because: Option<String>,
     /// What is done with it, where that is not a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     analysis: Option<&'static str>,
@@ -207,6 +214,7 @@ impl Counts {
             shared_start: shared,
             undetermined_outputs: system.output_names(&undetermined),
             outputs: system.outputs.iter().map(|output| output.name.clone()).collect(),
+            spatial_because: model.space.because().map(str::to_owned),
             analysis: model.analysis.in_words(),
             not_simulated: reduction.left_out,
             structure,
@@ -244,6 +252,9 @@ impl Counts {
         };
         let others = |names: &[String], what: &str| match names {
             [] => String::new(),
+            names if names.len() > MOST_NAMED => {
+                format!(", {what} {} and {} more", names[..FEW].join(", "), names.len() - FEW)
+            }
             names => format!(", {what} {}", names.join(", ")),
         };
         let singular = others(&self.singular_at_start, "a singular start, at which other constraints imply");
@@ -263,7 +274,8 @@ impl Counts {
             count(self.constraints, "constraint", "constraints"),
             count(self.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
             count(self.uncertain_parameters.len(), "uncertain parameter", "uncertain parameters"),
-            self.analysis.map_or_else(String::new, |analysis| format!("  {analysis}\n"))
+            self.spatial_because.as_ref().map_or_else(String::new, |why| format!("  in space: {why}\n"))
+                + &self.analysis.map_or_else(String::new, |analysis| format!("  {analysis}\n"))
                 + &super::assemblies::lines(&self.assemblies)
                 + &structure::lines(&self.structure),
         )
@@ -292,6 +304,7 @@ mod tests {
             shared_start: vec![],
             undetermined_outputs: vec![],
             outputs: vec![],
+            spatial_because: None,
             analysis: None,
             not_simulated: vec![],
             structure: Structure {

@@ -48,6 +48,9 @@ impl<S: SymbolTable> Reader<'_, S> {
             self.error(node.span.clone(), "only a parameter can have a tolerance", help);
             return None;
         }
+        if self.is_meant_as_interval(node, &scalar.text) {
+            return None;
+        }
         if let Some(number) = per_minute(&scalar.text) {
             let help = format!("write `{number} rpm` for revolutions, `{number} rad/min` for radians a minute");
             self.error(
@@ -142,6 +145,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                     self.error(place, message, help.to_owned());
                 }
                 Ok(_) => {}
+                Err(_) if self.is_of_unread_joint(name) => all_known = false,
                 Err(error) => {
                     all_known = false;
                     let part = part_of_name(name, &span, error.part);

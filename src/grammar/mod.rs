@@ -16,6 +16,7 @@ mod own_names;
 mod places;
 pub(crate) mod plane;
 pub(crate) mod quantity;
+mod range;
 pub(crate) mod reader;
 pub mod reference;
 mod requirement;

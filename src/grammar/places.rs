@@ -127,6 +127,9 @@ impl<S: SymbolTable> Reader<'_, S> {
             self.error(node.span.clone(), format!("unknown joint `{}`", clip(name)), help);
             return None;
         };
+        if !self.model.has_coordinate(found, coordinate) && self.unread_joints.iter().any(|unread| unread == name) {
+            return None;
+        }
         if !self.model.has_coordinate(found, coordinate) {
             let (what, help) = match coordinate {
                 JointCoordinate::Angle => ("turns", "revolute, cylindrical and screw joints turn about their axis"),

@@ -3,6 +3,7 @@
 //! Reading goes on after an error, so that one run reports as many as can be found. A reader gives `None` only when it
 //! has reported why.
 
+use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -28,6 +29,8 @@ pub struct Reader<'d, S> {
     /// Effects that are not in the model, with what they measure: the last is being read, and its own formulas may refer to that;
     /// the others had errors.
     pub unread: Vec<(String, Vec<(Sensor, Dimension)>)>,
+    /// Names of joints that had errors, so that of what kind they are is not known.
+    pub unread_joints: Vec<String>,
     /// States that are known before they are read.
     pub declared: DeclaredStates,
     /// A name of its own that the formula being read may use, and its dimension.
@@ -59,8 +62,10 @@ pub struct Reader<'d, S> {
 /// What has been seen of a model's lengths.
 #[derive(Clone, Debug, Default)]
 pub struct Lengths {
-    /// Bare numbers that are large, with their texts.
+    /// Bare numbers that are large, with what to write.
     pub(super) large: Vec<(Span, String)>,
+    /// Parameters without units that were looked at.
+    pub(super) said: HashSet<String>,
     /// Whether there is a small one.
     pub(super) small: bool,
 }
@@ -91,12 +96,21 @@ pub struct Fields<'n> {
     entries: HashMap<&'n str, (Span, &'n Node)>,
     /// Keys that are not there, but which a key that is not known was probably meant to be: that is reported already.
     misspelt: Vec<&'static str>,
+    /// The error of the only key that is not known and like none that is: what is missing is taken for what it was meant to be.
+    strange: Cell<Option<usize>>,
 }
 
 impl<'n> Fields<'n> {
     /// A mapping of one key, whose value stands for all of it.
     pub fn single(what: &'static str, keys: Vec<&'static str>, key: &'n str, node: &'n Node, at: Span) -> Self {
-        Self { at, what, keys, entries: HashMap::from([(key, (node.span.clone(), node))]), misspelt: Vec::new() }
+        Self {
+            at,
+            what,
+            keys,
+            entries: HashMap::from([(key, (node.span.clone(), node))]),
+            misspelt: Vec::new(),
+            strange: Cell::new(None),
+        }
     }
 
     /// The value of a key, if it is there.
@@ -108,6 +122,11 @@ impl<'n> Fields<'n> {
     /// Whether a key is neither there nor, misspelt, reported.
     pub fn lacks(&self, key: &str) -> bool {
         self.get(key).is_none() && !self.misspelt.contains(&key)
+    }
+
+    /// Whether this holds of all of these keys, of which one would do.
+    pub fn lacks_all(&self, keys: &[&str]) -> bool {
+        keys.iter().all(|key| self.lacks(key))
     }
 
     /// The place of a key.
@@ -135,6 +154,15 @@ impl<S: SymbolTable> Reader<'_, S> {
         }
     }
 
+    /// The same where others refer to these names: those that are unknown are not reported where these could not be read.
+    pub fn named_entries<'n>(&mut self, node: &'n Node, what: &str) -> &'n [Entry] {
+        let entries = self.entries(node, what);
+        if !matches!(node.value, Value::Mapping(_)) && !node.is_null() {
+            self.diagnostics.names_are_lost();
+        }
+        entries
+    }
+
     /// A mapping with the keys of `G`; `at` is where to say that one is missing.
     pub fn fields<'n, G: Grammar>(&mut self, node: &'n Node, at: Span) -> Option<Fields<'n>> {
         self.mapping(G::WHAT, G::KEYS.to_vec(), node, at)
@@ -158,7 +186,7 @@ impl<S: SymbolTable> Reader<'_, S> {
                 return None;
             }
         };
-        let mut misspelt = Vec::new();
+        let (mut misspelt, mut strange) = (Vec::new(), Vec::new());
         for entry in entries.iter().filter(|entry| !keys.contains(&entry.key.as_str())) {
             let message = format!("{what} has no `{}`", clip(&entry.key));
             let help = if entry.key.contains(':') {
@@ -166,21 +194,38 @@ impl<S: SymbolTable> Reader<'_, S> {
             } else {
                 suggest::help(&entry.key, "keys", keys.iter().copied())
             };
-            misspelt.extend(suggest::nearest(entry.key.split(':').next().unwrap_or(""), keys.iter().copied()));
+            match suggest::nearest(entry.key.split(':').next().unwrap_or(""), keys.iter().copied()) {
+                Some(near) => misspelt.push(near),
+                None => strange.push(self.diagnostics.len()),
+            }
             self.error(entry.key_span.clone(), message, help);
+            if keys.iter().any(|key| ["bodies", "points"].contains(key))
+                && matches!(entry.value.value, Value::Mapping(_))
+            {
+                self.diagnostics.names_are_lost();
+            }
         }
         let entries =
             entries.iter().map(|entry| (entry.key.as_str(), (entry.key_span.clone(), &entry.value))).collect();
-        Some(Fields { at, what, keys, entries, misspelt })
+        let strange = Cell::new(strange.first().copied().filter(|_| strange.len() == 1));
+        Some(Fields { at, what, keys, entries, misspelt, strange })
     }
 
     /// The value of a key that must be there.
     pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
         let found = fields.get(key);
         if fields.lacks(key) {
-            self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
+            if !self.is_strange(fields, key) {
+                self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
+            }
         }
         found
+    }
+
+    /// Whether a key that is missing may be what the only one that is not known was meant to be: its error then says so.
+    pub fn is_strange(&mut self, fields: &Fields, key: &str) -> bool {
+        let strange = fields.strange.take();
+        strange.inspect(|&error| self.diagnostics.also_missing(error, key)).is_some()
     }
 
     /// The only entry of a mapping that chooses a kind: `{ torque: … }`.

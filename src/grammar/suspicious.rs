@@ -1,12 +1,15 @@
-//! Bare numbers that are probably in another unit than SI: an angle of 30 rad, a length of 150 m beside others of millimetres.
+//! What is probably not meant as it is written: an angle of 30 rad, a length of 150 m beside others of millimetres, an interval that
+//! is a difference.
 
 use std::f64::consts::TAU;
 
 use symdiff::Formula;
+use symdiff::formula::Term;
 
 use super::quantity::Dimension;
+use super::range::{Range, range};
 use super::reader::Reader;
-use super::symbols::SymbolTable;
+use super::symbols::{Symbol, SymbolTable};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
 use crate::syntax::yaml::Node;
@@ -21,18 +24,55 @@ const SMALL: f64 = 0.1;
 impl<S: SymbolTable> Reader<'_, S> {
     /// Looks at a formula where a quantity of a dimension belongs.
     pub(super) fn suspect_formula(&mut self, node: &Node, formula: &Formula, wanted: Dimension) {
-        let Some(number) = formula.as_number() else { return };
-        let text = || node.scalar().map_or_else(String::new, |scalar| scalar.text.trim().to_owned());
-        if wanted == Dimension::ANGLE && number.abs() > TURN {
+        let (number, bare) = match (formula.as_number(), self.only_parameter(formula)) {
+            (Some(number), _) => {
+                let text = node.scalar().map_or_else(String::new, |scalar| scalar.text.trim().to_owned());
+                (number, Some((None, text)))
+            }
+            (None, Some((index, name))) => {
+                let Some(number) = self.evaluate(formula, 0) else { return };
+                let has_unit = self.kinds.get(index).is_some_and(|kind| kind.dimension().is_some());
+                (number, (!has_unit).then(|| (Some(name), format!("{number}"))))
+            }
+            (None, None) => return,
+        };
+        self.suspect_quantity(number, wanted);
+        let Some((name, text)) = bare else { return };
+        let of = name.as_ref().map_or_else(String::new, |name| format!(", for `{name}` in `parameters`"));
+        // A parameter is looked at where it stands first.
+        let mut is_new = || name.as_ref().is_none_or(|name| self.lengths.said.insert(name.clone()));
+        if wanted == Dimension::ANGLE && number.abs() > TURN && is_new() {
             let help =
-                format!("a bare angle is in rad: write `{0} deg`, or `{0} rad` where that is meant", clip(&text()));
+                format!("a bare angle is in rad: write `{0} deg`, or `{0} rad` where that is meant{of}", clip(&text));
             let message = "an angle of more than a turn has no unit";
             self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+        } else if wanted == Dimension::LENGTH && number.abs() > LARGE && is_new() {
+            let help =
+                format!("a bare length is in m: write `{0} mm`, or `{0} m` where that is meant{of}", clip(&text));
+            self.lengths.large.push((node.span.clone(), help));
         }
-        if wanted == Dimension::LENGTH && number.abs() > LARGE {
-            self.lengths.large.push((node.span.clone(), text()));
+    }
+
+    /// The parameter that a formula is, and nothing else.
+    fn only_parameter(&self, formula: &Formula) -> Option<(usize, String)> {
+        let [(Term::Name(name), _)] = formula.terms() else { return None };
+        match self.symbol(name) {
+            Some(Symbol::Parameter(index)) => Some((index, name.clone())),
+            _ => None,
         }
-        self.suspect_quantity(number, wanted);
+    }
+
+    /// Whether a text is an interval in another notation, which is an error; warns of a difference that may be meant as one.
+    pub(super) fn is_meant_as_interval(&mut self, node: &Node, text: &str) -> bool {
+        let Some(Range { interval, is_difference }) = range(text) else { return false };
+        let help = format!("an interval is written `{interval}`, in `parameters`");
+        if is_difference {
+            let message = "a difference of two numbers, the smaller first, may be meant as an interval";
+            self.diagnostics.push(Diagnostic::warning(node.span.clone(), message).help(help));
+        } else {
+            self.error(node.span.clone(), format!("`{}` looks like an interval", clip(text.trim())), help);
+        }
+        !is_difference
     }
 
     /// Looks at a number in SI.
@@ -45,8 +85,7 @@ impl<S: SymbolTable> Reader<'_, S> {
         if !self.lengths.small {
             return;
         }
-        for (span, text) in std::mem::take(&mut self.lengths.large) {
-            let help = format!("a bare length is in m: write `{0} mm`, or `{0} m` where that is meant", clip(&text));
+        for (span, help) in std::mem::take(&mut self.lengths.large) {
             let message = "a length above 100 m has no unit, beside others of millimetres";
             self.diagnostics.push(Diagnostic::warning(span, message).help(help));
         }

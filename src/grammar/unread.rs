@@ -35,6 +35,11 @@ impl<S: SymbolTable> Reader<'_, S> {
         })
     }
 
+    /// Whether a name may be of a joint that had errors.
+    pub(super) fn is_of_unread_joint(&self, name: &str) -> bool {
+        name.split_once('.').is_some_and(|(owner, _)| self.unread_joints.iter().any(|unread| unread == owner))
+    }
+
     fn unread_sensor(&self, place: usize, measure: Sensor) -> Symbol {
         Symbol::Sensor { effect: self.model.effects() + place, measure }
     }

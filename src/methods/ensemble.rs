@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use symdiff::jet::JetSpace;
 use symdiff::taylor_model::ModelSpace;
 
+use crate::multibody::{ConstraintId, EquationId};
 use crate::numerics::{ParameterBox, Sample, ScanBounds, ScanGrid};
 
 /// Why an ensemble has no result at all, in its own terms.
@@ -51,13 +52,13 @@ pub struct Sampling {
 pub enum StopCause {
     /// A step did not converge; the equation with the largest residual.
     NotConverged {
-        /// Its number among the equations of motion and the constraints.
-        equation: usize,
+        /// Of a step.
+        equation: EquationId,
     },
     /// A constraint cannot be fulfilled beyond this position.
     Locked {
-        /// Its number.
-        constraint: usize,
+        /// Which.
+        constraint: ConstraintId,
         /// What remains of it.
         residual: f64,
     },

@@ -273,7 +273,7 @@ fn prescribed(
 
 fn points(reader: &mut Reader, fields: &Fields, body: usize) {
     let Some(node) = fields.get("points") else { return };
-    for (index, entry) in reader.entries(node, "points").iter().enumerate() {
+    for (index, entry) in reader.named_entries(node, "points").iter().enumerate() {
         is_name_of_point(reader, entry);
         let Some((position, rotation)) = point(reader, entry) else { continue };
         if let Some(point) = reader.model.bodies[body].points.get_mut(index) {

@@ -107,6 +107,13 @@ pub struct Space {
     pub why: String,
 }
 
+impl Space {
+    /// What of the model leaves the plane, where that decides.
+    pub fn because(&self) -> Option<&str> {
+        Some(self.why.as_str()).filter(|why| self.spatial && why.ends_with("leaves the plane"))
+    }
+}
+
 /// A named number: deterministic, or known to lie in an interval.
 #[derive(Clone, Debug)]
 pub struct Parameter {

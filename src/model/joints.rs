@@ -26,8 +26,9 @@ pub fn read(reader: &mut Reader, entries: &[Entry]) {
     };
     for coupling in [false, true] {
         for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| couples(entry) == coupling) {
-            if let Some(kind) = JointKind::read(reader, &entry.value, entry.key_span.clone()) {
-                reader.model.joints[index].kind = kind;
+            match JointKind::read(reader, &entry.value, entry.key_span.clone()) {
+                Some(kind) => reader.model.joints[index].kind = kind,
+                None => reader.unread_joints.push(entry.key.clone()),
             }
         }
     }

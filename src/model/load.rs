@@ -204,6 +204,7 @@ fn blank<'d>(name: &str, diagnostics: &'d mut Diagnostics) -> Reader<'d> {
         model,
         variable: None,
         unread: Vec::new(),
+        unread_joints: Vec::new(),
         declared: DeclaredStates::default(),
         kinds: Vec::new(),
         corners: Vec::new(),
@@ -318,5 +319,5 @@ fn describe(
 }
 
 fn section<'n>(reader: &mut Reader, node: Option<&'n Node>, what: &str) -> &'n [Entry] {
-    node.map_or(&[], |node| reader.entries(node, what))
+    node.map_or(&[], |node| reader.named_entries(node, what))
 }

@@ -74,7 +74,9 @@ fn of_mapping(reader: &mut Reader, entry: &Entry) -> Option<Requirement> {
     let limits: Vec<(&str, &Node)> =
         ["max", "min"].into_iter().filter_map(|key| Some((key, fields.get(key)?))).collect();
     if limits.is_empty() {
-        reader.error(entry.key_span.clone(), "a requirement needs `max`, `min` or both", None);
+        if fields.lacks_all(&["max", "min"]) {
+            reader.error(entry.key_span.clone(), "a requirement needs `max`, `min` or both", None);
+        }
         return None;
     }
     let of_reduced = names_reduced(reader, &of);

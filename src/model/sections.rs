@@ -58,7 +58,8 @@ pub(super) fn missing_sections(
         reader.error(fields.at.clone(), format!("a model needs {}", suggest::list(&keys)), help);
     }
     for (_, key, message, help) in missing {
-        if keys.len() < 2 || !keys.contains(&key) {
+        let is_said = keys.contains(&key) && (keys.len() > 1 || reader.is_strange(fields, key));
+        if !is_said {
             reader.error(fields.key_span(key), message, help.to_owned());
         }
     }

@@ -110,6 +110,7 @@ fn correlation(reader: &mut Reader, fields: &Fields) -> Option<Correlation> {
             (0..k).map(|i| (0..k).map(|j| if i == j { 1.0 } else { coefficient }).collect()).collect()
         }
         (None, Some(node)) => matrix(reader, node, k)?,
+        _ if !fields.lacks_all(&["coefficient", "matrix"]) => return None,
         _ => {
             reader.error(fields.at.clone(), "a correlation needs `coefficient` or `matrix`", None);
             return None;

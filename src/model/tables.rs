@@ -35,6 +35,7 @@ fn table(reader: &mut Reader, entry: &Entry) -> Option<Table> {
             reader.error(fields.key_span("points"), "`file` and `points` exclude each other", None);
             return None;
         }
+        (None, None) if !fields.lacks_all(&["file", "points"]) => return None,
         (None, None) => {
             let help = "e.g. `{ file: road.csv }` or `{ points: [[0, 0], [1, 2]] }`".to_owned();
             reader.error(fields.at.clone(), "a table needs `file` or `points`", help);

@@ -4,6 +4,7 @@
 mod body;
 mod context;
 mod error;
+mod ids;
 mod inertia;
 mod matrix;
 mod pair;
@@ -16,6 +17,7 @@ mod wrench;
 pub use body::{ANGLE, Attitude, Body, DEGREES_OF_FREEDOM, EULER, RotationCoordinates};
 pub use context::Context;
 pub use error::BuildError;
+pub use ids::{ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
 pub use matrix::Matrix;
 pub use pair::Pair;
 pub use point::{Frame, MaterialPoint};

@@ -9,7 +9,7 @@ use symdiff::Tile;
 use super::error::{SimulationError, no_factors};
 use super::simulator::Simulator;
 use super::start::{Assembly, allowed_residual, free_columns};
-use crate::assemble::System;
+use crate::assemble::{CoordinateId, System};
 use crate::compile::{StartProgram, Tapes, compile_start};
 
 /// Weight of an angle as dependent coordinate against a position. Angles are preferred as independent: they grow without
@@ -43,7 +43,7 @@ pub struct Points {
 }
 
 /// The coordinates to take as independent at a motion (its first n values).
-pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
+pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f64], time: f64) -> Vec<CoordinateId> {
     let start = &simulator.start;
     let layout = &start.layout;
     let n = layout.q.len();
@@ -64,7 +64,7 @@ pub fn choose_independent(simulator: &Simulator, parameters: &[f64], motion: &[f
         .iter()
         .map(|coordinate| if coordinate.is_angle { ANGLES_STAY } else { 1.0 })
         .collect();
-    free_columns(&slopes, &weight)
+    free_columns(&slopes, &weight).into_iter().map(CoordinateId::new).collect()
 }
 
 impl<'s> Closure<'s> {

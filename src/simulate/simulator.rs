@@ -16,7 +16,7 @@ use super::start::{
     shared_coordinates,
 };
 use super::statics::Equilibrium;
-use crate::assemble::{OutputId, System};
+use crate::assemble::{EquationId, OutputId, System};
 use crate::compile::{
     Equation, Layout, Program, Scheme, StartProgram, SwitchProgram, compile, compile_nearest_start, compile_start,
     compile_switches,
@@ -368,8 +368,8 @@ impl Simulator {
         self.features.get_or_init(|| Features::of(&self.system)).as_ref()
     }
 
-    /// Name of one of the n + m equations of a step: a coordinate's equation of motion or a constraint.
-    pub fn equation_name(&self, equation: usize) -> String {
-        equation_name(&self.system, Equation::of_row(equation, self.system.q.len()))
+    /// Name of an equation of a step: a coordinate's equation of motion or a constraint.
+    pub fn equation_name(&self, equation: EquationId) -> String {
+        equation_name(&self.system, Equation::of_row(equation.number(), self.system.q.len()))
     }
 }

@@ -141,11 +141,7 @@ fn failure(study: &Study, schedule: &Schedule, stop: &Stop, sample: &Sample) -> 
             format!("{}: Taylor bounds are unknown from there on", SimulationError::SingularJet { time })
         }
         StopCause::Locked { constraint, residual } => {
-            let locked = study.simulator.locked(
-                OpenConstraint { constraint: ConstraintId::new(constraint), residual },
-                time,
-                parameters,
-            );
+            let locked = study.simulator.locked(OpenConstraint { constraint, residual }, time, parameters);
             format!("{locked}; results up to that time are kept")
         }
         StopCause::NotConverged { equation } => {

@@ -14,6 +14,15 @@ impl Study<'_> {
         parts * methods.into_iter().filter_map(|(_, method)| method.samples()).sum::<f64>()
     }
 
+    /// Values that are fitted and bounded: of every output, row and sample of a method that has a surrogate.
+    pub(super) fn planned_values(&self) -> f64 {
+        let samples = |(method, asked): (Method, &dyn BoundingMethod)| {
+            (method != Method::Scan).then(|| asked.samples()).flatten().unwrap_or(0.0)
+        };
+        let samples: f64 = self.request.methods().into_iter().map(samples).sum();
+        samples * self.rows() as f64 * self.simulator.system.outputs.len() as f64
+    }
+
     /// Bytes that the simulations take where they are stored. Where a tolerance decides how many there are, as many as the budget allows.
     pub(super) fn stored_bytes(&self) -> u64 {
         let problem = problem(self.description, &self.simulator);

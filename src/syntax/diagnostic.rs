@@ -57,6 +57,11 @@ impl Diagnostic {
         Self { span: None, ..Self::error(0..0, message) }
     }
 
+    /// Whether it says that a name stands for nothing.
+    fn is_of_unknown_name(&self) -> bool {
+        self.message.starts_with("unknown ") || self.message.contains("` has no point `")
+    }
+
     /// With text beside the marker.
     #[must_use]
     pub fn label(mut self, label: impl Into<String>) -> Self {
@@ -85,6 +90,8 @@ pub struct Diagnostics {
     /// The texts that spans point into; the first is the model file.
     pub sources: Sources,
     items: Vec<Diagnostic>,
+    /// Whether names could not be read, so that nothing is known to be unknown.
+    names_lost: bool,
 }
 
 /// A diagnostic for machines (`--format json`).
@@ -112,11 +119,14 @@ impl Diagnostics {
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         let mut sources = Sources::default();
         sources.add(name, text);
-        Self { sources, items: Vec::new() }
+        Self { sources, ..Self::default() }
     }
 
     /// Adds one; of a copy, with the place of the instance that it is of, and of those around it.
     pub fn push(&mut self, mut diagnostic: Diagnostic) {
+        if self.names_lost && diagnostic.is_of_unknown_name() {
+            return;
+        }
         let mut place = diagnostic.span.clone();
         while let Some(Within { instance, of, span }) = place.and_then(|place| self.sources.within(&place)) {
             diagnostic.secondary.push((span.clone(), format!("in `{instance}`, an instance of `{of}`")));
@@ -137,6 +147,19 @@ impl Diagnostics {
             ..found
         }));
         result
+    }
+
+    /// Where names belong, there is something else: that was reported, and names that are unknown from now on are not.
+    pub(crate) fn names_are_lost(&mut self) {
+        self.names_lost = true;
+    }
+
+    /// Says of the error of a key that is not known which one is missing beside it.
+    pub(crate) fn also_missing(&mut self, error: usize, key: &str) {
+        if let Some(found) = self.items.get_mut(error) {
+            let known = found.help.take().map_or_else(String::new, |help| format!("; {help}"));
+            found.help = Some(format!("`{key}` is missing{known}"));
+        }
     }
 
     /// How many there are so far.

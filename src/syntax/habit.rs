@@ -22,7 +22,7 @@ impl<'d> Habit<'d> {
     }
 }
 
-/// What has no part of some name, in "body `crank` has no `angel`".
+/// What has no part of some name, in "body `crank` has no `angel`", or is not used.
 pub fn owner(message: &str) -> Option<&str> {
     around_owner(message).map(|(_, owner, _)| owner)
 }
@@ -30,5 +30,5 @@ pub fn owner(message: &str) -> Option<&str> {
 fn around_owner(message: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = message.split_once('`')?;
     let (owner, after) = rest.split_once('`')?;
-    after.starts_with(" has no `").then_some((before, owner, after))
+    (after.starts_with(" has no `") || after == " is used nowhere").then_some((before, owner, after))
 }

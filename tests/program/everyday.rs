@@ -189,3 +189,58 @@ fn what_is_refused_does_not_end_the_scenes_after_it() {
     assert!(output.contains("one/, last/") && output.contains("not run, or failed"), "{output}");
     assert!(place.path().join("results/slides/last/bounds.csv").exists());
 }
+
+#[test]
+fn check_says_what_makes_a_model_spatial() {
+    let place = Place::new();
+    let text = "bodies: { bar: { mass: 1, inertia: 0.1, points: { A: [-0.5, 0] } } }
+joints: { pivot: { revolute: [ground, bar.A] } }
+effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }
+outputs: { x: bar.x }
+simulation: { duration: 1, step: 1e-3 }
+";
+    let check = |text: &str| {
+        fs::write(place.path().join("bar.yaml"), text).unwrap();
+        (place.run("check bar.yaml", 0).0, json(&place.run("check bar.yaml --format json", 0).0)[0].clone())
+    };
+    let why = "`acceleration` of effect `weight` leaves the plane";
+    let (told, data) = check(text);
+    assert!(told.contains(&format!("  in space: {why}\n")), "{told}");
+    assert_eq!(data["spatial_because"], why);
+    for other in [text.replace("0, 0, -9.81", "0, -9.81"), format!("space: spatial\n{text}")] {
+        let (told, data) = check(&other);
+        assert!(!told.contains("in space") && data["spatial_because"].is_null(), "{told}");
+    }
+}
+
+#[test]
+fn what_is_not_used_is_one_line() {
+    let place = Place::new();
+    let mut text = "bodies:\n  a: { mass: 1, coordinates: [x] }\n".to_owned();
+    (0..30).for_each(|i| text += &format!("  b{i}: {{ mass: 1, inertia: 1 }}\n"));
+    text += "parameters: { p: 1, q: 2, r: 3, s: 4 }\noutputs: { x: a.x }\nsimulation: { duration: 1, step: 1e-3 }\n";
+    fs::write(place.path().join("many.yaml"), text).unwrap();
+    let (told, warned) = place.run("check many.yaml", 0);
+    assert!(told.contains("body b0, body b1, body b2, body b3, body b4 and 25 more"), "{told}");
+    assert!(!told.contains("b29"), "{told}");
+    assert_eq!(warned.matches("warning: ").count(), 1, "{warned}");
+    assert!(warned.contains("the same in 3 more places (also of `q`, `r`, `s`)"), "{warned}");
+    let data = json(&place.run("check many.yaml --format json", 0).0);
+    assert_eq!(data[0]["not_simulated"].as_array().unwrap().len(), 30);
+}
+
+/// Seconds are known where the steps are chosen, too.
+#[test]
+fn a_refused_run_says_how_long_it_takes() {
+    let place = Place::new();
+    let text = SLIDES.replace("FORMULATION", "").replace("scan: { points: 2 }", "scan: { points: 300 }");
+    for (steps, written) in [("fixed", text.clone()), ("chosen", text.replace("step: 5e-3,", "tolerance: 1e-6,"))] {
+        fs::write(place.path().join("slides.yaml"), written).unwrap();
+        let (_, errors) = place.run("run slides.yaml", 2);
+        assert!(
+            errors.contains(" simulations are asked for, which take ") && errors.contains(" or more on "),
+            "{errors}"
+        );
+        assert!(!errors.contains("take 0 "), "{steps}: {errors}");
+    }
+}

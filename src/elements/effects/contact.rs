@@ -174,19 +174,20 @@ impl Checked for Contact {
             }
         }
         match given.collect::<Vec<_>>().as_slice() {
+            [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
                 let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `capsule` or `block`";
                 reader.error(fields.at.clone(), message, help);
             }
             ["capsule"] => {
-                if fields.get("rounding").is_none() {
+                if fields.lacks_all(&["rounding"]) {
                     let message = "a `capsule` needs `rounding`, which is its radius";
                     reader.error(fields.key_span("capsule"), message, None);
                 }
             }
             [edges @ ("path" | "polygon" | "block")] => {
-                if ["rounding", "radius"].into_iter().all(|key| fields.get(key).is_none()) {
+                if fields.lacks_all(&["rounding", "radius"]) {
                     let message = format!("a `{edges}` needs `rounding`, or a `radius` of what touches it");
                     let help = "surfaces are told apart to that depth".to_owned();
                     reader.error(fields.key_span(edges), message, help);

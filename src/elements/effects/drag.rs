@@ -96,7 +96,7 @@ impl Checked for Drag {
             for key in AERODYNAMIC {
                 reader.required(fields, key);
             }
-        } else if !given("quadratic") && !given("linear") {
+        } else if fields.lacks_all(&["quadratic", "linear"]) {
             let help = "or `density`, `drag_coefficient` and `area`".to_owned();
             reader.error(fields.at.clone(), "a drag needs `quadratic` or `linear`", help);
         }

@@ -161,7 +161,7 @@ fn magnitude(force: Vector<'_>) -> Scalar<'_> {
 impl Checked for JointFriction {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
         let given = |key: &str| fields.get(key).is_some();
-        if !["coefficient", "coulomb", "viscous"].into_iter().any(given) && given("on") {
+        if fields.lacks_all(&["coefficient", "coulomb", "viscous"]) && given("on") {
             let message = "a joint friction needs `coefficient`, `coulomb` or `viscous`";
             reader.error(fields.at.clone(), message, None);
         }

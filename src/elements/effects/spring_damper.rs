@@ -148,7 +148,7 @@ fn along_axis<'g>(line: Vector<'g>, growth: Vector<'g>, axis: Vector<'g>, spring
 
 impl Checked for SpringDamper {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if ["stiffness", "damping", "force"].iter().all(|key| fields.get(key).is_none()) {
+        if fields.lacks_all(&["stiffness", "damping", "force"]) {
             reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }

@@ -82,7 +82,7 @@ impl ForceElement for Stop {
 
 impl Checked for Stop {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if fields.get("lower").is_none() && fields.get("upper").is_none() {
+        if fields.lacks_all(&["lower", "upper"]) {
             reader.error(fields.at.clone(), "a stop needs `lower` or `upper`", None);
         }
     }

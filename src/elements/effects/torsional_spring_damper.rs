@@ -93,11 +93,11 @@ impl ForceElement for TorsionalSpringDamper {
 
 impl Checked for TorsionalSpringDamper {
     fn check_keys<S: SymbolTable>(reader: &mut Reader<'_, S>, fields: &Fields<'_>) {
-        if fields.get("on").is_none() {
+        if fields.lacks("on") {
             reader.required(fields, "between");
         }
         reader.exclude(fields, ["on", "between"]);
-        if ["stiffness", "damping", "torque"].iter().all(|key| fields.get(key).is_none()) {
+        if fields.lacks_all(&["stiffness", "damping", "torque"]) {
             reader.error(fields.at.clone(), "a spring and damper needs `stiffness` or `damping`", None);
         }
     }

@@ -70,7 +70,7 @@ impl Declared {
     }
 
     fn read_points_of(&self, reader: &mut Reader, link: usize, entry: &Entry, node: &Node, place: PointRef) {
-        for point in reader.entries(node, "points") {
+        for point in reader.named_entries(node, "points") {
             if !bodies::is_name_of_point(reader, point) {
                 continue;
             }

@@ -204,7 +204,7 @@ impl<'s> Control<'s> {
         let stepper = &mut self.steps.stepper;
         if error_ratio.is_finite() {
             let LocalError { coordinate, change, .. } = stepper.local_errors()[lane];
-            let name = &self.simulator.system.coordinates[coordinate].name;
+            let name = &self.simulator.system[coordinate].name;
             return format!("the acceleration of `{name}` changes by {change:.3e} within one of them");
         }
         let equation = self.simulator.equation_name(stepper.worst_equation(lane));

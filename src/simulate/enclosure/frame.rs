@@ -25,6 +25,7 @@ use symdiff::taylor_model::{ModelSpace, up};
 
 use super::matrix::{Models, larger};
 use super::{EnclosureError, Gains};
+use crate::assemble::CoordinateId;
 
 /// Independent coordinates are chosen anew when another moves this many times as much.
 const OUTRUN: f64 = 2.0;
@@ -47,7 +48,7 @@ pub(super) struct Units {
 #[derive(Clone, Debug)]
 pub(super) struct Frame {
     /// The independent coordinates, f.
-    independent: Vec<usize>,
+    independent: Vec<CoordinateId>,
     /// S and F.
     basis: Models,
     /// [S F]⁻¹, nearly.
@@ -66,13 +67,13 @@ impl Frame {
         gains: &Gains,
         tangent: &Models,
         push: &Models,
-        independent: Vec<usize>,
+        independent: Vec<CoordinateId>,
     ) -> Self {
         let (n, f) = (tangent.rows, tangent.columns);
         let mut slow = Models::zero(space, 3 * n, 2 * f);
         for (column, &leader) in independent.iter().enumerate() {
             for row in 0..n {
-                let factor = units.scale[leader] / units.scale[row];
+                let factor = units.scale[leader.number()] / units.scale[row];
                 for (row, column, factor) in [
                     (row, column, factor),
                     (row, f + column, factor / units.motion),
@@ -151,8 +152,9 @@ impl Frame {
         let n = columns.rows / 3;
         let weights = [(0, 1.0), (n, units.motion)];
         let mut direct = Models::zero(space, columns.columns, columns.columns);
-        let taken =
-            weights.into_iter().flat_map(|(block, weight)| self.independent.iter().map(move |i| (block + i, weight)));
+        let taken = weights
+            .into_iter()
+            .flat_map(|(block, weight)| self.independent.iter().map(move |i| (block + i.number(), weight)));
         for (place, (row, weight)) in taken.enumerate() {
             for column in 0..columns.columns {
                 direct.at_mut(place, column).copy_from_slice(columns.at(row, column));
@@ -261,14 +263,14 @@ fn add_skew(space: &ModelSpace, skew: &Models, rough: &[f64], to: &mut [f64]) ->
 }
 
 /// The f of n coordinates that the others follow best at the centre: elimination with complete pivoting.
-fn pivots(slow: &Models, n: usize, f: usize) -> Vec<usize> {
+fn pivots(slow: &Models, n: usize, f: usize) -> Vec<CoordinateId> {
     let mut matrix = DMatrix::from_fn(n, f, |row, column| slow.at(row, column)[0]);
     let mut chosen = Vec::new();
     for _ in 0..f {
         let place =
             matrix.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map_or(0, |(place, _)| place);
         let (row, column) = (place % n, place / n);
-        chosen.push(row);
+        chosen.push(CoordinateId::new(row));
         let pivot_row = matrix.row(row) / matrix[(row, column)];
         let pivot_column = matrix.column(column).clone_owned();
         matrix -= pivot_column * pivot_row;

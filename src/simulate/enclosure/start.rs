@@ -6,6 +6,7 @@ use symdiff::{Interval, ModelMemory, Tape};
 use super::EnclosureError;
 use super::krawczyk::{self, Image};
 use super::matrix::Models;
+use crate::assemble::CoordinateId;
 use crate::compile::EquationsProgram;
 use crate::simulate::closure::choose_independent;
 use crate::simulate::simulator::Simulator;
@@ -95,12 +96,13 @@ pub(super) fn tangent(
     program: &EquationsProgram,
     space: &ModelSpace,
     memory: &mut ModelMemory,
-) -> Result<(Models, Models, Vec<usize>), EnclosureError> {
+) -> Result<(Models, Models, Vec<CoordinateId>), EnclosureError> {
     let layout = &program.layout;
     let (n, m) = (layout.q.len(), program.constraint.len());
     let motion = &simulator.nominal[layout.q.start..layout.v.end];
     let parameters = &simulator.nominal[layout.parameters.clone()];
-    let independent = choose_independent(simulator, parameters, motion, 0.0);
+    let chosen = choose_independent(simulator, parameters, motion, 0.0);
+    let independent: Vec<usize> = chosen.iter().map(|coordinate| coordinate.number()).collect();
     let dependent: Vec<usize> = (0..n).filter(|place| !independent.contains(place)).collect();
     if dependent.len() != m {
         return Err(EnclosureError::Undetermined);
@@ -124,7 +126,7 @@ pub(super) fn tangent(
         (0..independent.len()).for_each(|column| tangent.at_mut(row, column).copy_from_slice(follow.at(place, column)));
     }
     let push = inverse(space, &mass)?.part(space, 0..n, n..n + m);
-    Ok((tangent, push, independent))
+    Ok((tangent, push, chosen))
 }
 
 fn inverse(space: &ModelSpace, matrix: &Models) -> Result<Models, EnclosureError> {

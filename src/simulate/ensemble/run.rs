@@ -98,8 +98,8 @@ pub struct Stop {
     pub row: usize,
     /// s
     pub time: f64,
-    /// Of the n + m equations, the one with the largest scaled residual.
-    pub equation: usize,
+    /// The equation with the largest scaled residual.
+    pub equation: crate::assemble::EquationId,
     /// The constraint that cannot be closed there, if one is known.
     pub open: Option<OpenConstraint>,
     /// Whether the sample could continue, but without the invertible Newton matrix that jets need.

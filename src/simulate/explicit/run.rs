@@ -5,6 +5,7 @@ use symdiff::{WIDTHS, jet::JetSpace};
 
 use super::movement::Movement;
 use super::runge_kutta::{Motion, RungeKutta, StepError};
+use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, JetClosure, Observed, Reduction, RowClosure, Stop};
@@ -274,7 +275,7 @@ impl Tile<'_> {
                 let lost = state.iter().skip(lane).step_by(width).position(|value| !value.is_finite());
                 if let Some(line) = lost {
                     if std::mem::replace(&mut self.alive[lane], false) && lane < self.count {
-                        let equation = line % (state.len() / width / 2).max(1);
+                        let equation = EquationId::new(line % (state.len() / width / 2).max(1));
                         stops.push(Stop {
                             sample: self.first + lane,
                             row,
@@ -377,7 +378,8 @@ impl<'s> ExplicitJets<'s> {
             let steps = (&mut self.steps, &ends[..]);
             reach(&mut self.run, &mut self.motion, steps, time, (&mut state, &mut |_, _, _| {}));
             if let Some(place) = state.iter().position(|value| !value.is_finite()) {
-                let equation = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
+                let place = place * 2 * self.coordinates / state.len() % self.coordinates.max(1);
+                let equation = EquationId::new(place);
                 return Some(Stop { sample: 0, row, time, equation, open: None, singular: true });
             }
             self.motion.close(time, &mut state);

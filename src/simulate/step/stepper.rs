@@ -3,6 +3,7 @@
 use symdiff::Tile;
 
 use super::newton::{Counters, Newton};
+use crate::assemble::{CoordinateId, EquationId};
 use crate::compile::{Program, Tapes};
 
 /// A step that fails is divided into 2, 4, … substeps, up to 2 to the power of this, before it is given up.
@@ -15,8 +16,8 @@ pub struct StepFailure {
     pub lane: usize,
     /// Time of the step's end, s.
     pub time: f64,
-    /// The equation (of n + m) with the largest scaled residual.
-    pub equation: usize,
+    /// The equation with the largest scaled residual.
+    pub equation: EquationId,
 }
 
 /// A lane's local error in a step.
@@ -27,7 +28,7 @@ pub struct LocalError {
     /// The same of the whole change of acceleration, with the parts that constraints and stiff forces leave little of.
     pub whole: f64,
     /// The coordinate with this error.
-    pub coordinate: usize,
+    pub coordinate: CoordinateId,
     /// Change of that coordinate's acceleration within the step.
     pub change: f64,
 }
@@ -237,7 +238,7 @@ impl<'p> Stepper<'p> {
     ///
     /// # Errors
     /// The equation with the largest scaled residual of the last attempt.
-    fn substep(&mut self, lane: usize, h: f64, end: f64) -> Result<(), usize> {
+    fn substep(&mut self, lane: usize, h: f64, end: f64) -> Result<(), EquationId> {
         let layout = &self.program.layout;
         let mut alone = Tile::new(1, self.program.registers(), self.program.constants());
         for register in 0..layout.registers() {
@@ -274,12 +275,13 @@ impl<'p> Stepper<'p> {
     }
 
     /// The equation with the largest scaled residual at a lane's iterate.
-    pub(in crate::simulate) fn worst_equation(&mut self, lane: usize) -> usize {
+    pub(in crate::simulate) fn worst_equation(&mut self, lane: usize) -> EquationId {
         self.tile.run(self.program.matrix());
         let sizes = self.program.residual.iter().zip(&self.program.equilibration);
         let sizes = sizes.map(|(&register, scale)| (self.tile.lane(register)[lane] * scale).abs());
         let sizes = sizes.map(|size| if size.is_nan() { f64::INFINITY } else { size });
-        sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(equation, _)| equation)
+        let worst = sizes.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        EquationId::new(worst.map_or(0, |(equation, _)| equation))
     }
 
     /// Estimates the local error of every step from now on.
@@ -312,7 +314,8 @@ impl<'p> Stepper<'p> {
                 let unit = gain / scale.max(value(layout.q.start + place).abs());
                 // Written so that NaN wins and stays.
                 if !(unit * change.abs() <= worst.size || worst.size.is_nan()) {
-                    *worst = LocalError { size: unit * change.abs(), coordinate: place, change, ..*worst };
+                    let coordinate = CoordinateId::new(place);
+                    *worst = LocalError { size: unit * change.abs(), coordinate, change, ..*worst };
                 }
                 if !(unit * whole.abs() <= worst.whole || worst.whole.is_nan()) {
                     worst.whole = unit * whole.abs();

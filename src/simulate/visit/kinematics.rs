@@ -4,6 +4,7 @@
 //! another branch of the linkage, the way is halved.
 
 use super::Visit;
+use crate::assemble::EquationId;
 use crate::numerics::Sample;
 use crate::simulate::control::Schedule;
 use crate::simulate::ensemble::{Channel, Reduction, Stop};
@@ -96,7 +97,7 @@ impl Simulator {
     fn stopped(&self, assembly: &Assembly, row: usize, time: f64, step: f64) -> Stop {
         let state = assembly.tile().values()[..self.start.layout.registers()].to_vec();
         let open = [time + step, time + 1e3 * step].into_iter().find_map(|time| self.open_constraint(&state, time));
-        Stop { sample: 0, row, time, equation: self.system.q.len(), open, singular: false }
+        Stop { sample: 0, row, time, equation: EquationId::new(self.system.q.len()), open, singular: false }
     }
 }
 

@@ -231,7 +231,7 @@ fn effort(counters: Counters) -> Effort {
 pub(super) fn stopped_at(stop: &Stop) -> methods::Stop {
     let cause = match stop.open {
         _ if stop.singular => StopCause::SingularJet,
-        Some(open) => StopCause::Locked { constraint: open.constraint.number(), residual: open.residual },
+        Some(open) => StopCause::Locked { constraint: open.constraint, residual: open.residual },
         None => StopCause::NotConverged { equation: stop.equation },
     };
     methods::Stop { sample: stop.sample, row: stop.row, time: stop.time, cause }
@@ -375,7 +375,7 @@ impl Ensemble for Motions<'_> {
     }
 
     fn independent(&self, parameters: &[f64], motion: &[f64], time: f64) -> Vec<usize> {
-        choose_independent(self.simulator, parameters, motion, time)
+        choose_independent(self.simulator, parameters, motion, time).into_iter().map(|id| id.number()).collect()
     }
 
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
