@@ -8,6 +8,7 @@ use symdiff::{Builder, Graph, Scalar};
 use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
+use super::cuts::other_cuts;
 use super::mechanism::Mechanism;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, System};
@@ -46,11 +47,32 @@ pub fn in_absolute_coordinates(description: &Description) -> Result<System, Buil
 
 /// As many bodies as can be are children, without coordinates of their own; or why that is not possible here. With `deepest`, not
 /// where a body is more joints than that from its root on average. Loops are closed from where absolute coordinates begin to
-/// look, or from an assembled start in absolute coordinates (their values) where it is known.
+/// look, or from an assembled start in absolute coordinates (their values) where it is known. Where the tree cannot be used
+/// and the description leaves its cut open, the first that can and differs in one joint takes its place: a reaction that a force
+/// depends on is known where its joint closes a loop.
 ///
 /// # Errors
 /// As for [`build`].
 pub fn in_joint_coordinates(
+    description: &Description,
+    deepest: Option<usize>,
+    assembled: Option<&[f64]>,
+) -> Result<Result<System, String>, BuildError> {
+    let refused = match in_this_tree(description, deepest, assembled)? {
+        Err(why) if description.joints.iter().all(|joint| !joint.cut) => why,
+        built => return Ok(built),
+    };
+    let mut exchanged = description.clone();
+    for cut in other_cuts(description) {
+        exchanged.cut_at(&cut);
+        if let Ok(system) = in_this_tree(&exchanged, deepest, assembled)? {
+            return Ok(Ok(system));
+        }
+    }
+    Ok(Err(refused))
+}
+
+fn in_this_tree(
     description: &Description,
     deepest: Option<usize>,
     assembled: Option<&[f64]>,
@@ -99,7 +121,9 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     });
     let mut coordinates: Vec<CoordinateInfo> = coordinates.collect();
     m.scale_states(&balance.force, &start, description.simulation.duration, &mut coordinates);
-    let formulation = FormulationInfo { joint: !m.tree.is_absolute(), why: "the model asks for them".to_owned() };
+    let joint = !m.tree.is_absolute();
+    let cut = if joint { m.tree.closing(description) } else { Vec::new() };
+    let formulation = FormulationInfo { joint, why: "the model asks for them".to_owned(), cut };
     let (analysis, modes) = (description.analysis, description.modes.clone());
     let mass_of_bodies = m.total_mass();
     let (time, space, parameters) = (m.time.expr(), description.space.clone(), m.uncertain);

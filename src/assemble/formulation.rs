@@ -4,6 +4,7 @@ use symdiff::Formula;
 
 use super::coordinates::formulas_of_motion;
 use super::mechanism::Mechanism;
+use super::start::Named;
 use crate::model::{Description, JointKind, Reference, StartValue, Symbol};
 use crate::multibody::Context;
 
@@ -39,10 +40,12 @@ impl Mechanism<'_, '_> {
     /// A value at the start, or a guess, of a body that has no coordinates of its own.
     fn lost_start(&self, d: &Description) -> Option<String> {
         let guess: &[StartValue] = if self.tree.closes_loops(d) { &[] } else { &d.guess };
-        d.initial.iter().chain(guess).find_map(|value| {
+        let kept = d.initial.iter().map(|value| (Named::Kept, value));
+        let guessed = guess.iter().map(|value| (Named::Guessed, value));
+        kept.chain(guessed).find_map(|(named, value)| {
             let body = match value {
                 StartValue::Coordinate { body, coordinate, order, .. } => {
-                    let known = self.angle_of_inboard_joint(d, *body, *coordinate, *order).is_some();
+                    let known = self.angle_of_inboard_joint(d, named, *body, *coordinate, *order).is_some();
                     Some(body).filter(|_| !known)
                 }
                 StartValue::Orientation { body, .. } | StartValue::AngularVelocity { body, .. } => Some(body),

@@ -23,6 +23,7 @@ mod child_guesses;
 mod constraints;
 mod construction;
 mod coordinates;
+mod cuts;
 mod extent;
 mod flexible;
 mod formulation;
@@ -50,6 +51,7 @@ mod tree;
 
 pub use crate::multibody::{BuildError, ConditionId, ConstraintId, CoordinateId, EquationId, OutputId};
 pub use build::{build, closes_loops, in_absolute_coordinates, in_joint_coordinates, joint_elimination};
+pub use cuts::other_cuts;
 pub use inventory::Inventory;
 pub use system::{
     ConditionOf, ConstraintInfo, CoordinateInfo, Distance, FormulationInfo, OutputInfo, ResidualUnit, StartCondition,

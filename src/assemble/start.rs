@@ -20,14 +20,23 @@ pub struct InboardAngle<'g, 'd> {
     parent: Option<&'d Formula>,
 }
 
+/// Where the start names a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Named {
+    /// In `initial`.
+    Kept,
+    /// In `guess`.
+    Guessed,
+}
+
 impl<'g> Mechanism<'g, '_> {
     /// Values that are kept, and where assembly begins to look for the others: at a guess where one is given, else
     /// where the joints put the bodies when they are walked from the ground ([`PlanarPoses`], [`Poses`]), with the nominal
     /// parameters.
     pub fn start(&self, description: &Description) -> Result<Start, BuildError> {
-        let position = self.values_at_start(description, &description.initial, TimeOrder::Position)?;
-        let velocity = self.values_at_start(description, &description.initial, TimeOrder::Velocity)?;
-        let mut guessed = self.values_at_start(description, &description.guess, TimeOrder::Position)?;
+        let position = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Position)?;
+        let velocity = self.values_at_start(description, &description.initial, Named::Kept, TimeOrder::Velocity)?;
+        let mut guessed = self.values_at_start(description, &description.guess, Named::Guessed, TimeOrder::Position)?;
         for &(place, value) in &self.child_guesses {
             let found = guessed[place].filter(|_| !self.starts_assembled);
             guessed[place] = Some(found.unwrap_or_else(|| self.g.number(value)));
@@ -53,7 +62,7 @@ impl<'g> Mechanism<'g, '_> {
     pub fn guessed_of_joints(&self, description: &Description) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
         let of_joint = |value: &&StartValue| matches!(value, StartValue::Joint { .. });
         let guess: Vec<StartValue> = description.guess.iter().filter(of_joint).cloned().collect();
-        self.values_at_start(description, &guess, TimeOrder::Position)
+        self.values_at_start(description, &guess, Named::Guessed, TimeOrder::Position)
     }
 
     /// Where the joints put the coordinates.
@@ -75,6 +84,7 @@ impl<'g> Mechanism<'g, '_> {
         &self,
         description: &Description,
         values: &[StartValue],
+        named: Named,
         wanted: TimeOrder,
     ) -> Result<Vec<Option<Scalar<'g>>>, BuildError> {
         let mut found = vec![None; self.q.len()];
@@ -83,7 +93,9 @@ impl<'g> Mechanism<'g, '_> {
                 StartValue::Coordinate { body, coordinate, order, value } if *order == wanted => {
                     if let Some(index) = self.bodies[*body].index[dof(*coordinate)] {
                         found[index] = Some(self.formula(value, Context::Parameters)?);
-                    } else if let Some(joint) = self.angle_of_inboard_joint(description, *body, *coordinate, *order) {
+                    } else if let Some(joint) =
+                        self.angle_of_inboard_joint(description, named, *body, *coordinate, *order)
+                    {
                         let own = self.formula(value, Context::Parameters)?;
                         let parent = match joint.parent {
                             Some(parent) => self.formula(parent, Context::Parameters)?,
@@ -114,10 +126,11 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// The coordinate that stands for an angle at the start of a child in the plane: its inboard joint's, where the angle of
-    /// the parent is named too or is the ground's.
+    /// the parent is named too or is the ground's. A value that is kept needs one that is kept.
     pub fn angle_of_inboard_joint<'d>(
         &self,
         description: &'d Description,
+        named: Named,
         body: usize,
         coordinate: Coordinate,
         order: TimeOrder,
@@ -128,7 +141,8 @@ impl<'g> Mechanism<'g, '_> {
         if coordinate != Coordinate::Angle || !rotates {
             return None;
         }
-        let named = description.initial.iter().chain(&description.guess).find_map(|value| match value {
+        let guess: &[StartValue] = if named == Named::Guessed { &description.guess } else { &[] };
+        let named = description.initial.iter().chain(guess).find_map(|value| match value {
             StartValue::Coordinate { body, coordinate: Coordinate::Angle, order: of, value } => {
                 (*body == motion.parent && *of == order).then_some(value)
             }

@@ -6,6 +6,7 @@
 use symdiff::Scalar;
 
 use super::mechanism::{Mechanism, dof};
+use super::start::Named;
 use super::system::{ConditionOf, ConstraintInfo, ResidualUnit, StartCondition};
 use crate::grammar::Symbol;
 use crate::grammar::motions::{ATTITUDE, AXES, motion_name};
@@ -78,7 +79,7 @@ impl<'g> Mechanism<'g, '_> {
     fn lacks(&self, description: &Description, (body, coordinate, order): (usize, Coordinate, TimeOrder)) -> bool {
         self.is_child(body)
             && self.bodies[body].index[dof(coordinate)].is_none()
-            && self.angle_of_inboard_joint(description, body, coordinate, order).is_none()
+            && self.angle_of_inboard_joint(description, Named::Kept, body, coordinate, order).is_none()
     }
 
     /// Whether a body's place follows from that of another.

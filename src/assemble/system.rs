@@ -71,6 +71,8 @@ pub struct FormulationInfo {
     pub joint: bool,
     /// For people.
     pub why: String,
+    /// The joints that close loops of the trees, by number; none in absolute coordinates.
+    pub cut: Vec<usize>,
 }
 
 impl FormulationInfo {

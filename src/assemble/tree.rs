@@ -57,7 +57,7 @@ impl Tree {
             let Some([first, second]) = joint.kind.between() else { continue };
             let list = match joint.kind.mobilizer() {
                 Some(_) if joint.merged => &mut welds,
-                Some(mobilizer) if is_time_independent(&mobilizer) => &mut joints,
+                Some(mobilizer) if !joint.cut && is_time_independent(&mobilizer) => &mut joints,
                 _ => continue,
             };
             list[first.body].push(InboardJoint { joint: index, parent: first, child: second, reversed: false });
@@ -122,10 +122,35 @@ impl Tree {
         self.merged[body]
     }
 
+    /// The joints that close loops of the trees.
+    pub fn closing(&self, description: &Description) -> Vec<usize> {
+        let closes = |&joint: &usize| !self.joints[joint] && description.joints[joint].kind.between().is_some();
+        (0..self.joints.len()).filter(closes).collect()
+    }
+
     /// Whether joints close loops of the trees.
     pub fn closes_loops(&self, description: &Description) -> bool {
-        let mut joints = description.joints.iter().zip(&self.joints);
-        joints.any(|(joint, inboard)| !inboard && joint.kind.between().is_some())
+        !self.closing(description).is_empty()
+    }
+
+    /// The inboard joints between two bodies, those of merged bodies left out.
+    pub fn joints_between(&self, bodies: [usize; 2]) -> Vec<usize> {
+        let [mut first, second] = bodies.map(|body| self.joints_to_root(body));
+        let (only_second, shared): (Vec<_>, Vec<_>) = second.into_iter().partition(|joint| !first.contains(joint));
+        first.retain(|joint| !shared.contains(joint));
+        first.extend(only_second);
+        first
+    }
+
+    fn joints_to_root(&self, mut body: usize) -> Vec<usize> {
+        let mut joints = Vec::new();
+        while let Some(inboard) = self.inboard[body] {
+            if !self.merged[body] {
+                joints.push(inboard.joint);
+            }
+            body = inboard.parent.body;
+        }
+        joints
     }
 
     /// Why joint coordinates are not worth a try: bodies are more than so many joints from their roots on average.

@@ -150,12 +150,14 @@ pub struct Joint {
     pub kind: JointKind,
     /// Whether both bodies move as one, so that there is no reaction between them; of a weld, and set by `reduce`.
     pub merged: bool,
+    /// Whether it closes a loop in joint coordinates, though a body could move with it; set where the cut of loops is chosen.
+    pub cut: bool,
 }
 
 impl Joint {
     /// A joint whose bodies move as two.
     pub fn new(name: String, kind: JointKind) -> Self {
-        Self { name, kind, merged: false }
+        Self { name, kind, merged: false, cut: false }
     }
 }
 
@@ -182,6 +184,13 @@ pub struct Output {
 }
 
 impl Description {
+    /// Lets these joints close loops in joint coordinates, and no others that could be inboard joints.
+    pub fn cut_at(&mut self, joints: &[usize]) {
+        for (index, joint) in self.joints.iter_mut().enumerate() {
+            joint.cut = joints.contains(&index);
+        }
+    }
+
     /// Nothing yet, in the plane, for a second.
     pub(crate) fn empty(name: String) -> Self {
         Self {

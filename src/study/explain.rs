@@ -10,6 +10,9 @@ use crate::reduce::Choices;
 use crate::results::{EffectExplanation, Explanation, InstructionCounts, LeftOut, NewtonMatrix};
 use crate::simulate::Simulator;
 
+/// Most joints that are listed.
+const MOST_NAMED: usize = 8;
+
 /// What a model is compiled to, and why it is no more than that.
 ///
 /// # Errors
@@ -18,7 +21,7 @@ pub fn explain(description: &Description) -> Result<Explanation, RunError> {
     let model = reduced::expanded(description);
     let (reduction, prepared) = prepare(&model, Choices::default())?;
     let of_subsystem = |Prepared { subsystem, simulator }: &Prepared| {
-        let mut explanation = of_simulator(&description.name, simulator);
+        let mut explanation = of_simulator(&description.name, &subsystem.description, simulator);
         for (effect, adds) in explanation.effects.iter_mut().zip(effect_costs(&subsystem.description, simulator)) {
             effect.adds = adds;
         }
@@ -49,15 +52,27 @@ fn idle(uncertain: &[String], prepared: &[Prepared]) -> Vec<usize> {
     (0..uncertain.len()).filter(|number| !reached(number)).collect()
 }
 
+/// By which coordinates, why, and where loops are cut.
+fn formulation(description: &Description, simulator: &Simulator) -> String {
+    let info = &simulator.system.formulation;
+    let cut: Vec<String> = info.cut.iter().map(|&joint| format!("`{}`", description.joints[joint].name)).collect();
+    let cut = match cut.len() {
+        0 => String::new(),
+        1..=MOST_NAMED => format!("; loops are cut at {}", cut.join(", ")),
+        count => format!("; loops are cut at {count} joints"),
+    };
+    format!("{} coordinates: {}{cut}", info.name(), info.why)
+}
+
 /// What one subsystem is compiled to.
-fn of_simulator(model: &str, simulator: &Simulator) -> Explanation {
+fn of_simulator(model: &str, description: &Description, simulator: &Simulator) -> Explanation {
     let (system, program) = (&simulator.system, &simulator.program);
     let (nonzeros, factor_nonzeros) = program.nonzeros;
     Explanation {
         model: model.to_owned(),
         space: format!("{}: {}", if system.space.spatial { "spatial" } else { "planar" }, system.space.why),
         analysis: None,
-        formulation: format!("{} coordinates: {}", system.formulation.name(), system.formulation.why),
+        formulation: formulation(description, simulator),
         coordinates: system.coordinates_of_motion().map(|coordinate| coordinate.name.clone()).collect(),
         constraints: system.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
         degrees_of_freedom: simulator.mobility.degrees_of_freedom,

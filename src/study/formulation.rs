@@ -11,7 +11,7 @@ use crate::model::{Description, Formulation, Stepping};
 use crate::numerics::Sample;
 use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
 
-use super::{RunError, first_step, scheme};
+use super::{RunError, first_step, loop_cuts, scheme};
 
 /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried: M has as many
 /// entries for each body. Spatial chains break even at 15, planar ones at 3.
@@ -54,7 +54,17 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     };
     let compile = |system: System| within(system, MOST);
     if description.simulation.formulation != Formulation::Auto {
-        return within_budget(description, MOST, &|system| Ok(compile(system)?));
+        let first = within_budget(description, MOST, &|system| Ok(compile(system)?))?;
+        let is_open = description.joints.iter().all(|joint| !joint.cut);
+        if !is_open || !first.system.formulation.joint {
+            return Ok(first);
+        }
+        let why = first.system.formulation.why.clone();
+        let mut shortest = loop_cuts::shortest(description, first, |other, operations| {
+            within(assemble::build(other).ok()?, operations).ok()
+        });
+        shortest.system.formulation.why = why;
+        return Ok(shortest);
     }
     let absolute = assemble::in_absolute_coordinates(description)?;
     if assemble::closes_loops(description) {
@@ -117,7 +127,13 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         Err(why) => return keep(absolute, why),
     };
     match within(joint, enough(&absolute)) {
-        Ok(joint) if starts_alike(&absolute, &joint) => Ok(shorter(absolute, joint)),
+        Ok(joint) if starts_alike(&absolute, &joint) => {
+            let joint = loop_cuts::shortest(description, joint, |other, operations| {
+                let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
+                within(system, operations).ok()
+            });
+            Ok(shorter(absolute, joint))
+        }
         Ok(_) => keep(absolute, "outputs start elsewhere in joint coordinates".to_owned()),
         Err(SimulationError::TooLong) => {
             let why = format!("{} instructions a step instead of several times as many", instructions(&absolute));
@@ -158,7 +174,7 @@ fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
 }
 
 /// Whether both have the same degrees of freedom and the same outputs at the start.
-fn starts_alike(absolute: &Simulator, joint: &Simulator) -> bool {
+pub(super) fn starts_alike(absolute: &Simulator, joint: &Simulator) -> bool {
     let [first, second] = [absolute, joint].map(Simulator::outputs_at_start);
     // NaN is like nothing.
     let alike = |(a, b): (f64, f64)| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
@@ -168,7 +184,7 @@ fn starts_alike(absolute: &Simulator, joint: &Simulator) -> bool {
 }
 
 /// Operations after which the other formulation is given up.
-fn enough(simulator: &Simulator) -> usize {
+pub(super) fn enough(simulator: &Simulator) -> usize {
     (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
 }
 
@@ -251,11 +267,12 @@ fn other_way<T>(
     of_system(because(system, format!("{other} coordinates take too many instructions")))
 }
 
-/// A copy of the description with the formulation that was chosen for it.
+/// A copy of the description with the formulation that was chosen for it, and the cut of its loops.
 pub(super) fn as_chosen(description: &Description, chosen: &Simulator) -> Description {
     let mut description = description.clone();
     let joint = chosen.system.formulation.joint;
     description.simulation.formulation = if joint { Formulation::Joint } else { Formulation::Absolute };
+    description.cut_at(&chosen.system.formulation.cut);
     description
 }
 

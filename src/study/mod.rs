@@ -27,6 +27,7 @@ mod formulation;
 mod internal;
 mod keeping;
 mod kept;
+mod loop_cuts;
 mod motion;
 mod outcome;
 mod price;

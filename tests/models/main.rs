@@ -35,6 +35,8 @@ mod invariants;
 mod kept;
 mod kinematics;
 mod linkages;
+mod loop_analyses;
+mod loop_cuts;
 mod loops;
 mod machines;
 mod massless;

@@ -122,7 +122,7 @@ grammar! {
         alpha: Option<Number>,
         /// s between rows of output.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described.
+        /// By which coordinates the motion is described. With `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
         formulation: Option<FormulationName>,
         /// By what the motion is integrated.
         scheme: Option<SchemeName>,

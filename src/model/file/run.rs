@@ -17,7 +17,7 @@ grammar! {
         alpha: Option<Number>,
         /// s between rows of output; by default about a 200th of the duration. The last row is at the end, however near.
         output_step: Option<Number>,
-        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions.
+        /// By which coordinates the motion is described; by default `auto`, whichever take fewer instructions. With `joint`, one joint of each loop is a constraint: the one with which a step is shortest.
         formulation: Option<FormulationName>,
         /// By what the motion is integrated; by default `auto`.
         scheme: Option<SchemeName>,

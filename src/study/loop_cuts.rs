@@ -1,0 +1,54 @@
+//! Which joints close the loops of a mechanism in joint coordinates: those with which its steps are shortest.
+//!
+//! The number of instructions depends on the cut by a half and more, and is known only when a cut is compiled. From the cut of the
+//! shallowest trees one exchange after the other is compiled, and kept where it is shorter, until none is, or the budget is used up.
+
+use std::collections::BTreeSet;
+
+use super::formulation::{enough, instructions, starts_alike};
+use crate::assemble;
+use crate::model::Description;
+use crate::simulate::Simulator;
+
+/// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
+const BUDGET: usize = 20_000;
+
+/// The first, or one with another cut and a shorter step that starts alike. `compile` makes one of a description that says its cut, within
+/// a number of operations. Redundant constraints and a singular start depend on the cut, and are left with the first.
+pub(super) fn shortest(
+    description: &Description,
+    first: Simulator,
+    compile: impl Fn(&Description, usize) -> Option<Simulator>,
+) -> Simulator {
+    let is_regular = |simulator: &Simulator| {
+        simulator.mobility.redundant.is_empty() && simulator.mobility.singular_at_start.is_empty()
+    };
+    if !is_regular(&first) {
+        return first;
+    }
+    let mut best = first;
+    let mut tried = BTreeSet::from([best.system.formulation.cut.clone()]);
+    let mut spent = 0;
+    let mut exchanged = description.clone();
+    'exchanges: loop {
+        let least = instructions(&best);
+        exchanged.cut_at(&best.system.formulation.cut);
+        for cut in assemble::other_cuts(&exchanged) {
+            if spent + least > BUDGET {
+                return best;
+            }
+            exchanged.cut_at(&cut);
+            if !tried.insert(cut) {
+                continue;
+            }
+            let other = compile(&exchanged, enough(&best));
+            spent += other.as_ref().map_or(least, instructions);
+            let shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
+            if let Some(other) = other.filter(|other| shorter(other) && starts_alike(&best, other)) {
+                best = other;
+                continue 'exchanges;
+            }
+        }
+        return best;
+    }
+}
