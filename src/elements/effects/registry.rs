@@ -8,6 +8,7 @@ macro_rules! effects {
 
         /// An effect of any kind.
         #[derive(Clone, Debug)]
+        #[allow(clippy::large_enum_variant, reason = "a model has few effects, and none is copied in a step")]
         pub enum EffectKind {
             $(#[doc = concat!("See `", stringify!($name), "`.")] $name($name),)*
         }
