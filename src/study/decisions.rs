@@ -2,8 +2,9 @@
 
 use symdiff::{Formula, Input, lower};
 
+use super::comparison::instructions;
 use super::explicit;
-use super::formulation::{as_chosen, compiled, instructions};
+use super::formulation::{as_chosen, compiled};
 use super::subsystems::{Prepared, prepare};
 use crate::compile::Tapes;
 use crate::model::{Description, Output, ParameterValue};

@@ -11,6 +11,7 @@ use crate::model::{Description, Formulation, Stepping};
 use crate::numerics::Sample;
 use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularWatch, Stepper};
 
+use super::comparison::{instructions, starts_alike};
 use super::{RunError, first_step, loop_cuts, scheme};
 
 /// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried: M has as many
@@ -29,9 +30,6 @@ const MOST: usize = 8_000_000;
 
 /// The same in joint coordinates where only the start is wanted: in a second or two.
 const MOST_TO_CHECK: usize = 1_000_000;
-
-/// Largest difference of an output's starts, relative or in its SI unit, by which formulations start alike: what closures leave.
-const ALIKE: f64 = 1e-6;
 
 /// Steps in which the nominal motion is looked at for singular configurations: s, where a tolerance chooses them, and how many at most.
 const LONGEST_LOOK: f64 = 1e-3;
@@ -60,8 +58,8 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
             return Ok(first);
         }
         let why = first.system.formulation.why.clone();
-        let mut shortest = loop_cuts::shortest(description, first, |other, operations| {
-            within(assemble::build(other).ok()?, operations).ok()
+        let mut shortest = loop_cuts::shortest(description, first, |other, best| {
+            within(assemble::build(other).ok()?, enough(best)).ok()
         });
         shortest.system.formulation.why = why;
         return Ok(shortest);
@@ -128,9 +126,9 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
     };
     match within(joint, enough(&absolute)) {
         Ok(joint) if starts_alike(&absolute, &joint) => {
-            let joint = loop_cuts::shortest(description, joint, |other, operations| {
+            let joint = loop_cuts::shortest(description, joint, |other, best| {
                 let system = assemble::in_joint_coordinates(other, None, Some(start)).ok()?.ok()?;
-                within(system, operations).ok()
+                within(system, enough(best)).ok()
             });
             Ok(shorter(absolute, joint))
         }
@@ -173,18 +171,8 @@ fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
     false
 }
 
-/// Whether both have the same degrees of freedom and the same outputs at the start.
-pub(super) fn starts_alike(absolute: &Simulator, joint: &Simulator) -> bool {
-    let [first, second] = [absolute, joint].map(Simulator::outputs_at_start);
-    // NaN is like nothing.
-    let alike = |(a, b): (f64, f64)| (a - b).abs() <= ALIKE * a.abs().max(b.abs()).max(1.0);
-    absolute.mobility.degrees_of_freedom == joint.mobility.degrees_of_freedom
-        && first.len() == second.len()
-        && first.into_iter().zip(second).all(alike)
-}
-
 /// Operations after which the other formulation is given up.
-pub(super) fn enough(simulator: &Simulator) -> usize {
+fn enough(simulator: &Simulator) -> usize {
     (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
 }
 
@@ -279,10 +267,4 @@ pub(super) fn as_chosen(description: &Description, chosen: &Simulator) -> Descri
 fn because(mut system: System, why: String) -> System {
     system.formulation = FormulationInfo { why, ..system.formulation };
     system
-}
-
-/// Of a step with one correction.
-pub(super) fn instructions(simulator: &Simulator) -> usize {
-    let p = &simulator.program;
-    [p.step(), p.factor(), p.correct(), p.advance()].into_iter().map(symdiff::Tape::len).sum()
 }

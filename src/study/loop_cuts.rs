@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::formulation::{enough, instructions, starts_alike};
+use super::comparison::{instructions, starts_alike};
 use crate::assemble;
 use crate::model::Description;
 use crate::simulate::Simulator;
@@ -13,12 +13,12 @@ use crate::simulate::Simulator;
 /// Instructions of steps that are compiled in search of a shorter cut: in some hundredths of a second.
 const BUDGET: usize = 20_000;
 
-/// The first, or one with another cut and a shorter step that starts alike. `compile` makes one of a description that says its cut, within
-/// a number of operations. Redundant constraints and a singular start depend on the cut, and are left with the first.
+/// The first, or one with another cut and a shorter step that starts alike. `compile` makes one of a description that says its cut, and gives
+/// up where it takes many times the operations of the best so far. Redundant constraints and a singular start depend on the cut, and are left with the first.
 pub(super) fn shortest(
     description: &Description,
     first: Simulator,
-    compile: impl Fn(&Description, usize) -> Option<Simulator>,
+    compile: impl Fn(&Description, &Simulator) -> Option<Simulator>,
 ) -> Simulator {
     let is_regular = |simulator: &Simulator| {
         simulator.mobility.redundant.is_empty() && simulator.mobility.singular_at_start.is_empty()
@@ -41,7 +41,7 @@ pub(super) fn shortest(
             if !tried.insert(cut) {
                 continue;
             }
-            let other = compile(&exchanged, enough(&best));
+            let other = compile(&exchanged, &best);
             spent += other.as_ref().map_or(least, instructions);
             let shorter = |other: &Simulator| instructions(other) < least && is_regular(other);
             if let Some(other) = other.filter(|other| shorter(other) && starts_alike(&best, other)) {
