@@ -116,3 +116,43 @@ bounds: { chebyshev: { order: 1, expand: output }, budget: { solves: 40 } }
     let (output, _) = place.run("run square.yaml -o out", 0);
     assert!(output.contains("holds") && output.contains("earlier round"), "{output}");
 }
+
+/// A mass on a spring, thrown from rest at v, is at most v/√k away: proven where certified bounds see every step, or the row that is asked for.
+#[test]
+fn certified_bounds_prove_what_they_see() {
+    let place = Place::new();
+    let rows = |step: &str| {
+        let text = format!(
+            "
+model: thrown
+parameters: {{ v: 2 m/s ± 10%, k: 100 N/m ± 5% }}
+bodies: {{ ball: {{ mass: 1 kg, coordinates: [x] }} }}
+effects: {{ spring: {{ spring_damper: {{ between: [ground, ball], along: x, stiffness: k, free_length: 0 }} }} }}
+initial: {{ ball.x: 0, ball.vx: v }}
+outputs: {{ x: ball.x, top: {{ max: ball.x }} }}
+requirements:
+  near: x <= 0.24 m
+  there: {{ output: x, at: 0.1, min: 0.1 m, max: 0.2 m }}
+  nearer: x <= 0.22 m
+  peak: top <= 0.24 m
+simulation: {{ duration: 0.2, step: 5e-3, output_step: {step} }}
+bounds: {{ chebyshev: {{ order: 5 }} }}
+"
+        );
+        fs::write(place.path().join("thrown.yaml"), text).unwrap();
+        let (output, _) = place.run("run thrown.yaml --certify -o out", 4);
+        let line = |name: &str| output.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
+        let verdict = |name: &str| {
+            let line = line(&format!("{name} "));
+            ["holds, certified", "holds", "violated"].into_iter().find(|verdict| line.contains(verdict)).unwrap()
+        };
+        let verdicts = ["near", "there", "nearer", "peak"].map(verdict);
+        let margin = 0.24 - 2.2 / 95.0_f64.sqrt();
+        let cells: Vec<f64> = line("near ").split_whitespace().filter_map(|cell| cell.parse().ok()).collect();
+        let &[.., found, error, _] = &cells[..] else { panic!("{output}") };
+        assert!((found - margin).abs() <= error, "{found} ± {error} instead of {margin}");
+        verdicts
+    };
+    assert_eq!(rows("5e-3"), ["holds, certified", "holds, certified", "violated", "holds"]);
+    assert_eq!(rows("0.01"), ["holds", "holds, certified", "violated", "holds"]);
+}
