@@ -214,10 +214,8 @@ impl<S: SymbolTable> Reader<'_, S> {
     /// The value of a key that must be there.
     pub fn required<'n>(&mut self, fields: &Fields<'n>, key: &str) -> Option<&'n Node> {
         let found = fields.get(key);
-        if fields.lacks(key) {
-            if !self.is_strange(fields, key) {
-                self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
-            }
+        if fields.lacks(key) && !self.is_strange(fields, key) {
+            self.error(fields.at.clone(), format!("{} needs `{key}`", fields.what), None);
         }
         found
     }
