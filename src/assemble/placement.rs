@@ -5,8 +5,8 @@
 //! the other, each onto a joint with a body that is already placed:
 //!
 //! - pins and welds before slides, since a slide does not say where along its line a body is;
-//! - bodies whose angle is given (kept, guessed or prescribed) before others;
-//! - the angle, where it is not given: that of a weld or slide to a placed body; or towards the other pin, where the
+//! - bodies whose angle is given (kept, guessed or prescribed, or by that of a pin) before others;
+//! - the angle, where it is not given: that of a weld, slide or given pin to a placed body; or towards the other pin, where the
 //!   body's second pin is on a placed body; or, where a second unplaced body leads on to a placed pin, that of the
 //!   triangle with both bodies' lengths as sides, its corner on top; or 0.
 //!
@@ -115,7 +115,7 @@ impl PlanarPoses {
             found.unwrap_or_default()
         };
         let frames = standing.iter().map(frame).collect();
-        let mut placement = Self { links: links(m)?, given, poses, frames };
+        let mut placement = Self { links: links(m, known)?, given, poses, frames };
         placement.walk();
         Ok(placement)
     }
@@ -253,16 +253,20 @@ fn direction(from: [f64; 2], to: [f64; 2]) -> Option<f64> {
     (distance(from, to) > 0.0).then(|| math::atan2(to[1] - from[1], to[0] - from[0]))
 }
 
-/// The joints of each body, and the elements of beams, straight.
-fn links(m: &Mechanism) -> Result<Vec<Vec<Link>>, BuildError> {
+/// The joints of each body, and the elements of beams, straight. A pin whose angle is known holds its bodies as a weld does.
+fn links<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Vec<Vec<Link>>, BuildError> {
     let mut links = vec![Vec::new(); m.bodies.len()];
-    for joint in m.joints {
+    for (index, joint) in m.joints.iter().enumerate() {
+        let turned = m.joint_coordinates.get(&(index, JointCoordinate::Angle)).and_then(|&place| known[place]);
         let value = |formula| Ok(m.nominal([m.formula(formula, Context::Time)?])[0]);
         let (Some(between), Some(placement)) = (joint.kind.between(), joint.kind.placement()) else { continue };
         let kind = match (placement.separation, placement.orientation) {
             (Separation::Coincident, Orientation::Fixed(angle)) => LinkKind::Weld(value(angle)?),
             (_, Orientation::Fixed(angle)) => LinkKind::Slide(value(angle)?),
-            (Separation::Coincident, _) => LinkKind::Pin,
+            (Separation::Coincident, _) => match turned {
+                Some(angle) => LinkKind::Weld(m.nominal([angle])[0]),
+                None => LinkKind::Pin,
+            },
             (Separation::Unknown, _) => LinkKind::Loose(0.0),
             (Separation::Distance(length), _) => LinkKind::Loose(value(length)?),
         };

@@ -316,3 +316,29 @@ simulation: {{ duration: 0.01, step: 1e-3, output_step: 0.01, formulation: {form
         }
     }
 }
+
+/// Eighty links, each turned against the one before: more than a whole turn together.
+#[test]
+fn a_chain_that_winds_up_starts_in_every_formulation() {
+    const LINKS: usize = 80;
+    let each = |text: &dyn Fn(usize) -> String| (1..=LINKS).map(text).collect::<Vec<_>>().join("\n");
+    let bodies = each(&|i| format!("  b{i}: {{ mass: 1, inertia: 0.01, points: {{ A: [-0.1, 0], B: [0.1, 0] }} }}"));
+    let before = |i: usize| if i == 1 { "ground".to_owned() } else { format!("b{}.B", i - 1) };
+    let joints = each(&|i| format!("  j{i}: {{ revolute: [{}, b{i}.A] }}", before(i)));
+    let initial = each(&|i| format!("  j{i}.angle: 0.1"));
+    for formulation in ["absolute", "joint"] {
+        let text = format!(
+            "bodies:\n{bodies}\njoints:\n{joints}\ninitial:\n{initial}\n\
+             outputs: {{ x: b{LINKS}.x, y: b{LINKS}.y, angle: b{LINKS}.angle }}\n\
+             simulation: {{ duration: 1e-3, step: 1e-3, formulation: {formulation} }}\nbounds: {{ scan: {{ points: 2 }} }}\n"
+        );
+        let bounds = nominal(&read(&text));
+        let sum = |part: fn(f64) -> f64| -> f64 {
+            (1..=LINKS).map(|i| part(0.1 * i as f64) * if i == LINKS { 0.1 } else { 0.2 }).sum()
+        };
+        for (name, expected) in [("x", sum(f64::cos)), ("y", sum(f64::sin)), ("angle", 8.0)] {
+            let found = curve(&bounds, name)[0];
+            assert!((found - expected).abs() < 1e-9, "{formulation}: {name} = {found} instead of {expected}");
+        }
+    }
+}

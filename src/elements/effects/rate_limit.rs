@@ -13,6 +13,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use symdiff::Formula;
 
 use super::saturation::saturated;
+use super::state::{VALUE_AND_CHANGE, value_and_change};
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
@@ -37,18 +38,10 @@ pub struct RateLimit {
 }
 
 impl ForceElement for RateLimit {
-    const SENSORS: &'static [TypedSensor] = &[
-        (Sensor::VALUE.of_unknown_unit(), Dimension::NUMBER),
-        (Sensor::CHANGE.of_unknown_unit(), Dimension::NUMBER),
-    ];
+    const SENSORS: &'static [TypedSensor] = &VALUE_AND_CHANGE;
 
     fn sensors(&self) -> Vec<TypedSensor> {
-        match self.dimension {
-            None => Self::SENSORS.to_vec(),
-            Some(dimension) => {
-                vec![(Sensor::VALUE, dimension), (Sensor::CHANGE, dimension.per(Dimension::TIME))]
-            }
-        }
+        value_and_change(self.dimension).to_vec()
     }
 
     fn states(&self) -> Vec<StateVariable<'_>> {

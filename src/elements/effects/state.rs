@@ -29,19 +29,20 @@ pub struct State {
     pub dimension: Option<Dimension>,
 }
 
+/// A number that follows an equation, and its rate, of a dimension that is not known.
+pub(super) const VALUE_AND_CHANGE: [TypedSensor; 2] =
+    [(Sensor::VALUE.of_unknown_unit(), Dimension::NUMBER), (Sensor::CHANGE.of_unknown_unit(), Dimension::NUMBER)];
+
+/// The same, of a dimension that may be known.
+pub(super) fn value_and_change(dimension: Option<Dimension>) -> [TypedSensor; 2] {
+    dimension.map_or(VALUE_AND_CHANGE, |known| [(Sensor::VALUE, known), (Sensor::CHANGE, known.per(Dimension::TIME))])
+}
+
 impl ForceElement for State {
-    const SENSORS: &'static [TypedSensor] = &[
-        (Sensor::VALUE.of_unknown_unit(), Dimension::NUMBER),
-        (Sensor::CHANGE.of_unknown_unit(), Dimension::NUMBER),
-    ];
+    const SENSORS: &'static [TypedSensor] = &VALUE_AND_CHANGE;
 
     fn sensors(&self) -> Vec<TypedSensor> {
-        match self.dimension {
-            None => Self::SENSORS.to_vec(),
-            Some(dimension) => {
-                vec![(Sensor::VALUE, dimension), (Sensor::CHANGE, dimension.per(Dimension::TIME))]
-            }
-        }
+        value_and_change(self.dimension).to_vec()
     }
 
     fn states(&self) -> Vec<StateVariable<'_>> {
