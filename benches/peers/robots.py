@@ -227,6 +227,9 @@ def main():
     program = Path(sys.argv[1]).resolve()
     folder = Path(sys.argv[2] if len(sys.argv) > 2 else "target/robots")
     folder.mkdir(parents=True, exist_ok=True)
+    # MuJoCo writes a log where it runs.
+    folder = folder.resolve()
+    os.chdir(folder)
     os.environ["OMP_NUM_THREADS"] = "1"
     results = {}
     for text, names, start, rates, floating in (arm(), quadruped()):
