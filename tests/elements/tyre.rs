@@ -145,3 +145,115 @@ simulation: {{ duration: 1, step: 1e-3, output_step: 0.1 }}
         assert!(largest(curve(&bounds, "y").iter().copied()) > 0.5, "it turns");
     }
 }
+
+/// A wheel that is too heavy to be driven slips from −100 to 100 %; Bakker, Nyborg & Pacejka 1987, table 1 for braking: D = a₁ F² + a₂ F, BCD =
+/// (a₃ F² + a₄ F)/exp(a₅ F), E = a₆ F² + a₇ F + a₈, in kN, N and per cent; a = −21.3, 1144, 49.6, 226, 0.069, −0.006, 0.056, 0.486, C = 1.65.
+#[test]
+fn along_the_heading_the_magic_formula_has_its_published_values() {
+    let load = 4.0_f64;
+    let peak = -21.3 * load * load + 1144.0 * load;
+    let slope = (49.6 * load * load + 226.0 * load) / (0.069 * load).exp();
+    let curvature = -0.006 * load * load + 0.056 * load + 0.486;
+    let published = |percent: f64| {
+        let b = slope / (1.65 * peak);
+        let phi = (1.0 - curvature) * percent + curvature / b * (b * percent).atan();
+        peak * (1.65 * (b * phi).atan()).sin()
+    };
+    let keys = format!(
+        "load: 4 kN, friction: {}, slip_stiffness: {}, shape: 1.65, curvature: {curvature}, wheel: wheel, radius: 0.3, rest_speed: 1e-6",
+        peak / 4e3,
+        slope * 100.0
+    );
+    for (space, body, start, torque) in [
+        ("planar", "inertia: 1e6", "wheel.angular_velocity: 0", "-4e7/0.3"),
+        ("spatial", "inertia: [1e6, 1e6, 1e6]", "wheel.omega: [0, 0, 0]", "[0, 4e7/0.3, 0]"),
+    ] {
+        // From a locked wheel to one that turns twice as fast as it rolls, at 20 m/s.
+        let bounds = nominal(&read(&format!(
+            "
+space: {space}
+bodies:
+  cart: {{ mass: 1e9, coordinates: [x] }}
+  wheel: {{ mass: 1, {body} }}
+joints: {{ axle: {{ revolute: {{ between: [cart, wheel], axis: {} }} }} }}
+effects:
+  contact: {{ tyre: {{ on: cart, {keys} }} }}
+  drive: {{ torque: {{ on: wheel, value: {torque} }} }}
+initial: {{ cart.x: 0, cart.vx: 20, {start} }}
+outputs: {{ slip: contact.slip, force: contact.force_along }}
+simulation: {{ duration: 1, step: 1e-3, output_step: 0.02 }}
+",
+            if space == "planar" { "z" } else { "y" }
+        )));
+        let slips = curve(&bounds, "slip");
+        let expected: Vec<f64> = slips.iter().map(|slip| published(100.0 * slip)).collect();
+        assert!(distance(curve(&bounds, "force"), &expected) < 1e-6 * peak, "{space}");
+        assert!((slips[0] + 1.0).abs() < 1e-9 && (slips[50] - 1.0).abs() < 1e-2, "{space}: {slips:?}");
+    }
+}
+
+/// A car of 400 kg, seen from the side.
+fn braked(joint: &str, effect: &str, start: &str) -> mbint::inner::results::Bounds {
+    nominal(&read(&format!(
+        "
+bodies:
+  car: {{ mass: 380, coordinates: [x] }}
+  wheel: {{ mass: 20, inertia: 1.5 }}
+joints: {{ axle: {{ {joint}: [car, wheel] }} }}
+effects:
+  tyre: {{ tyre: {{ on: car, wheel: wheel, radius: 0.3, load: 400 kg*9.81 m/s^2, friction: 0.8, slip_stiffness: 1e6, rest_speed: 1e-3 }} }}
+{effect}
+initial: {{ car.x: 0, car.vx: 20{start} }}
+outputs: {{ v: car.vx, slip: tyre.slip }}
+simulation: {{ duration: 2, step: 2e-4, output_step: 0.1 }}
+"
+    )))
+}
+
+/// A locked wheel slows a car down by μ g; a braked one by T/R/(m + (1 + κ) J/R²), where it slips by κ = m v̇/C_x.
+#[test]
+fn a_car_is_braked_by_closed_forms() {
+    let locked = braked("fixed", "", "");
+    let expected: Vec<f64> = locked.times.iter().map(|t| 20.0 - 0.8 * 9.81 * t).collect();
+    assert!(distance(curve(&locked, "v"), &expected) < 1e-5);
+
+    let brake = "  brake: { torque: { on: wheel, from: car, value: 300 } }";
+    let rolling = braked("revolute", brake, ", wheel.angular_velocity: -20/0.3");
+    let slip = |rate: f64| 400.0 * rate / 1e6;
+    let rate = (0..20).fold(0.0, |rate, _| -1000.0 / (400.0 + (1.0 + slip(rate)) * 1.5 / 0.09));
+    let (speeds, slips) = (curve(&rolling, "v"), curve(&rolling, "slip"));
+    let found = (speeds[15] - speeds[5]) / (rolling.times[15] - rolling.times[5]);
+    // Of a limit the slope at no slip is short by 5e-5.
+    assert!((found / rate - 1.0).abs() < 1e-4, "{found}, not {rate}");
+    assert!((slips[10] / slip(rate) - 1.0).abs() < 2e-4, "{}, not {}", slips[10], slip(rate));
+}
+
+/// Forces along and across lie within the ellipse of both limits, and on it where the wheel slides, with or without the magic formula.
+#[test]
+fn forces_of_both_directions_share_the_slip() {
+    for shape in ["", ", shape: 1"] {
+        let bounds = nominal(&read(&format!(
+            "
+space: spatial
+bodies:
+  cart: {{ mass: 1e9, inertia: [1e9, 1e9, 1e9] }}
+  wheel: {{ mass: 1, inertia: [1, 1, 1] }}
+joints: {{ axle: {{ fixed: [cart, wheel] }} }}
+effects:
+  contact:
+    tyre: {{ on: cart, wheel: wheel, radius: 0.3, load: 4 kN, friction: 0.9, friction_along: 1.1, cornering_stiffness: 6e7, slip_stiffness: 9e7, rest_speed: 1e-6{shape} }}
+initial: {{ cart.x: 0, cart.y: 0, cart.z: 0, cart.vx: 20, cart.orientation: {{ axis: [0, 0, 1], angle: -0.3 }}, cart.omega.z: 0.6 }}
+outputs: {{ angle: contact.slip_angle, slip: contact.slip, along: contact.force_along, aside: contact.force, fx: axle.force.x, fy: axle.force.y }}
+simulation: {{ duration: 1, step: 1e-2, output_step: 0.02 }}
+"
+        )));
+        for row in 0..bounds.times.len() {
+            let value = |name: &str| curve(&bounds, name)[row];
+            let (along, aside) = (value("along") / 4400.0, value("aside") / 3600.0);
+            assert!((along.hypot(aside) - 1.0).abs() < 1e-4, "{along} {aside}");
+            // Both by their own stiffness and slip.
+            let (s_x, s_y) = (9e7 * value("slip") / 4400.0, 6e7 * value("angle") / 3600.0);
+            assert!((along * s_y + aside * s_x).abs() < 1e-6 * s_x.hypot(s_y), "{along} {aside}");
+        }
+    }
+}
