@@ -5,8 +5,8 @@ use symdiff::{Builder, Formula, Scalar};
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use crate::elements::effects::Forces;
-use crate::grammar::{OnJoint, PointRef, Rotating, Sensor, TimeOrder};
-use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, Pair, Vector};
+use crate::grammar::{OfPlace, OnJoint, PointRef, Rotating, Sensor, TimeOrder};
+use crate::multibody::{ANGLE, BuildError, Context, MaterialPoint, OwnFunction, Pair, Vector};
 
 /// A mechanism while an effect acts on it.
 pub struct Acting<'m, 'g, 'd> {
@@ -49,6 +49,10 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
 
     fn prescribed_vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError> {
         self.m.vector(formulas, Context::Time)
+    }
+
+    fn of_place(&self, formula: &OfPlace) -> Result<OwnFunction<'g>, BuildError> {
+        self.m.function_of(&formula.0, OfPlace::VARIABLE)
     }
 
     fn point(&self, point: PointRef) -> MaterialPoint<'g> {

@@ -76,17 +76,8 @@ impl<'g> Kinematics<'g> for Position<'_, 'g, '_> {
     }
 
     fn of_angle(&self, formula: &OfAngle, angle: Scalar<'g>) -> Result<[Scalar<'g>; 2], BuildError> {
-        let (m, g) = (self.0, self.0.g);
-        // A name that no file can give to anything else.
-        let variable = g.variable("own:angle");
-        let value = formula.0.build(g, |name| match name {
-            OfAngle::VARIABLE => Ok(variable),
-            _ => m.names.known(name, Context::Time).map(|symbol| m.observe(symbol)),
-        })?;
-        let roots = [value.expr(), value.derivative(variable).expr()];
-        let at = std::iter::once((variable.expr(), angle.expr())).collect();
-        let substituted = g.with(|graph| graph.substitute(&roots, &at));
-        Ok([g.scalar(substituted[0]), g.scalar(substituted[1])])
+        let function = self.0.function_of(&formula.0, OfAngle::VARIABLE)?;
+        Ok([function.at(angle), function.derivative().at(angle)])
     }
 
     fn unit_vector(&self, direction: &[Formula; 3]) -> Result<Vector<'g>, BuildError> {

@@ -6,7 +6,7 @@ use super::mechanism::{Mechanism, dof};
 use super::system::OutputInfo;
 use crate::grammar::{EnergyKind, JointCoordinate, OnJoint, PointRef, ReactionComponent, Sensor, Symbol, TimeOrder};
 use crate::model::{Description, Output, Rotation};
-use crate::multibody::{BuildError, Context, Quaternion, Vector, rotation};
+use crate::multibody::{BuildError, Context, OwnFunction, Quaternion, Vector, rotation};
 
 impl<'g> Mechanism<'g, '_> {
     /// A formula as an expression: the one place where names become expressions.
@@ -23,6 +23,17 @@ impl<'g> Mechanism<'g, '_> {
             }
             _ => self.names.known(name, Context::Motion).map(|symbol| self.observe(symbol)),
         })
+    }
+
+    /// A formula of parameters, t and a variable of its own, as a function of that.
+    pub fn function_of(&self, formula: &Formula, variable: &str) -> Result<OwnFunction<'g>, BuildError> {
+        // A name that no file can give to anything else.
+        let own = self.g.variable(&format!("own:{variable}"));
+        let value = formula.build(self.g, |name| match name {
+            name if name == variable => Ok(own),
+            _ => self.names.known(name, Context::Time).map(|symbol| self.observe(symbol)),
+        })?;
+        Ok(OwnFunction::new(own, value))
     }
 
     /// Three formulas as a vector.

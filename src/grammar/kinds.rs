@@ -39,30 +39,47 @@ impl FromNumber for Formula {
     }
 }
 
-/// A formula of parameters and of the element's own `angle`, rad.
-#[derive(Clone, Debug)]
-pub struct OfAngle(pub Formula);
+/// Formulas of parameters and of a variable of the element's own.
+macro_rules! of_variable {
+    ($($(#[$doc:meta])* $name:ident, $variable:literal, $dimension:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub struct $name(pub Formula);
 
-impl OfAngle {
-    /// The name of the angle in the formula.
-    pub const VARIABLE: &'static str = "angle";
+        impl $name {
+            /// The name of the variable in the formula.
+            pub const VARIABLE: &'static str = $variable;
+        }
+
+        impl Value for $name {
+            fn read<S: SymbolTable>(
+                reader: &mut Reader<'_, S>,
+                node: &Node,
+                _at: Span,
+                quantity: &Quantity,
+            ) -> Option<Self> {
+                reader.variable = Some((Self::VARIABLE, $dimension));
+                let formula = reader.quantity(node, quantity);
+                reader.variable = None;
+                formula.map(Self)
+            }
+
+            fn schema(generator: &mut SchemaGenerator) -> Schema {
+                Formula::schema(generator)
+            }
+
+            fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
+                found.push(&self.0);
+            }
+        }
+    )*};
 }
 
-impl Value for OfAngle {
-    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _at: Span, quantity: &Quantity) -> Option<Self> {
-        reader.variable = Some((Self::VARIABLE, Dimension::ANGLE));
-        let formula = reader.quantity(node, quantity);
-        reader.variable = None;
-        formula.map(Self)
-    }
-
-    fn schema(generator: &mut SchemaGenerator) -> Schema {
-        Formula::schema(generator)
-    }
-
-    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
-        found.push(&self.0);
-    }
+of_variable! {
+    /// A formula of parameters and of the element's own `angle`, rad.
+    OfAngle, "angle", Dimension::ANGLE;
+    /// A formula of parameters and of the element's own `x`, m.
+    OfPlace, "x", Dimension::LENGTH;
 }
 
 impl<T: Value> Value for Option<T> {

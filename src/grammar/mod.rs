@@ -37,7 +37,7 @@ pub use element::{
     Checked, Element, ElementDocs, FromNumber, Group, Key, KeyDocs, Value, kinds_schema, not_negative, object_schema,
     one_of, ordered, short_or_full,
 };
-pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, PerAxis, RotatingJoint, SlidingJoint};
+pub use kinds::{Axis, BodyRef, Components, Direction, OfAngle, OfPlace, PerAxis, RotatingJoint, SlidingJoint};
 pub use names::Context;
 pub use reader::{Fields, Lengths, Reader};
 pub use requirement::{Quantity, Requirement};

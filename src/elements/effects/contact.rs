@@ -4,6 +4,7 @@
 //! plane through A, normal n:    gap = n · (r_B − r_A) − r
 //! round, radius R:              gap = |d| − R − r,     n = d/|d|,      d = r_B − r_A
 //! hollow, radius R > r:         gap = R − r − |d|,     n = −d/|d|
+//! height h(x, t):               see `ground`
 //! edges, rounding ρ:            see `outline`
 //! capsule, block, rounding ρ:   see `solid`
 //! F_B = f(−gap) n − R_μ v_t,    F_A = −F_B          N, both at r_B − r n
@@ -21,11 +22,12 @@ use symdiff::{Formula, Scalar};
 
 use super::dry_friction::Resistance;
 use super::felt::{Felt, SENSORS};
+use super::ground::Ground;
 use super::impact::Push;
 use super::outline::{Outline, Points, placed};
 use super::solid::{self, Gap, Solid};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
-use crate::grammar::{Axis, Checked, Components, Direction, Fields, PointRef, Reader, SymbolTable};
+use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
 use crate::multibody::{BuildError, Pair, Vector};
 
 /// ε over R − r.
@@ -61,6 +63,9 @@ pub struct Contact {
     /// Instead of `plane`: corners of a closed line of straight edges, in their order.
     #[quantity(unit = "m", constant)]
     pub polygon: Option<Points>,
+    /// Instead of `plane`: height of the ground over the first point, a formula of `x` along x of its frame and of t; up is y, in space z.
+    #[quantity(unit = "m", time)]
+    pub height: Option<OfPlace>,
     /// Instead of `plane`: both ends of the line in the middle of a capsule, in the first point's frame; its radius is the `rounding`.
     #[quantity(unit = "m", constant)]
     pub capsule: Option<Points>,
@@ -87,7 +92,7 @@ pub struct Contact {
 }
 
 /// Keys of the first body's surface.
-const SURFACES: [&str; 7] = ["plane", "circle", "hollow", "path", "polygon", "capsule", "block"];
+const SURFACES: [&str; 8] = ["plane", "circle", "hollow", "path", "polygon", "height", "capsule", "block"];
 
 impl ForceElement for Contact {
     const RESISTS: bool = true;
@@ -108,6 +113,8 @@ impl ForceElement for Contact {
             Surface::Edges(self.outline(forces, points, false)?)
         } else if let Some(points) = &self.polygon {
             Surface::Edges(self.outline(forces, points, true)?)
+        } else if let Some(height) = &self.height {
+            Surface::Whole(Shape::Ground(Ground::of(forces, height, radius)?))
         } else if let Some(solid) = self.solid(forces)? {
             Surface::Whole(Shape::Solid(solid, forces.prescribed(&self.rounding)? + radius))
         } else {
@@ -177,7 +184,7 @@ impl Checked for Contact {
             [] if !fields.lacks_all(&SURFACES) => {}
             [] => {
                 let help = "say what the first body's surface is, e.g. `plane: y`".to_owned();
-                let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `capsule` or `block`";
+                let message = "a contact needs `plane`, `circle`, `hollow`, `path`, `polygon`, `height`, `capsule` or `block`";
                 reader.error(fields.at.clone(), message, help);
             }
             ["capsule"] => {
@@ -235,6 +242,8 @@ pub(super) enum Shape<'g> {
     Round(Scalar<'g>),
     /// R − r, m
     Hollow(Scalar<'g>),
+    /// A height over its x.
+    Ground(Ground<'g>),
     /// With ρ + r, m
     Solid(Solid<'g>, Scalar<'g>),
 }
@@ -259,7 +268,10 @@ impl<'g> Touch<'g> {
         let Gap { gap, normal, overlap } = self.gap(pair, centre);
         let place = centre - self.radius * normal;
         let [first, second] = [pair.first, pair.second].map(|frame| forces.point_at(frame.point.body, place));
-        let velocity = second.velocity - first.velocity;
+        let mut velocity = second.velocity - first.velocity;
+        if let Shape::Ground(ground) = &self.shape {
+            velocity = velocity - ground.velocity(pair, centre - pair.first.point.position);
+        }
         let parting = normal.dot(velocity);
         let (depth, approach) = (-gap, -parting);
         forces.only_where(overlap);
@@ -317,6 +329,7 @@ impl<'g> Touch<'g> {
                 let square_of_clearance = clearance * clearance;
                 Gap { gap: clearance - distance, overlap: smooth - square_of_clearance, normal: -outward }
             }
+            Shape::Ground(ground) => ground.gap(pair, offset),
             Shape::Solid(solid, reach) => solid.gap(pair, offset, reach),
         }
     }

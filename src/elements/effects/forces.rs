@@ -2,8 +2,8 @@
 
 use symdiff::{Builder, Formula, Scalar};
 
-use crate::grammar::{OnJoint, PointRef, Rotating, Sensor, TimeOrder};
-use crate::multibody::{BuildError, MaterialPoint, Pair, Vector};
+use crate::grammar::{OfPlace, OnJoint, PointRef, Rotating, Sensor, TimeOrder};
+use crate::multibody::{BuildError, MaterialPoint, OwnFunction, Pair, Vector};
 
 /// The motion of a mechanism as formulas of an effect may depend on it, and the sum of the forces on it.
 ///
@@ -26,6 +26,9 @@ pub trait Forces<'g> {
     fn vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
     /// Three formulas of parameters and t.
     fn prescribed_vector(&self, formulas: &[Formula; 3]) -> Result<Vector<'g>, BuildError>;
+
+    /// A height of parameters, of t and of the place along the ground, as a function of that.
+    fn of_place(&self, formula: &OfPlace) -> Result<OwnFunction<'g>, BuildError>;
 
     /// A named point.
     fn point(&self, point: PointRef) -> MaterialPoint<'g>;

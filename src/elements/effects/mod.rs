@@ -7,6 +7,7 @@ mod dry_friction;
 mod felt;
 mod forces;
 mod goal;
+mod ground;
 mod impact;
 pub mod matrices;
 mod outline;

@@ -75,7 +75,8 @@ const KINDS: [(&str, &[(&str, Image)]); 32] = [
 ];
 
 /// Keys of which nobody says what their images are.
-const REFUSED: [(&str, &str); 3] = [("bushing", "stiffness_matrix"), ("bushing", "damping_matrix"), ("preload", "on")];
+const REFUSED: [(&str, &str); 4] =
+    [("contact", "height"), ("bushing", "stiffness_matrix"), ("bushing", "damping_matrix"), ("preload", "on")];
 
 /// Keys of torques by which the kind is one of a joint.
 const JOINT: &str = "on";

@@ -1,0 +1,36 @@
+//! A function of one variable, as an expression.
+
+use symdiff::{Expr, Scalar};
+
+/// A function, at whatever expression stands for its variable.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnFunction<'g> {
+    variable: Scalar<'g>,
+    value: Scalar<'g>,
+}
+
+impl<'g> OwnFunction<'g> {
+    /// The function whose value an expression of the symbol `variable` is.
+    pub fn new(variable: Scalar<'g>, value: Scalar<'g>) -> Self {
+        Self { variable, value }
+    }
+
+    /// Its derivative by its variable.
+    pub fn derivative(&self) -> Self {
+        Self { value: self.value.derivative(self.variable), ..*self }
+    }
+
+    /// Its derivative by another symbol.
+    pub fn derivative_by(&self, symbol: Scalar<'g>) -> Self {
+        Self { value: self.value.derivative(symbol), ..*self }
+    }
+
+    /// Its value where an expression stands for its variable.
+    pub fn at(&self, argument: Scalar<'g>) -> Scalar<'g> {
+        let g = argument.builder();
+        let stands: std::iter::Once<(Expr, Expr)> = std::iter::once((self.variable.expr(), argument.expr()));
+        let at = stands.collect();
+        let found = g.with(|graph| graph.substitute(&[self.value.expr()], &at));
+        g.scalar(found[0])
+    }
+}
