@@ -95,7 +95,7 @@ joints:
             let [a, b] = [&by_motor, &by_height].map(|bounds| curve(bounds, name));
             let size = largest(a.iter().copied()).max(1.0);
             // Of a force 1e-7 is what 1e-10 m make, which is as far as Newton's iteration goes; a motor's velocity is off by h².
-            let allowed = if slope.is_empty() && name != "force" { 1e-7 } else { 1e-6 };
+            let allowed = if slope.is_empty() && !matches!(name, "force" | "rate") { 1e-7 } else { 1e-6 };
             assert!(distance(a, b) < allowed * size, "{slope} {name}: {:e} of {size}", distance(a, b));
         }
         assert!(curve(&by_motor, "force").iter().filter(|force| **force > 1.0).count() > 5);
