@@ -20,11 +20,12 @@
 use mbint_derive::Element;
 use symdiff::{Formula, Scalar};
 
+use super::course::{Course, Points, placed};
 use super::dry_friction::Resistance;
 use super::felt::{Felt, SENSORS};
 use super::ground::Ground;
 use super::impact::Push;
-use super::outline::{Outline, Points, placed};
+use super::outline::Outline;
 use super::solid::{self, Gap, Solid};
 use super::{ForceElement, Forces, Friction, FrictionAlong, Impact, TypedSensor};
 use crate::grammar::{Axis, Checked, Components, Direction, Fields, OfPlace, PointRef, Reader, SymbolTable};
@@ -57,12 +58,12 @@ pub struct Contact {
     /// Instead of `plane`: radius of a hollow circle, sphere or cylinder that the second is in.
     #[quantity(unit = "m", constant, positive, above = radius)]
     pub hollow: Option<Formula>,
-    /// Instead of `plane`: points of a line of straight edges in x and y of the first point's frame; both of its sides are surfaces.
+    /// Instead of `plane`: points of a line in x and y of the first point's frame; both of its sides are surfaces. `{ to: [x, y], radius: R }` is an arc to a point.
     #[quantity(unit = "m", constant)]
-    pub path: Option<Points>,
-    /// Instead of `plane`: corners of a closed line of straight edges, in their order.
+    pub path: Option<Course>,
+    /// Instead of `plane`: corners of a closed line, in their order, with arcs as in `path`.
     #[quantity(unit = "m", constant)]
-    pub polygon: Option<Points>,
+    pub polygon: Option<Course>,
     /// Instead of `plane`: height of the ground over the first point, a formula of `x` along x of its frame and of t; up is y, in space z.
     #[quantity(unit = "m", time)]
     pub height: Option<OfPlace>,
@@ -160,12 +161,12 @@ impl Contact {
     fn outline<'g>(
         &self,
         forces: &dyn Forces<'g>,
-        points: &Points,
+        course: &Course,
         closed: bool,
     ) -> Result<Outline<'g>, BuildError> {
-        let points = placed(forces, points)?;
+        let corners = course.corners(forces)?;
         let (rounding, radius) = (forces.prescribed(&self.rounding)?, forces.prescribed(&self.radius)?);
-        Ok(Outline::through(&points, closed, rounding, radius))
+        Ok(Outline::through(&corners, closed, rounding, radius))
     }
 }
 

@@ -3,6 +3,8 @@
 //! To add one: its file here, and its line in the registry below. All else follows from the file: keys, schema, documentation,
 //! what it refers to, its forces, what it costs.
 
+mod arc;
+mod course;
 mod dry_friction;
 mod felt;
 mod forces;

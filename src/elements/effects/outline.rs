@@ -1,99 +1,27 @@
-//! Outlines in contact with a circle, sphere or point: straight edges, with what lies within a radius of them.
+//! Outlines in contact with a circle, sphere or point: straight edges and arcs, with what lies within a radius of them.
 //!
 //! ```text
 //! edge from a along u, length L; w = p − a:    t = u · w,    h = u × w,    s = min(t, 0) + max(t − L, 0)
 //! d = √(h² + s²),    depth = ρ + r − d,    normal = (h n + s u)/d
+//! arc of radius R about c; w = p − c:          d = |R − |w|| within its ends, else the distance from the nearer one
 //! ```
 //!
 //! p is the centre of the circle of radius r in the first frame, n the edge's left normal, ρ the outline's rounding. Where two edges join,
 //! the surface is round about their corner, so that normals do not jump. On the outer side of a corner the nearer edge pushes, and of two
 //! that both end there the first one; on the inner side both push. All edges' forces are summed at p, with their torque about it.
 
-use std::ops::Deref;
-
-use schemars::{Schema, SchemaGenerator};
-use symdiff::{Formula, Scalar};
+use symdiff::Scalar;
 
 use super::Forces;
+use super::arc::Arc;
+use super::course::Corner;
 use super::dry_friction::Resistance;
 use super::felt::Felt;
 use super::impact::Push;
-use crate::grammar::{Node, Quantity, Reader, Span, SymbolTable, Value, values};
-use crate::multibody::{BuildError, Pair, Vector};
-use crate::syntax::yaml;
+use crate::multibody::{Pair, Vector};
 
-/// Points in a frame.
-#[derive(Clone, Debug)]
-pub struct Points(Vec<[Formula; 3]>);
-
-impl Deref for Points {
-    type Target = [[Formula; 3]];
-
-    fn deref(&self) -> &[[Formula; 3]] {
-        &self.0
-    }
-}
-
-impl Points {
-    /// Reports too few points, and neighbours that are one point somewhere in the box of parameters.
-    pub fn check_edges<S: SymbolTable>(&self, reader: &mut Reader<'_, S>, at: Span, (key, least): (&str, usize)) {
-        let count = self.0.len();
-        if count < least {
-            reader.error(at, format!("a `{key}` has {least} points or more, not {count}"), None);
-            return;
-        }
-        let edges = if least > 2 { count } else { count - 1 };
-        for corner in 0..reader.corners.len() {
-            let place = |point: &[Formula; 3]| {
-                let [x, y] = [0, 1].map(|axis| reader.evaluate(&point[axis], corner));
-                x.zip(y)
-            };
-            let is_none = |edge: &usize| {
-                let ends = place(&self.0[*edge]).zip(place(&self.0[(*edge + 1) % count]));
-                ends.is_some_and(|(start, end)| start == end)
-            };
-            if let Some(edge) = (0..edges).find(is_none) {
-                let (start, end) = (edge + 1, (edge + 1) % count + 1);
-                let label = &reader.corners[corner].label;
-                let help = (end == 1).then(|| "a polygon closes by itself: leave its last point out".to_owned());
-                reader.error(at, format!("points {start} and {end} of the `{key}` are one point{label}"), help);
-                return;
-            }
-        }
-    }
-}
-
-impl Value for Points {
-    fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, _: Span, quantity: &Quantity) -> Option<Self> {
-        let items = match &node.value {
-            yaml::Value::Sequence(items) if !items.is_empty() => items,
-            _ => {
-                let help = "e.g. `[[0, 0], [0.2, 0], [0.2, 0.1]]`".to_owned();
-                reader.error(
-                    node.span.clone(),
-                    "a list of points belongs here, each a list of two or three numbers",
-                    help,
-                );
-                return None;
-            }
-        };
-        let points: Vec<_> =
-            items.iter().map(|item| reader.components(item, quantity.context, quantity.dimension())).collect();
-        points.into_iter().collect::<Option<_>>().map(Self)
-    }
-
-    fn schema(generator: &mut SchemaGenerator) -> Schema {
-        generator.subschema_for::<Vec<values::Components>>()
-    }
-
-    fn formulas<'a>(&'a self, found: &mut Vec<&'a Formula>) {
-        found.extend(self.0.iter().flatten());
-    }
-
-    fn leaves_plane(node: &Node) -> bool {
-        matches!(&node.value, yaml::Value::Sequence(items) if items.iter().any(crate::grammar::plane::points_out))
-    }
-}
+/// Turns of less than this at a corner are none, over the outline's reach.
+const SMOOTH: f64 = 1e-6;
 
 /// Edges in the x and y of a frame.
 #[derive(Clone, Debug)]
@@ -114,6 +42,8 @@ struct Edge<'g> {
     tangent: Vector<'g>,
     /// L, m
     length: Scalar<'g>,
+    /// Where it is none of them: an arc between its ends.
+    arc: Option<Arc<'g>>,
 }
 
 /// Where the circle's centre is to an edge.
@@ -127,6 +57,8 @@ struct Place<'g> {
     past: Scalar<'g>,
     /// d², m²
     square: Scalar<'g>,
+    /// p
+    centre: Vector<'g>,
 }
 
 /// What the edges do together.
@@ -142,14 +74,15 @@ struct Sum<'g> {
 
 impl<'g> Outline<'g> {
     /// Through points, and back to the first where it is closed.
-    pub fn through(points: &[Vector<'g>], closed: bool, rounding: Scalar<'g>, radius: Scalar<'g>) -> Self {
-        let last = closed.then(|| (points.last(), points.first()));
-        let pairs = points.windows(2).map(|pair| (pair.first(), pair.last())).chain(last);
+    pub fn through(corners: &[Corner<'g>], closed: bool, rounding: Scalar<'g>, radius: Scalar<'g>) -> Self {
+        let last = closed.then(|| (corners.last(), corners.first()));
+        let pairs = corners.windows(2).map(|pair| (pair.first(), pair.last())).chain(last);
         let edges = pairs.filter_map(|(start, end)| {
-            let (start, end) = (*start?, *end?);
-            let way = end - start;
+            let (start, end) = (start?, end?);
+            let way = end.place - start.place;
             let length = way.norm();
-            Some(Edge { start, tangent: way / length, length })
+            let arc = end.radius.map(|radius| Arc::between([start.place, end.place], radius));
+            Some(Edge { start: start.place, tangent: way / length, length, arc })
         });
         Self { edges: edges.collect(), closed, reach: rounding + radius, radius }
     }
@@ -210,8 +143,7 @@ impl<'g> Outline<'g> {
             // In radii, so that it stays where the effect's own condition is known to hold: what follows switches in a contact only.
             let touches = 1.0 - place.square / square_of_reach;
             let (before, past) = (place.along.only_where(touches), place.past.only_where(touches));
-            let beyond = before.min(zero) + past.max(zero);
-            let across = place.beside * edge.tangent.perpendicular() + beyond * edge.tangent;
+            let across = edge.across(place, [before, past]);
             let distance = across.dot(across).sqrt();
             let normal = across / distance;
             let depth = self.reach - distance;
@@ -264,16 +196,21 @@ impl<'g> Outline<'g> {
     /// Positive on the inner side of the corner at an edge's end.
     fn inside(&self, places: &[Place<'g>], edge: usize) -> Scalar<'g> {
         let next = (edge + 1) % self.edges.len();
-        let turn = self.edges[edge].tangent.cross(self.edges[next].tangent)[2];
-        turn * (places[edge].beside + places[next].beside)
+        let (before, after) = (&self.edges[edge], &self.edges[next]);
+        let turn = before.last_tangent().cross(after.first_tangent())[2];
+        let inside = turn * (places[edge].beside + places[next].beside);
+        if before.arc.is_none() && after.arc.is_none() {
+            return inside;
+        }
+        // Where an arc goes on as the edge before it did, there is no corner: rounding makes none.
+        inside - SMOOTH * self.reach
     }
 
     /// How fast the circle and the nearest edge part, m/s.
     fn rate(&self, places: &[Place<'g>], velocity: Vector<'g>) -> Scalar<'g> {
         let zero = velocity[0].builder().number(0.0);
         let rates = self.edges.iter().zip(places).map(|(edge, place)| {
-            let beyond = place.along.min(zero) + place.past.max(zero);
-            let across = place.beside * edge.tangent.perpendicular() + beyond * edge.tangent;
+            let across = edge.across(place, [place.along, place.past]);
             (place.square, across.dot(velocity) / place.square.sqrt())
         });
         let nearer = |(square, rate): (Scalar<'g>, Scalar<'g>), (other, its): (Scalar<'g>, Scalar<'g>)| {
@@ -284,16 +221,39 @@ impl<'g> Outline<'g> {
 }
 
 impl<'g> Edge<'g> {
+    fn first_tangent(&self) -> Vector<'g> {
+        self.arc.map_or(self.tangent, |arc| arc.tangents[0])
+    }
+
+    fn last_tangent(&self) -> Vector<'g> {
+        self.arc.map_or(self.tangent, |arc| arc.tangents[1])
+    }
+
+    /// From the nearest point to the centre, which is before the start and past the end where these say so.
+    fn across(&self, place: &Place<'g>, [before, past]: [Scalar<'g>; 2]) -> Vector<'g> {
+        if let Some(arc) = &self.arc {
+            return arc.across(place.centre, [before, past]);
+        }
+        let zero = before.builder().number(0.0);
+        let beyond = before.min(zero) + past.max(zero);
+        place.beside * self.tangent.perpendicular() + beyond * self.tangent
+    }
+
     fn place(&self, centre: Vector<'g>) -> Place<'g> {
+        if let Some(arc) = &self.arc {
+            let [along, past] = arc.ends(centre);
+            return Place {
+                beside: arc.beside(centre),
+                along,
+                past,
+                square: arc.square(centre, [along, past]),
+                centre,
+            };
+        }
         let offset = centre - self.start;
         let (along, beside) = (self.tangent.dot(offset), self.tangent.perpendicular().dot(offset));
         let past = along - self.length;
         let beyond = (-along).max(past).max(along.builder().number(0.0));
-        Place { beside, along, past, square: beside * beside + beyond * beyond }
+        Place { beside, along, past, square: beside * beside + beyond * beyond, centre }
     }
-}
-
-/// Formulas of points as vectors.
-pub(super) fn placed<'g>(forces: &dyn Forces<'g>, points: &Points) -> Result<Vec<Vector<'g>>, BuildError> {
-    points.iter().map(|point| forces.prescribed_vector(point)).collect()
 }

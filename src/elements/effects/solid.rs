@@ -12,7 +12,7 @@
 
 use symdiff::{Formula, Scalar};
 
-use super::outline::Points;
+use super::course::Points;
 use crate::grammar::{Reader, Span, SymbolTable};
 use crate::multibody::{Pair, Vector};
 

@@ -81,6 +81,18 @@ const REFUSED: [(&str, &str); 4] =
 /// Keys of torques by which the kind is one of a joint.
 const JOINT: &str = "on";
 
+/// The image of a point, or of an arc to one, which turns the other way.
+fn point_or_arc(item: &mut Node, axis: usize) {
+    let Value::Mapping(keys) = &mut item.value else { return polar(item, axis) };
+    for key in keys {
+        match key.key.as_str() {
+            "to" => polar(&mut key.value, axis),
+            "radius" if axis < 2 => negate(&mut key.value),
+            _ => {}
+        }
+    }
+}
+
 impl Writer<'_, '_> {
     /// The image of a joint or an effect; `turns` says of a joint of the instance whether it turns.
     pub(super) fn image_of_kind(&mut self, mut entry: Entry, axis: usize, turns: &dyn Fn(&str) -> bool) -> Entry {
@@ -116,7 +128,7 @@ impl Writer<'_, '_> {
                 Axial => axial(&mut key.value, axis),
                 Polars => {
                     if let Value::Sequence(items) = &mut key.value.value {
-                        items.iter_mut().for_each(|item| polar(item, axis));
+                        items.iter_mut().for_each(|item| point_or_arc(item, axis));
                     }
                 }
                 Directed => {
