@@ -71,9 +71,9 @@ def four_bar(loops):
     return mbs, lambda: mbs.GetObjectOutputBody(first, position, [0, 0.5, 0])[:2].tolist()
 
 
-def settings(duration, sparse):
+def settings(duration, sparse, step):
     s = exu.SimulationSettings()
-    s.timeIntegration.numberOfSteps = round(duration / STEP)
+    s.timeIntegration.numberOfSteps = round(duration / step)
     s.timeIntegration.endTime = duration
     s.timeIntegration.verboseMode = 0
     s.timeIntegration.newton.useModifiedNewton = True
@@ -85,27 +85,33 @@ def settings(duration, sparse):
     return s
 
 
-def best(build, duration, repetitions, solvers=(False, True)):
+def best(build, duration, repetitions, solvers=(False, True), step=STEP):
     """Smallest time over repetitions and solvers, and the output at the end."""
     results = []
     for sparse in solvers:
         for _ in range(repetitions):
             mbs, output = build()
             begun = time.perf_counter()
-            mbs.SolveDynamic(settings(duration, sparse))
+            mbs.SolveDynamic(settings(duration, sparse, step))
             results.append((time.perf_counter() - begun, output()))
     return min(results, key=lambda result: result[0])
 
 
-def slider_positions(times):
+def slider_positions(times, step=STEP):
     """x3 at times, each from a run of its own."""
-    return [best(slider_crank, t, 1)[1][0] for t in times]
+    return [best(slider_crank, t, 1, step=step)[1][0] for t in times]
+
+
+def slider_of_step(times, step, repetitions):
+    """The slider crank with steps of this length."""
+    seconds, _ = best(slider_crank, 2.0, repetitions, step=step)
+    return {"step": step, "seconds": seconds, "values": slider_positions(times, step)}
 
 
 def main():
     times = json.loads(sys.argv[1])
-    seconds, _ = best(slider_crank, 2.0, 10)
-    report = {"slider": {"seconds": seconds, "values": slider_positions(times)}}
+    report = {"slider": slider_of_step(times, STEP, 10)}
+    report["slider_shorter"] = [slider_of_step(times, STEP / part, 2) for part in (8, 32)]
     # 40 loops take the dense solver five times as long.
     for loops, repetitions, solvers in ((2, 3, (False, True)), (40, 2, (True,))):
         seconds, end = best(lambda: four_bar(loops), 10.0, repetitions, solvers)

@@ -8,8 +8,8 @@ MBINT is the program to time. Needs mujoco, pin, numpy and scipy. Writes robots.
 
 The robots are an arm of seven joints and a floating body on four legs of three joints: the same URDF for all, the same start, the same damping of
 the joints, no contacts and no limits, one second. The error is the largest difference of a joint's angle at the end from a reference, rad: Pinocchio's
-accelerations under DOP853 at 1e-12. One core: mbint's time is that of a sample of a batch of 65, MuJoCo's that of a run, Pinocchio's the
-evaluations of its method times one call of ABA through its Python bindings, which takes a microsecond more than in C++.
+accelerations under DOP853 at 1e-12. One core: mbint's time is that of a sample of a batch (`at_error.BATCH`), MuJoCo's that of a run, Pinocchio's the
+evaluations of its method times one call of ABA in C++ (through its Python bindings where that cannot be compiled).
 """
 
 import json
@@ -17,7 +17,6 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -26,9 +25,9 @@ import numpy as np
 import pinocchio
 from scipy.integrate import DOP853, solve_ivp
 
+from at_error import WANTED, at_error, time_of_sample
+
 DURATION = 1.0
-BATCH = 65
-WANTED = (1e-3, 1e-6, 1e-9)
 
 
 def link(name, mass, center, size):
@@ -117,7 +116,7 @@ class Pinocchio:
         return self.start + end.y[self.places, -1], count
 
     def call(self):
-        """Time of one call of ABA, s."""
+        """Time of one call of ABA through the Python bindings, s."""
         q, v = self.q0.copy(), np.zeros(self.model.nv)
         best = math.inf
         for _ in range(20):
@@ -126,6 +125,22 @@ class Pinocchio:
                 pinocchio.aba(self.model, self.data, q, v, v)
             best = min(best, time.perf_counter() - begun)
         return best / 1000
+
+
+def call_in_cpp(path, folder):
+    """Time of one call of ABA in C++ (`aba.cpp`), s; None where it cannot be compiled: it needs g++ and the headers of Eigen and urdfdom."""
+    prefix = Path(pinocchio.__file__).resolve().parents[4]
+    program = folder / "aba"
+    if not program.exists():
+        include, lib = prefix / "include", prefix / "lib"
+        built = subprocess.run(
+            ["g++", "-O3", "-DNDEBUG", "-std=c++17", "-w", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
+             f"-I{include}", "-I/usr/include/eigen3", Path(__file__).with_name("aba.cpp"), "-o", program, f"-L{lib}", "-lpinocchio_parsers",
+             "-lpinocchio_default", f"-Wl,-rpath,{lib}"], capture_output=True)
+        if built.returncode != 0:
+            print("Pinocchio in C++ cannot be compiled here: its calls are timed through Python", file=sys.stderr)
+            return None
+    return float(subprocess.run([program, path], capture_output=True, text=True, check=True).stdout)
 
 
 def run_mujoco(path, names, start, rates):
@@ -163,58 +178,19 @@ def run_mbint(program, path, names, start, rates, floating):
                  for levels in (3, 4) for steps in (100, 200, 500)]
     settings += [("explicit", f"tolerance: 1e-{digits}, scheme: explicit") for digits in range(3, 12)]
     for name, setting in settings:
-        with tempfile.TemporaryDirectory() as folder:
-            folder = Path(folder)
-            (folder / "robot.urdf").write_text(path.read_text())
-            (folder / "model.yaml").write_text(
-                f"urdf: robot.urdf\nparameters: {{ link.{own}.mass: 0.1% }}\n"
-                "effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }\n"
-                f"initial: {{ {initial} }}\noutputs: {{ {outputs} }}\n"
-                f"simulation: {{ duration: {DURATION}, output_step: {DURATION}, {setting} }}\nbounds: {{ scan: {{ points: 2 }} }}\n")
-            nominal = 6 if floating else 0.8
-            times = {}
-            for count in (1, BATCH):
-                (folder / "points.csv").write_text(f"link.{own}.mass\n" + f"{nominal}\n" * count)
-                best = math.inf
-                for _ in range(3):
-                    begun = time.perf_counter()
-                    done = subprocess.run([program, "sample", "model.yaml", "--points", "points.csv", "-o", "out.npz", "-j", "1", "-q"],
-                                          cwd=folder, capture_output=True, text=True)
-                    best = min(best, time.perf_counter() - begun)
-                    if done.returncode != 0:
-                        break
-                times[count] = best
-            if done.returncode != 0:
-                print(f"mbint {name}, {setting}: {done.stderr.strip().splitlines()[-1:]}", file=sys.stderr)
-                continue
-            samples = np.load(folder / "out.npz")
+        model = (f"urdf: robot.urdf\nparameters: {{ link.{own}.mass: 0.1% }}\n"
+                 "effects: { weight: { gravity: { acceleration: [0, 0, -9.81] } } }\n"
+                 f"initial: {{ {initial} }}\noutputs: {{ {outputs} }}\n"
+                 f"simulation: {{ duration: {DURATION}, output_step: {DURATION}, {setting} }}\nbounds: {{ scan: {{ points: 2 }} }}\n")
+        timed = time_of_sample(program, model, f"link.{own}.mass", 6 if floating else 0.8, {"robot.urdf": path.read_text()})
+        if timed:
+            seconds, samples = timed
             order = [list(samples["output_names"]).index(joint_name) for joint_name in names]
-            yield f"mbint {name}", (times[BATCH] - times[1]) / (BATCH - 1), samples["values"][0, -1, order]
+            yield f"mbint {name}", seconds, samples["values"][0, -1, order]
 
 
 def damping_of(path):
     return float(path.read_text().split('damping="')[1].split('"')[0])
-
-
-def at_error(points, wanted):
-    """Least time at an error, between measured points on logarithmic scales; marked where it is beyond them."""
-    points = sorted((error, seconds) for error, seconds in points if error > 0 and seconds > 0)
-    if not points:
-        return None
-    for (e0, t0), (e1, t1) in zip(points, points[1:]):
-        if e0 <= wanted <= e1:
-            share = (math.log(wanted) - math.log(e0)) / max(math.log(e1) - math.log(e0), 1e-300)
-            return math.exp(math.log(t0) + share * (math.log(t1) - math.log(t0))), False
-    if wanted > points[-1][0]:
-        return points[-1][1], False
-    # By the slope of the two most exact runs.
-    if len(points) < 2:
-        return None
-    (e0, t0), (e1, t1) = points[:2]
-    order = (math.log(t0) - math.log(t1)) / (math.log(e0) - math.log(e1)) if e0 != e1 else 0
-    if order >= 0:
-        return None
-    return t0 * (wanted / e0) ** order, True
 
 
 def picture(results):
@@ -265,7 +241,7 @@ def main():
             lines.setdefault(name, []).append((float(np.max(np.abs(angles - exact))), seconds))
             print(f"{robot}: {name}: {lines[name][-1][0]:.2e} rad, {1e3 * seconds:.4g} ms", file=sys.stderr)
 
-        call = peer.call()
+        call = call_in_cpp(path, folder) or peer.call()
         for digits in range(3, 12):
             angles, count = peer.run(10.0 ** -digits, damping_of(path))
             note("Pinocchio ABA, DOP853", call * count, angles)

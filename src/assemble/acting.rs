@@ -126,6 +126,7 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
             self.applied.add_potential(m, &weight.components(), potential);
         }
         m.weigh_beams(self.applied, field)?;
+        m.weigh_superelements(self.applied, field)?;
         self.applied.add_field(field);
         Ok(())
     }
@@ -139,7 +140,16 @@ impl<'g> Forces<'g> for Acting<'_, 'g, '_> {
     }
 
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>) {
-        self.applied.add_state_rate(self.m.states[&(self.effect, place)], rate);
+        self.applied.add_to_coordinate(self.m.states[&(self.effect, place)], rate);
+    }
+
+    fn mode(&self, place: usize) -> [Scalar<'g>; 2] {
+        let index = self.m.modes[&(self.effect, place)];
+        [self.m.q[index], self.m.v[index]]
+    }
+
+    fn modal_force(&mut self, place: usize, force: Scalar<'g>) {
+        self.applied.add_to_coordinate(self.m.modes[&(self.effect, place)], force);
     }
 
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>) {

@@ -11,7 +11,7 @@ use super::mechanism::Mechanism;
 use crate::grammar::{JointCoordinate, OnJoint, Sensor};
 use crate::multibody::{BuildError, DEGREES_OF_FREEDOM, EULER, MaterialPoint, RotationCoordinates, Vector, Wrench};
 
-/// What is added to: a component of a body's wrench (0 to 5), or a joint's own coordinate.
+/// What is added to: a component of a body's wrench (0 to 5), or a coordinate of its own: of a joint, a mode, a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Target {
     Body(usize, usize),
@@ -32,7 +32,7 @@ pub struct AppliedForces<'g> {
     g: &'g Builder,
     /// On each body, about its frame's origin, in the ground's axes.
     bodies: Vec<Wrench<'g>>,
-    /// Generalised forces on joints' own coordinates, by their place in q.
+    /// Generalised forces on coordinates of joints, modes and states, by their place in q.
     coordinates: BTreeMap<usize, Scalar<'g>>,
     /// The acceleration that gives children their weight, in the ground's axes, m/s².
     pub field: Vector<'g>,
@@ -239,9 +239,9 @@ impl<'g> AppliedForces<'g> {
         Ok(())
     }
 
-    /// How fast the state changes whose place in q is `index`.
-    pub fn add_state_rate(&mut self, index: usize, rate: Scalar<'g>) {
-        self.add(Target::Coordinate(index), rate);
+    /// What is on the coordinate whose place in q is `index`: a generalised force, or how fast a state changes.
+    pub fn add_to_coordinate(&mut self, index: usize, part: Scalar<'g>) {
+        self.add(Target::Coordinate(index), part);
     }
 
     /// A potential energy, if it is one: `coefficients` that depend on the motion leave none whose gradient is the

@@ -253,8 +253,9 @@ impl<'g> Balance<'g> {
         }
         if m.flexible().is_some() {
             add_all(&mut inertia, m.inertia_of_beams()?);
+            add_all(&mut inertia, m.inertia_of_superelements()?);
             mass = mass_matrix(&inertia, &m.w);
-            m.kinetic_energy_of_beams = m.total_kinetic_energy_of_beams()?;
+            m.kinetic_energy_of_flexible = m.energy_of_beams()? + m.energy_of_superelements()?;
         }
         m.potentials = applied.potentials;
         mass.sort_unstable_by_key(|&(row, column, _)| (row, column));

@@ -7,6 +7,7 @@ use symdiff::{Builder, Formula};
 use super::coordinates;
 use super::mechanism::{Mechanism, Owner, dof};
 use super::names::Names;
+use super::superelements::superelements;
 use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::Mobilizer;
@@ -26,6 +27,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             is_spatial: description.space.spatial,
             joints: &description.joints,
             line_masses: description.effects.iter().filter_map(|effect| effect.kind.inertia()).collect(),
+            superelements: superelements(description),
             time,
             uncertain: Vec::new(),
             child_guesses: Vec::new(),
@@ -42,7 +44,8 @@ impl<'g, 'd> Mechanism<'g, 'd> {
             reactions: Vec::new(),
             potentials: Vec::new(),
             teeth: Vec::new(),
-            kinetic_energy_of_beams: g.number(0.0),
+            kinetic_energy_of_flexible: g.number(0.0),
+            modes: BTreeMap::new(),
             states: BTreeMap::new(),
             sensors: BTreeMap::new(),
         };
@@ -67,6 +70,7 @@ impl<'g, 'd> Mechanism<'g, 'd> {
                 mechanism.add_joint_coordinate(joint, coordinate);
             }
         }
+        mechanism.add_modes(&description.effects);
         mechanism.add_states(&description.effects);
         Ok(mechanism)
     }

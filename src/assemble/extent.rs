@@ -29,6 +29,11 @@ impl Mechanism<'_, '_> {
             }
         }
         lengths.push(self.length_of_beams()?);
+        let nodes = self
+            .superelements
+            .iter()
+            .flat_map(|(_, inertia)| (1..inertia.nodes.len()).map(|node| inertia.matrices.offset(node)));
+        lengths.extend(nodes.flatten().map(|length| self.g.number(length)));
         for formula in description.initial.iter().chain(&description.guess).filter_map(length_at_start) {
             lengths.push(self.formula(formula, Context::Parameters)?);
         }

@@ -52,9 +52,10 @@ struct Element<'g> {
 }
 
 impl<'g> Mechanism<'g, '_> {
-    /// The name of a beam with mass, if there is one.
-    pub fn flexible(&self) -> Option<&str> {
-        self.line_masses.first().map(|beam| beam.body)
+    /// What is flexible and has mass, if there is something.
+    pub fn flexible(&self) -> Option<String> {
+        let beam = self.line_masses.first().map(|beam| format!("beam `{}` bends", beam.body));
+        beam.or_else(|| self.superelements.first().map(|_| "a superelement deforms".to_owned()))
     }
 
     /// Lengths of all elements with mass together.
@@ -143,7 +144,7 @@ impl<'g> Mechanism<'g, '_> {
     }
 
     /// T of all beams, J.
-    pub fn total_kinetic_energy_of_beams(&self) -> Result<Scalar<'g>, BuildError> {
+    pub fn energy_of_beams(&self) -> Result<Scalar<'g>, BuildError> {
         let mut parts = Vec::new();
         for element in self.elements()? {
             let velocities = element.end_values(|end| {

@@ -17,8 +17,8 @@ impl Mechanism<'_, '_> {
         if self.tree.is_absolute() {
             return Some("no joint can give a body its position".to_owned());
         }
-        if let Some(beam) = self.flexible() {
-            return Some(format!("beam `{beam}` bends: its nodes have coordinates of their own"));
+        if let Some(body) = self.flexible() {
+            return Some(format!("{body}: its nodes have coordinates of their own"));
         }
         let start = if is_chosen { self.lost_start(description) } else { None };
         start.or_else(|| self.loaded_friction(description)).or_else(|| self.lost_reaction(description))

@@ -77,7 +77,11 @@ impl Mechanism<'_, '_> {
             let length = self.formula(beam.length, Context::Parameters)?;
             Ok(length * self.formula(beam.mass_per_length, Context::Parameters)?)
         });
-        let masses: Result<Vec<_>, BuildError> = bodies.chain(beams).collect();
+        let reduced = self
+            .superelements
+            .iter()
+            .map(|(_, inertia)| Ok(inertia.matrices.total_mass() * self.formula(inertia.factor, Context::Parameters)?));
+        let masses: Result<Vec<_>, BuildError> = bodies.chain(beams).chain(reduced).collect();
         let mass = self.g.sum(masses?);
         let [nominal] = self.nominal([mass]);
         let symbols: Vec<_> = self.uncertain.iter().map(|parameter| parameter.symbol).collect();

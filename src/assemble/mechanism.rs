@@ -10,7 +10,7 @@ use super::system::UncertainParameter;
 use super::tree::Tree;
 use crate::elements::joints::ToothForce;
 use crate::grammar::{Coordinate, JointCoordinate, OnJoint, PointRef, Sensor, TimeOrder};
-use crate::model::{Joint, LineMass};
+use crate::model::{Joint, LineMass, ReducedInertia};
 use crate::multibody::{ANGLE, Body, EULER, Frame, MaterialPoint, Pair, Quaternion, Vector};
 
 /// A coordinate's place in its body's list.
@@ -31,16 +31,19 @@ pub enum Owner {
     Body(usize, Coordinate),
     /// Of a joint: of a tree's, or defined by a constraint, without inertia.
     Joint(usize, JointCoordinate),
+    /// Of a mode of a flexible body.
+    Mode,
     /// Of a state, which is its velocity.
     State,
 }
 
 impl Owner {
-    /// Whether it is a length.
+    /// Whether it is a length, of the mechanism's size. That of a mode is one times the square root of a mass.
     pub fn is_length(self) -> bool {
         match self {
             Self::Body(_, coordinate) => coordinate.is_length(),
             Self::Joint(_, coordinate) => coordinate == JointCoordinate::Displacement,
+            Self::Mode => true,
             Self::State => false,
         }
     }
@@ -59,7 +62,7 @@ impl Owner {
             Self::Body(_, Coordinate::Angle) | Self::Joint(_, JointCoordinate::Angle) => "angle",
             Self::Body(_, Coordinate::Euler(index)) => ["p0", "p1", "p2", "p3"][index],
             Self::Joint(_, JointCoordinate::Displacement) => "displacement",
-            Self::State => "",
+            Self::Mode | Self::State => "",
         }
     }
 }
@@ -76,6 +79,8 @@ pub struct Mechanism<'g, 'd> {
     pub joints: &'d [Joint],
     /// The mass of beams between their nodes.
     pub line_masses: Vec<LineMass<'d>>,
+    /// Flexible bodies by their matrices: the effect's place among all, and its inertia.
+    pub superelements: Vec<(usize, ReducedInertia<'d>)>,
     /// t, s.
     pub time: Scalar<'g>,
     /// The parameters that are symbols.
@@ -109,9 +114,11 @@ pub struct Mechanism<'g, 'd> {
     /// Potential energies of the effects built so far, J.
     pub potentials: Vec<Scalar<'g>>,
     /// Kinetic energy of what is no rigid body, J.
-    pub kinetic_energy_of_beams: Scalar<'g>,
+    pub kinetic_energy_of_flexible: Scalar<'g>,
     /// Places in `q` of the coordinates whose velocities are states, by effect and place among its states.
     pub states: BTreeMap<(usize, usize), usize>,
+    /// Places in `q` of the modal coordinates, by effect and place among its modes.
+    pub modes: BTreeMap<(usize, usize), usize>,
     /// What the effects built so far measure, and all states.
     pub sensors: BTreeMap<(usize, Sensor), Scalar<'g>>,
 }
@@ -120,13 +127,14 @@ impl<'g> Mechanism<'g, '_> {
     /// Symbols for one more coordinate of a body or joint called `name`; its place in q.
     pub fn add_coordinate(&mut self, owner: Owner, name: &str) -> usize {
         let name = match owner {
-            Owner::State => name.to_owned(),
+            Owner::Mode | Owner::State => name.to_owned(),
             _ => format!("{name}.{}", owner.suffix()),
         };
         // A joint may be called like a body.
         let prefix = match owner {
             Owner::Body(..) => "",
             Owner::Joint(..) => "joint:",
+            Owner::Mode => "mode:",
             Owner::State => "state:",
         };
         for (kind, list) in [("q", &mut self.q), ("v", &mut self.v), ("w", &mut self.w)] {

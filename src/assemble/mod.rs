@@ -42,6 +42,7 @@ mod recursion;
 mod start;
 mod start_conditions;
 mod states;
+mod superelements;
 mod symbols;
 mod system;
 mod teeth;

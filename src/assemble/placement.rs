@@ -19,7 +19,7 @@ use symdiff::{Scalar, math};
 
 use super::mechanism::Mechanism;
 use crate::elements::joints::{Orientation, Separation};
-use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef, Standing};
+use crate::model::{Coordinate, JointCoordinate, LineMass, PointRef, ReducedInertia, Standing};
 use crate::multibody::{self, BuildError, Context};
 
 /// x, y, θ.
@@ -281,7 +281,26 @@ fn links<'g>(m: &Mechanism<'g, '_>, known: &[Option<Scalar<'g>>]) -> Result<Vec<
         links[between[0].body].push(link);
         links[between[1].body].push(link.reversed(between[0].body));
     }
+    for (_, ReducedInertia { nodes, matrices, .. }) in &m.superelements {
+        for node in 1..nodes.len() {
+            let [x, y, _] = matrices.offset(node);
+            let [here, there] = [nodes[0], nodes[node]].map(|point| local(m, point));
+            let turned = [nodes[0], nodes[node]].map(|point| turned_in_plane(m, point));
+            let [along, across] = at([0.0, 0.0, turned[0]], [x, y]);
+            let here = [here[0] + along, here[1] + across];
+            let link = Link { here, there, other: nodes[node].body, kind: LinkKind::Weld(turned[0] - turned[1]) };
+            links[nodes[0].body].push(link);
+            links[nodes[node].body].push(link.reversed(nodes[0].body));
+        }
+    }
     Ok(links)
+}
+
+/// The angle of the frame at a point against its body's, in the plane.
+fn turned_in_plane(m: &Mechanism, point: PointRef) -> f64 {
+    let frame = m.local_frame(point);
+    let [whole, about] = m.nominal([frame[0], frame.components()[3]]);
+    2.0 * math::atan2(about, whole)
 }
 
 fn local(m: &Mechanism, point: PointRef) -> [f64; 2] {

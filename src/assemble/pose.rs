@@ -20,7 +20,7 @@ use symdiff::{Formula, Scalar};
 use super::mechanism::{Mechanism, Owner, dof};
 use crate::elements::joints::{Orientation, Separation};
 use crate::grammar::{JointCoordinate, PointRef};
-use crate::model::{LineMass, Standing};
+use crate::model::{LineMass, ReducedInertia, Standing};
 use crate::multibody::{ANGLE, Body, BuildError, Context, EULER, RotationCoordinates};
 
 /// A frame against another, in numbers.
@@ -127,7 +127,7 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
                     }
                 }
                 Owner::Joint(joint, coordinate) => self.joint(joint, coordinate)?,
-                Owner::State => 0.0,
+                Owner::Mode | Owner::State => 0.0,
             });
         }
         Ok(values)
@@ -176,6 +176,13 @@ impl<'m, 'g, 'd> Poses<'m, 'g, 'd> {
             let length = self.nominal(length)?;
             let across = Pose::at(length * Vector3::x(), UnitQuaternion::identity());
             self.link(*between, LinkKind::Axis(across));
+        }
+        for (_, ReducedInertia { nodes, matrices, .. }) in &m.superelements {
+            for node in 1..nodes.len() {
+                let across = Vector3::from(matrices.offset(node));
+                let across = Pose::at(across, UnitQuaternion::identity());
+                self.link([nodes[0], nodes[node]], LinkKind::Axis(across));
+            }
         }
         Ok(())
     }

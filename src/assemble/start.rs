@@ -46,6 +46,7 @@ impl<'g> Mechanism<'g, '_> {
         let guess = known.iter().zip(placed).map(|(known, placed)| known.unwrap_or_else(|| self.g.number(placed)));
         let guess = guess.map(Scalar::expr).collect();
         let mut conditions = self.start_of_beams(description)?;
+        conditions.extend(self.start_of_superelements(description));
         conditions.extend(self.start_conditions(description)?);
         let exprs = |values: Vec<Option<Scalar>>| values.into_iter().map(|value| value.map(Scalar::expr)).collect();
         Ok(Start {
@@ -75,7 +76,7 @@ impl<'g> Mechanism<'g, '_> {
         let value = |&owner: &Owner| match owner {
             Owner::Body(body, coordinate) => placement.value(body, coordinate),
             Owner::Joint(joint, coordinate) => placement.joint(self, joint, coordinate),
-            Owner::State => 0.0,
+            Owner::Mode | Owner::State => 0.0,
         };
         Ok(self.coordinates.iter().map(value).collect())
     }

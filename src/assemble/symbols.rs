@@ -168,6 +168,6 @@ impl<'g> Mechanism<'g, '_> {
 
     fn kinetic_energy(&self) -> Scalar<'g> {
         let bodies = self.bodies.iter().map(|body| body.kinetic_energy());
-        self.g.sum(bodies.chain([self.kinetic_energy_of_beams]))
+        self.g.sum(bodies.chain([self.kinetic_energy_of_flexible]))
     }
 }

@@ -236,6 +236,8 @@ pub struct StartCondition {
 pub enum ConditionOf {
     /// A beam, which starts straight.
     Beam,
+    /// A superelement, which starts undeformed.
+    Superelement,
     /// `initial`, by a name that is no coordinate of the equations.
     Initial,
 }

@@ -274,6 +274,8 @@ reference! {
         |joint, found| found.push(Reference::Joint(&mut joint.0));
     [PointRef; 2], two_names(), |reader, node| reader.between_points(node),
         |points, found| found.extend(points.iter_mut().map(Reference::Point));
+    Vec<PointRef>, json_schema!({ "type": "array", "items": { "type": "string" }, "minItems": 1 }),
+        |reader, node| reader.points(node), |points, found| found.extend(points.iter_mut().map(Reference::Point));
     [BodyRef; 2], two_names(), |reader, node| reader.between_bodies(node).map(|bodies| bodies.map(BodyRef)),
         |bodies, found| found.extend(bodies.iter_mut().map(|body| Reference::Body(&mut body.0)));
     [Rotating; 2], two_names(), |reader, node| reader.two_rotating(node),

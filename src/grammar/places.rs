@@ -4,7 +4,7 @@ use super::names;
 use super::reader::{Fields, Reader};
 use super::symbols::{JointCoordinate, OnJoint, PointRef, Rotating, SymbolTable};
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::yaml::Node;
+use crate::syntax::yaml::{Node, Value};
 
 impl<S: SymbolTable> Reader<'_, S> {
     /// The body that is named.
@@ -116,6 +116,17 @@ impl<S: SymbolTable> Reader<'_, S> {
         let (a, b) = (self.point_ref(first), self.point_ref(second));
         let (a, b) = (a?, b?);
         self.different(second, a.body, b.body).then_some([a, b])
+    }
+
+    /// A list of points.
+    pub fn points(&mut self, node: &Node) -> Option<Vec<PointRef>> {
+        let Value::Sequence(items) = &node.value else {
+            let message = format!("a list of points belongs here, but here is {}", node.kind());
+            self.error(node.span.clone(), message, None);
+            return None;
+        };
+        let points: Vec<_> = items.iter().map(|item| self.point_ref(item)).collect();
+        points.into_iter().collect()
     }
 
     /// The joint that is named, with this coordinate.

@@ -8,7 +8,6 @@ use super::file;
 use super::overrides::Override;
 use super::parts::{self, Parts, WrittenOut};
 use super::scenes::{Scenes, Variant};
-use super::text_file::{MAX_BYTES, read_text, text_of};
 use super::urdf::{self, Urdf};
 use super::{
     analysis, bodies, bounds, effects, joints, mjcf, motion_times, parameters, requests, requirements, sections, space,
@@ -21,6 +20,7 @@ use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::harmless;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::text_file::{MAX_BYTES, read_text, text_of};
 use crate::syntax::yaml::{self, Entry, Node};
 
 /// What reading a model gave: both may be there when there are only warnings.

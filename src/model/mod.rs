@@ -39,7 +39,7 @@ mod tables;
 mod teeth;
 #[cfg(test)]
 mod tests;
-mod text_file;
+
 mod trajectories;
 mod urdf;
 

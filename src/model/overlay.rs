@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::overrides::Override;
-use super::text_file::{MAX_BYTES, read_text};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
 /// Keys of the file, and of a parameter in it.

@@ -4,13 +4,13 @@ use symdiff::{Spline, SplineError};
 
 use super::file;
 use super::parameters::unit;
-use super::text_file::{MAX_BYTES, read_text};
 use crate::grammar::reader::{Fields, Table};
 use crate::grammar::unit::Unit;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A value of a table and its place.

@@ -85,13 +85,13 @@ fn restricted(description: &Description) -> Vec<bool> {
     description.bodies.iter().map(|body| !body.is_free(spatial)).collect()
 }
 
-/// Bodies that are nodes of beams with mass.
+/// Bodies that are nodes of flexible ones.
 fn nodes(description: &Description) -> Vec<bool> {
     let mut nodes = vec![false; description.bodies.len()];
     for effect in &description.effects {
-        if let Some(LineMass { between, .. }) = effect.kind.inertia() {
-            between.iter().for_each(|end| nodes[end.body] = true);
-        }
+        let beam = effect.kind.inertia().into_iter().flat_map(|beam: LineMass| beam.between);
+        let reduced = effect.kind.reduced_inertia().into_iter().flat_map(|inertia| inertia.nodes.iter().copied());
+        beam.chain(reduced).for_each(|end| nodes[end.body] = true);
     }
     nodes
 }

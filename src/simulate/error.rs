@@ -296,6 +296,10 @@ pub(super) fn assembly_error(system: &System, worst: &ConstraintResidual, parame
                 ConditionOf::Beam => {
                     format!("beam `{of}` (it starts {how} unless `initial` gives {names} of all its nodes)")
                 }
+                ConditionOf::Superelement => {
+                    let how = if worst.of_velocities { "moves as a rigid body" } else { "is undeformed" };
+                    format!("superelement `{of}` (at the start it {how})")
+                }
                 ConditionOf::Initial => format!("`{of}` of `initial`"),
             };
             (owner, info)

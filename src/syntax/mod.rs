@@ -9,6 +9,7 @@ mod render;
 pub(crate) mod scope;
 pub(crate) mod source;
 pub(crate) mod suggest;
+pub(crate) mod text_file;
 mod tree;
 pub(crate) mod yaml;
 

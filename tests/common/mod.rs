@@ -3,6 +3,7 @@
 pub mod adams;
 pub mod closed_forms;
 pub mod dormand_prince;
+pub mod finite_elements;
 pub mod power;
 pub mod restitution;
 pub mod runge_kutta;

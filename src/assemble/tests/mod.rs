@@ -11,4 +11,5 @@ mod numbers;
 mod power;
 mod spatial;
 mod start;
+mod superelements;
 mod systems;

@@ -67,6 +67,10 @@ pub trait Forces<'g> {
     fn state(&self, place: usize) -> Scalar<'g>;
     /// How fast a state of the effect changes, by its place among them.
     fn state_rate(&mut self, place: usize, rate: Scalar<'g>);
+    /// A modal coordinate of the effect and its rate, by its place among them.
+    fn mode(&self, place: usize) -> [Scalar<'g>; 2];
+    /// A force on a modal coordinate of the effect, by its place among them.
+    fn modal_force(&mut self, place: usize, force: Scalar<'g>);
     /// Something that the effect measures, for outputs.
     fn sensor(&mut self, measure: Sensor, value: Scalar<'g>);
 }

@@ -8,6 +8,7 @@ mod felt;
 mod forces;
 mod goal;
 mod impact;
+pub mod matrices;
 mod outline;
 mod positive_part;
 mod registry;
@@ -23,6 +24,7 @@ pub use self::forces::Forces;
 pub use self::impact::Impact;
 #[cfg(test)]
 pub use self::impact::{Exponent, RestitutionLaw};
+use self::matrices::Matrices;
 use self::registry::effects;
 use crate::elements::Glyph;
 use crate::grammar::quantity::Dimension;
@@ -55,6 +57,7 @@ effects! {
     hydraulic_cylinder::HydraulicCylinder,
     gas_spring::GasSpring,
     tyre::Tyre,
+    superelement::Superelement,
 }
 
 /// Something that an effect measures, and what it is.
@@ -99,6 +102,11 @@ pub trait ForceElement: Element {
 
     /// The mass between two points that it adds to the mechanism.
     fn inertia(&self) -> Option<LineMass<'_>> {
+        None
+    }
+
+    /// The mass matrix by nodes and modes that it adds to the mechanism.
+    fn reduced_inertia(&self) -> Option<ReducedInertia<'_>> {
         None
     }
 
@@ -152,6 +160,17 @@ pub struct LineMass<'a> {
     pub mass_per_length: &'a Formula,
     /// In space: by what its sections have inertia of rotation.
     pub section: Option<Section<'a>>,
+}
+
+/// Inertia by a mass matrix, of nodes and modes.
+#[derive(Clone, Copy, Debug)]
+pub struct ReducedInertia<'a> {
+    /// The frames at its nodes.
+    pub nodes: &'a [PointRef],
+    /// The matrices, and where the nodes are at rest.
+    pub matrices: &'a Matrices,
+    /// By what the mass matrix is multiplied.
+    pub factor: &'a Formula,
 }
 
 /// Stiffness of a section: of one material, its radii of gyration are √(EI/EA).

@@ -17,7 +17,7 @@ use super::state::{VALUE_AND_CHANGE, value_and_change};
 use super::{ForceElement, Forces, StateVariable, TypedSensor};
 use crate::grammar::quantity::Dimension;
 use crate::grammar::values::Number;
-use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, Sensor, SymbolTable};
+use crate::grammar::{Context, Element, Fields, Group, Key, Node, Reader, Reference, SymbolTable};
 use crate::multibody::BuildError;
 
 /// A number that follows another within limits.

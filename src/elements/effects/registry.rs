@@ -154,6 +154,13 @@ macro_rules! effects {
                 }
             }
 
+            /// The mass matrix by nodes and modes that it adds to the mechanism.
+            pub fn reduced_inertia(&self) -> Option<ReducedInertia<'_>> {
+                match self {
+                    $(Self::$name(effect) => ForceElement::reduced_inertia(effect),)*
+                }
+            }
+
             /// The states that it brings.
             pub fn states(&self) -> Vec<StateVariable<'_>> {
                 match self {

@@ -5,10 +5,10 @@ use std::path::{Component, Path, PathBuf};
 use super::format::{Fate, Rule};
 use super::table;
 use crate::model::robots::xml::{self, Element, NAMESPACE, Places};
-use crate::model::text_file;
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::text_file;
 
 /// Largest file that is read.
 const MAX_BYTES: u64 = 50_000_000;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::Writer;
 use crate::model::file;
-use crate::model::text_file::{MAX_BYTES, read_text};
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::clip;
+use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{self, Entry, Node, Value};
 
 /// Most files of a model.

@@ -31,11 +31,11 @@ use self::source::{Built, Source};
 use super::overrides::Override;
 use super::robots::numbers;
 use super::scenes::LeftOut;
-use super::text_file;
 use crate::grammar::reader::Fields;
 use crate::model::names::Reader;
 use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
+use crate::syntax::text_file;
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// Largest URDF that is read.

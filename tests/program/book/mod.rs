@@ -93,6 +93,7 @@ fn the_page_of_joints_is_that_of_their_files() {
 fn the_examples_can_be_assembled() {
     let files: Vec<PathBuf> =
         std::fs::read_dir(docs().join("examples")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let files: Vec<PathBuf> = files.into_iter().filter(|file| file.is_file()).collect();
     assert!(!files.is_empty());
     for file in files {
         let text = std::fs::read_to_string(&file).unwrap();

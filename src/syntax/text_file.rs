@@ -4,14 +4,14 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use crate::syntax::diagnostic::Diagnostic;
-use crate::syntax::suggest::clip;
+use super::diagnostic::Diagnostic;
+use super::suggest::clip;
 
 /// Largest file that is read.
-pub(super) const MAX_BYTES: u64 = 10_000_000;
+pub(crate) const MAX_BYTES: u64 = 10_000_000;
 
 /// The text of a file of at most so many bytes.
-pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
+pub(crate) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic>> {
     let metadata = fs::metadata(path).map_err(cannot)?;
     if metadata.is_dir() {
         return Err(Box::new(Diagnostic::of_file("this is a directory, not a file")));
@@ -23,7 +23,7 @@ pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Box<Diagnostic
 }
 
 /// The text that can be read somewhere, of at most so many bytes.
-pub(super) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
+pub(crate) fn text_of(source: impl Read, most: u64) -> Result<String, Box<Diagnostic>> {
     // What is not a regular file (a pipe) says no length: never read more than allowed.
     let mut bytes = Vec::new();
     source.take(most + 1).read_to_end(&mut bytes).map_err(cannot)?;
