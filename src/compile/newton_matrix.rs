@@ -52,6 +52,26 @@ pub struct NewtonSystem {
     pub active_condition: Option<Expr>,
 }
 
+impl NewtonSystem {
+    /// The same with all expressions, given together, replaced by as many others.
+    pub fn map(mut self, replace: impl FnOnce(&[Expr]) -> Vec<Expr>) -> Self {
+        let entries = self.matrix.rows.iter_mut().flatten().map(|entry| &mut entry.1);
+        let vectors = [
+            &mut self.residual,
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.algorithmic,
+            &mut self.acceleration,
+            &mut self.inertial_change,
+        ];
+        let all: Vec<&mut Expr> =
+            entries.chain(vectors.into_iter().flatten()).chain(&mut self.active_condition).collect();
+        let before: Vec<Expr> = all.iter().map(|value| **value).collect();
+        all.into_iter().zip(replace(&before)).for_each(|(value, new)| *value = new);
+        self
+    }
+}
+
 /// The symbols that a step adds to the system's: the state at its beginning, h and the iterate.
 struct StepSymbols {
     q: Vec<Expr>,

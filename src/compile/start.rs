@@ -25,7 +25,7 @@
 //! where constraints are redundant, and the corrections still converge to the exact solution, since the right sides are
 //! exact.
 
-use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower};
+use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower, with_reciprocals};
 
 use super::equations::Equation;
 use super::layout::Layout;
@@ -79,7 +79,7 @@ pub fn compile_nearest_start(
     let equations = Equations::new(system, &mut graph);
     let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample, factorised: Vec::new() };
     let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
-    let graph = builder.graph;
+    let mut graph = builder.graph;
 
     let at = |values: &[Expr], start: usize| -> Vec<Target> {
         values.iter().zip(start..).map(|(&value, register)| (value, Some(register as u32))).collect()
@@ -91,7 +91,7 @@ pub fn compile_nearest_start(
     };
     let n = system.q.len();
     let jacobian = &equations.jacobian;
-    let kernels = [
+    let mut kernels = [
         given_values(system, &layout),
         at(&system.start.guess, layout.q.start),
         with(&position[..n], &equations.closure),
@@ -101,6 +101,9 @@ pub fn compile_nearest_start(
         system.outputs.iter().map(|output| (output.expr, None)).collect(),
         with(&projection[..n], &[]),
     ];
+    let values: Vec<Expr> = kernels.iter().flatten().map(|&(value, _)| value).collect();
+    let replaced = with_reciprocals(&mut graph, &inputs, &values);
+    kernels.iter_mut().flatten().zip(replaced).for_each(|(target, value)| target.0 = value);
     let lowered = lower(&graph, &inputs, 1, layout.registers() as u32, &kernels);
     let tail = |kernel: usize, skip: usize| {
         lowered.outputs[kernel].iter().skip(skip).map(|&register| register as usize).collect::<Vec<_>>()

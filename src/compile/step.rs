@@ -1,7 +1,7 @@
 //! System → [`Program`]: the equations of a step, their elimination, the tapes.
 
 use rustc_hash::FxHashMap;
-use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where};
+use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where, with_reciprocals};
 
 use super::elimination::{Elimination, PivotChoice, Version, is_worthwhile};
 use super::equations::Equation;
@@ -30,6 +30,7 @@ pub fn compile(
     let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
     let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
+    let newton = newton.map(|values| with_reciprocals(&mut graph, &inputs, values));
     let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)
         .map_err(|none| none.named(|row| Equation::of_row(row, system.q.len())))?;
     let rounding = match coefficients.level {
@@ -40,7 +41,8 @@ pub fn compile(
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);
     let Elimination { frozen, guards, watched, active: Version { factors, equilibration }, .. } = elimination;
-    let observe = system.outputs.iter().map(|output| (output.expr, None)).collect();
+    let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
+    let observe = with_reciprocals(&mut graph, &inputs, &outputs).into_iter().map(|output| (output, None)).collect();
     let mut matrix: Vec<Target> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
     matrix.extend(newton.residual.iter().map(|&value| (value, None)));
     let guards = guards.into_iter().map(|(value, guard)| ((FACTOR, value), guard)).collect();

@@ -147,6 +147,9 @@ pub struct Lost {
     pub is_too_wide: bool,
 }
 
+/// Times, and motions at them.
+pub type DenseMotions = (Vec<f64>, Vec<f64>);
+
 /// Outputs over time as functions of the uncertain parameters.
 pub trait Ensemble: Sync {
     /// The box of the uncertain parameters.
@@ -181,6 +184,16 @@ pub trait Ensemble: Sync {
         sampling: Sampling,
         reduce: &mut dyn FnMut(Rows<usize>, &[f64]),
     ) -> Result<Simulated, EnsembleError>;
+
+    /// Motions of samples at times that are dense enough to tell what lies between them: the times, and positions and velocities (2n
+    /// lines) in each, line by line, sample by sample. `None` where steps are too coarse for that.
+    ///
+    /// # Errors
+    /// Where a sample cannot be assembled.
+    fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
+        let _ = samples;
+        Ok(None)
+    }
 
     /// Simulates all samples of a scan's grid to the end, and bounds the outputs over them.
     ///

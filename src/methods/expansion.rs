@@ -1,7 +1,7 @@
 //! A row's expanded motion, and the outputs that follow from it through the loop closure.
 
 use super::ensemble::Closure;
-use crate::numerics::{ParameterBox, SparseBasis, SparseWork};
+use crate::numerics::{ParameterBox, Phase, SparseBasis, SparseWork};
 
 /// How motions are moved, to see what that does to outputs.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +37,8 @@ pub(super) struct Expansion<'r> {
     pub coefficients: &'r [f64],
     /// Least and largest of each of the 2n lines over the samples.
     pub extent: &'r [(f64, f64)],
+    /// Coordinates that are expanded as the times at which their courses are there, and their velocities as rates of those.
+    pub phases: &'r [(usize, Phase<'r>)],
 }
 
 impl Expansion<'_> {
@@ -69,11 +71,21 @@ impl Expansion<'_> {
         self.close(&all, motion)
     }
 
-    /// The first of the polynomials' values, as many lines of points as there is room for.
+    /// The first lines of the motion, as many lines of points as there is room for.
     pub fn expand<P: AsRef<[f64]>>(&self, points: &[P], motion: &mut [f64]) {
         let lines = motion.len() / points.len().max(1);
         let coefficients = &self.coefficients[..lines * self.basis.len()];
         self.basis.values(points, coefficients, motion, &mut SparseWork::default());
+        let n = self.extent.len() / 2;
+        for (coordinate, phase) in self.phases {
+            for point in 0..points.len() {
+                let (value, rate) = phase.at(motion[coordinate * points.len() + point]);
+                motion[coordinate * points.len() + point] = value;
+                if let Some(velocity) = motion.get_mut((n + coordinate) * points.len() + point) {
+                    *velocity *= rate;
+                }
+            }
+        }
     }
 
     /// Every output as it follows from the motion at some ξ: 2n lines of points.

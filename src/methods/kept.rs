@@ -171,6 +171,7 @@ impl KeptBox {
                     time: row.time,
                     coefficients: &row.coefficients,
                     extent: &row.extent,
+                    phases: &[],
                 };
                 expansion.evaluate_moved(points, &[Moves::default()])
             }

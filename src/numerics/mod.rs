@@ -13,6 +13,7 @@ mod along;
 mod bernstein;
 mod cheapest;
 mod chebyshev;
+mod course;
 mod decay;
 mod design;
 mod domain;
@@ -46,6 +47,7 @@ mod tensor;
 mod time_shift;
 
 pub use cheapest::{Linear, Power, cheapest};
+pub use course::{Course, Phase};
 pub use decay::truncation;
 pub use design::{Design, MOST_AXES};
 pub use domain::{ParameterBox, Sample};

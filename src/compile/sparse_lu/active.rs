@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, SparseMatrix};
 
 use super::solve::Pivot;
@@ -72,33 +73,67 @@ impl Active {
         }
         let below: Vec<usize> =
             std::mem::take(&mut self.columns[column]).into_iter().filter(|&other| other != row).collect();
-        let mut lower = Vec::with_capacity(below.len());
-        for other in below {
-            self.sparsest_rows.remove(&self.row_key(other));
-            let entry = self.rows[other].remove(&column).expect("columns list the rows that have an entry there");
-            let multiplier = graph.mul(entry.value, inverse);
+        let entries: Vec<Entry> = below.iter().map(|&other| self.take(other, column)).collect();
+        let lower: Vec<(usize, Expr)> =
+            below.iter().zip(&entries).map(|(&other, entry)| (other, graph.mul(entry.value, inverse))).collect();
+        let mirrored = self.mirrored((row, column), &upper, &lower, &entries);
+        for (&(other, multiplier), entry) in lower.iter().zip(&entries) {
             let ratio: Numbers = std::array::from_fn(|sample| entry.numbers[sample] / pivot.numbers[sample]);
             for (&right, above) in &upper {
-                self.update(graph, (other, right), multiplier, &ratio, above);
+                let product = match mirrored.get(&(other, right)) {
+                    Some(&of_mirror) => graph.mul(of_mirror, upper[&other].value),
+                    None => graph.mul(multiplier, above.value),
+                };
+                self.update(graph, (other, right), product, &ratio, above);
             }
             self.sparsest_rows.insert(self.row_key(other));
-            lower.push((other, multiplier));
         }
         let magnitude = pivot.numbers.map(f64::abs);
         let upper = upper.into_iter().map(|(right, entry)| (right, entry.value)).collect();
         Pivot { row, column, inverse, lower, upper, magnitude }
     }
 
-    /// entry(row, column) −= multiplier · above
+    /// Takes an entry out of its row, which is not among the sparsest until all of it is known again.
+    fn take(&mut self, row: usize, column: usize) -> Entry {
+        self.sparsest_rows.remove(&self.row_key(row));
+        self.rows[row].remove(&column).expect("columns list the rows that have an entry there")
+    }
+
+    /// Entries below the diagonal whose mirror images are the same expressions, and stay so if both change by the mirror image's
+    /// product: what an entry of the pivot's row is multiplied by there. A symmetric matrix then takes half the operations.
+    fn mirrored(
+        &self,
+        (row, column): (usize, usize),
+        upper: &BTreeMap<usize, Entry>,
+        lower: &[(usize, Expr)],
+        entries: &[Entry],
+    ) -> FxHashMap<(usize, usize), Expr> {
+        let mut mirrored = FxHashMap::default();
+        if row != column {
+            return mirrored;
+        }
+        let same = |&place: &usize| upper.get(&lower[place].0).is_some_and(|above| above.value == entries[place].value);
+        let symmetric: Vec<(usize, Expr)> = (0..lower.len()).filter(same).map(|place| lower[place]).collect();
+        let value = |row: usize, column: usize| self.rows[row].get(&column).map(|entry| entry.value);
+        for (place, &(other, _)) in symmetric.iter().enumerate() {
+            for &(right, of_mirror) in &symmetric[..place] {
+                if value(other, right) == value(right, other) {
+                    mirrored.insert((other, right), of_mirror);
+                }
+            }
+        }
+        mirrored
+    }
+
+    /// entry(row, column) −= `product`, which is `ratio` times what stands above.
     fn update(
         &mut self,
         graph: &mut Graph,
         (row, column): (usize, usize),
-        multiplier: Expr,
+        product: Expr,
         ratio: &Numbers,
         above: &Entry,
     ) {
-        let product = graph.mul(multiplier, above.value);
         let old = self.rows[row].get(&column).copied();
         let value = match old {
             Some(entry) => graph.sub(entry.value, product),

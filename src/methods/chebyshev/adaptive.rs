@@ -12,7 +12,8 @@ use std::time::Instant;
 
 use rustc_hash::FxHashMap;
 
-use super::composition::{Composer, Row};
+use super::composition::{Composer, Row, courses, turning};
+use super::detail::Detail;
 use super::estimator::RangeEstimator;
 use super::range_search::{Previous, RangeSearch};
 use super::sensitivity::SensitivityAnalysis;
@@ -59,24 +60,6 @@ pub(super) struct Adapted {
     pub simulated: Simulated,
     /// The surrogate, where it is to be kept.
     pub kept: Option<KeptSurrogate>,
-}
-
-/// What is estimated besides ranges and the surrogate's errors.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Detail {
-    /// Nothing.
-    Errors,
-    /// The time steps' errors.
-    StepErrors,
-    /// These, and the parameters' sensitivities.
-    Sensitivities,
-}
-
-impl Detail {
-    /// What is estimated in the end: sensitivities only where the box was not split.
-    fn of(boxes: &[SubBox]) -> Self {
-        if boxes.len() == 1 { Self::Sensitivities } else { Self::StepErrors }
-    }
 }
 
 /// The search for a surrogate within a goal.
@@ -166,7 +149,12 @@ impl<'r> Adaptation<'r> {
         let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
         let nodes = vec![self.simulate(&domain, &[grid.sample(0)])?];
         let surplus = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
-        Ok(SubBox { domain, grid, nodes, surplus, direct, error: f64::INFINITY, estimates: None })
+        // What is kept has polynomials of the coordinates themselves.
+        let wanted =
+            if self.kept.is_some() { Vec::new() } else { turning(&direct, &self.validation.points, self.ensemble) };
+        let (count, courses) = courses(self.ensemble, &domain, &wanted)?;
+        self.goal.spent += count;
+        Ok(SubBox { domain, grid, nodes, surplus, courses, direct, error: f64::INFINITY, estimates: None })
     }
 
     /// Validation samples of a sub-box.
@@ -257,7 +245,14 @@ impl<'r> Adaptation<'r> {
             }
             errors
         };
-        let by_row = self.composer.rows(surrogate, &sub_box.domain, &times, (&motions, stride), false, look)?;
+        let by_row = self.composer.rows(
+            surrogate,
+            &sub_box.domain,
+            &times,
+            (&motions, stride, &sub_box.courses),
+            false,
+            look,
+        )?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
@@ -302,7 +297,7 @@ impl<'r> Adaptation<'r> {
             let errors = row.errors_at_samples((points, &sub_box.direct), rows[place]);
             largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
         };
-        self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), false, look)
+        self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride, &sub_box.courses), false, look)
     }
 
     /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
@@ -330,7 +325,14 @@ impl<'r> Adaptation<'r> {
             (found, kept)
         };
         let velocities = detail != Detail::Errors;
-        let found = self.composer.rows(&surrogate, &sub_box.domain, &times, (&motions, stride), velocities, look)?;
+        let found = self.composer.rows(
+            &surrogate,
+            &sub_box.domain,
+            &times,
+            (&motions, stride, &sub_box.courses),
+            velocities,
+            look,
+        )?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
         Ok((found.concat(), kept.into_iter().flatten().collect()))
     }

@@ -5,6 +5,7 @@
 
 mod adaptive;
 mod composition;
+mod detail;
 mod estimator;
 mod range_search;
 mod sensitivity;
@@ -341,7 +342,7 @@ fn composed(
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        match composer.rows(surrogate, domain, &times, (values, stride), true, look) {
+        match composer.rows(surrogate, domain, &times, (values, stride, &[]), true, look) {
             Ok(found) => {
                 for (row, (estimates, row_kept)) in rows.zip(found) {
                     kept.iter_mut().for_each(|kept| kept.extend(row_kept.clone()));

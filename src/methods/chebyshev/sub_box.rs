@@ -8,7 +8,7 @@ use symdiff::math;
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::methods::validation::ValidationTable;
-use crate::numerics::{ParameterBox, SparseGrid};
+use crate::numerics::{Course, ParameterBox, SparseGrid};
 
 /// Highest degree in a parameter, by the number of parameters: one costs a node each, many their products.
 const HIGHEST: [u8; 3] = [128, 48, 24];
@@ -40,6 +40,8 @@ pub(super) struct SubBox<'r> {
     pub nodes: Vec<(usize, Vec<f64>)>,
     /// Hierarchical surplus of each index of the grid: the error of the surrogate before the index was added.
     pub surplus: Surpluses,
+    /// Of coordinates that turn, by coordinate; none, or one for each.
+    pub courses: Vec<Option<Course>>,
     /// Values of the validation samples.
     pub direct: Cow<'r, ValidationTable>,
     /// Largest error at those over the one that is allowed.

@@ -1,5 +1,7 @@
 //! The ensemble of a mechanism's motions under one step schedule, over a box of parameters.
 
+mod closure;
+mod dense;
 mod jet;
 mod progress;
 mod stored;
@@ -16,11 +18,12 @@ use super::reduced::{Store, steps_of};
 use crate::compile::has_kink;
 use crate::grammar::quantity::Dimension;
 use crate::methods::{
-    self, BandBuilder, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated, StopCause, Until,
+    self, BandBuilder, DenseMotions, Effort, Ensemble, EnsembleError, JET_WORK, MethodResult, Sampling, Simulated,
+    StopCause, Until,
 };
 use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, Points, SampleRun,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun,
     Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
@@ -295,6 +298,10 @@ impl Ensemble for Motions<'_> {
         }
     }
 
+    fn dense_motions(&self, samples: &[Sample]) -> Result<Option<DenseMotions>, EnsembleError> {
+        Ok(self.dense(samples)?)
+    }
+
     fn scan(&self, grid: &ScanGrid) -> Result<(ScanBounds, Simulated), EnsembleError> {
         match &self.stored {
             Some(stored) => Ok(stored.scan(self, grid)?),
@@ -380,21 +387,5 @@ impl Ensemble for Motions<'_> {
 
     fn closure(&self, independent: Vec<usize>) -> Result<Box<dyn methods::Closure + '_>, EnsembleError> {
         Ok(Box::new(Closure::new(self.simulator, independent)?))
-    }
-}
-
-impl methods::Closure for Closure<'_> {
-    fn independent(&self) -> &[usize] {
-        Closure::independent(self)
-    }
-
-    fn needs_velocities(&self) -> bool {
-        Closure::needs_velocities(self)
-    }
-
-    fn outputs(&self, time: f64, count: usize, parameters: Vec<f64>, motion: Vec<f64>) -> Vec<f64> {
-        let mut values = Vec::new();
-        Closure::outputs(self, time, &Points { count, parameters, motion }, &mut values);
-        values
     }
 }

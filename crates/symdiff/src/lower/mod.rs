@@ -5,6 +5,7 @@
 //! that stage's own tape and kept in a slot of its own, so that nothing is evaluated more often than it can change.
 
 mod node_table;
+mod reciprocals;
 mod regions;
 mod registers;
 mod schedule;
@@ -13,6 +14,7 @@ pub(crate) mod tape;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+pub use self::reciprocals::with_reciprocals;
 pub use self::stages::{Input, Stages};
 pub use self::tape::{Guard, Op, Operands, Tape};
 

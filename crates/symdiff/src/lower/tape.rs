@@ -194,6 +194,15 @@ impl Tape {
         count
     }
 
+    /// Number of instructions of the operations that are asked for.
+    pub fn count(&self, of: impl Fn(Op) -> bool) -> usize {
+        let runs = self.pieces.iter().filter_map(|piece| match piece {
+            Piece::Run { op, start, end } if of(*op) => Some((end - start) / op.arity()),
+            _ => None,
+        });
+        runs.sum()
+    }
+
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.instructions == 0

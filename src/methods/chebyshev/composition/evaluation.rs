@@ -49,6 +49,8 @@ impl Row<'_> {
                 return 0.0;
             }
             let tail = truncation(basis, &self.coefficients[line * basis.len()..][..basis.len()]);
+            let phase = self.phases.iter().find(|phase| phase.0 == line % (self.extent.len() / 2));
+            let tail = phase.map_or(tail, |(_, phase)| phase.steepest() * tail);
             largest([surrogate_error(&expanded[values(line)], &motion[values(line)]), tail])
         })
     }
@@ -68,6 +70,7 @@ impl Row<'_> {
             time: self.time,
             coefficients: &self.coefficients,
             extent: &self.extent,
+            phases: &self.phases,
         }
     }
 

@@ -7,12 +7,18 @@
 
 mod errors;
 mod evaluation;
+mod phases;
 
 use rayon::prelude::*;
 
+use phases::{as_times, phases, with_turns};
+pub(super) use phases::{courses, turning};
+
 use super::range_search::{Evaluate, Functions, Previous, RangeSearch};
 use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
-use crate::numerics::{Extent, ParameterBox, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error};
+use crate::numerics::{
+    Course, Extent, ParameterBox, Phase, Range, Surrogate, SurrogateWork, corners, largest, surrogate_error,
+};
 
 /// Largest mechanism, in coordinates, whose independent coordinates are searched for in every row.
 const MOST_COORDINATES: usize = 300;
@@ -52,7 +58,7 @@ impl<'a> Composer<'a> {
     }
 
     /// Applies `look` to rows, in parallel block by block (with the extremes of the row before in the same block), given the
-    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line). Velocities are expanded where they
+    /// motions and outputs of a surrogate's samples over a box (`stride` values a row, line by line), and courses of coordinates. Velocities are expanded where they
     /// are asked for, or outputs need them.
     ///
     /// # Errors
@@ -62,7 +68,7 @@ impl<'a> Composer<'a> {
         surrogate: &Surrogate,
         domain: &ParameterBox,
         times: &[f64],
-        (motions, stride): (&[f64], usize),
+        (motions, stride, courses): (&[f64], usize, &[Option<Course>]),
         velocities: bool,
         look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
     ) -> Result<Vec<T>, EnsembleError> {
@@ -78,7 +84,14 @@ impl<'a> Composer<'a> {
                 let row = first + place;
                 let (closure, motion) = (self.closures[chosen[row]].as_ref(), &motions[row * stride..][..stride]);
                 let velocities = velocities || closure.needs_velocities();
-                let at = Row::new(self.ensemble, surrogate, domain, closure, (time, motion, velocities), &mut work);
+                let at = Row::new(
+                    self.ensemble,
+                    surrogate,
+                    domain,
+                    (closure, courses),
+                    (time, motion, velocities),
+                    &mut work,
+                );
                 look(row, &at, &mut previous)
             };
             times.iter().enumerate().map(at).collect::<Vec<T>>()
@@ -129,6 +142,10 @@ pub(super) struct Row<'r> {
     extent: Vec<(f64, f64)>,
     /// Each output's values at the samples.
     at_samples: &'r [f64],
+    /// Coordinates that are expanded as times of their courses.
+    phases: Vec<(usize, Phase<'r>)>,
+    /// Highest degree along each axis, or what stands for it where a coordinate turns more often.
+    degrees: Vec<u8>,
 }
 
 /// The outputs' ranges in a row.
@@ -158,7 +175,7 @@ impl<'r> Row<'r> {
         ensemble: &'r dyn Ensemble,
         surrogate: &'r Surrogate,
         domain: &'r ParameterBox,
-        closure: &'r dyn Closure,
+        (closure, courses): (&'r dyn Closure, &'r [Option<Course>]),
         (time, motion, velocities): (f64, &'r [f64], bool),
         work: &mut SurrogateWork,
     ) -> Self {
@@ -167,18 +184,33 @@ impl<'r> Row<'r> {
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
         };
         let (coordinates, at_samples) = motion.split_at(2 * ensemble.scales().len() * surrogate.samples().len());
-        let extent = coordinates.chunks_exact(surrogate.samples().len()).map(extent).collect();
+        let extent: Vec<(f64, f64)> = coordinates.chunks_exact(surrogate.samples().len()).map(extent).collect();
+        let phases = phases(closure, courses, &extent);
+        let expanded = as_times(coordinates, &phases, surrogate.samples().len());
         let coefficients = if velocities {
-            surrogate.coefficients(motion, work)
+            surrogate.coefficients(&[&expanded, at_samples].concat(), work)
         } else {
-            let positions = &coordinates[..coordinates.len() / 2];
+            let positions = &expanded[..coordinates.len() / 2];
             let mut coefficients = surrogate.coefficients(&[positions, at_samples].concat(), work);
             let of_outputs = coefficients.split_off(ensemble.scales().len() * surrogate.basis().len());
             coefficients.resize(2 * coefficients.len(), 0.0);
             coefficients.extend(of_outputs);
             coefficients
         };
-        Self { ensemble, surrogate, domain, closure, time, coefficients, velocities, extent, at_samples }
+        let degrees = with_turns((surrogate.basis(), &coefficients), &phases, &extent, ensemble.scales());
+        Self {
+            ensemble,
+            surrogate,
+            domain,
+            closure,
+            time,
+            coefficients,
+            velocities,
+            extent,
+            at_samples,
+            phases,
+            degrees,
+        }
     }
 
     /// What its polynomials are made by.
@@ -296,7 +328,8 @@ impl<'r> Row<'r> {
         (rounding, places): (&'f [f64], &'f [Vec<f64>]),
         evaluate: &'f Evaluate<'f>,
     ) -> Functions<'f> {
-        Functions { outputs, degrees: self.surrogate.basis().orders(), are_polynomials, rounding, places, evaluate }
+        let degrees = if are_polynomials { self.surrogate.basis().orders() } else { &self.degrees };
+        Functions { outputs, degrees, are_polynomials, rounding, places, evaluate }
     }
 
     /// What of an output is too small a difference to be one.

@@ -1,0 +1,71 @@
+//! Divisions → products with reciprocals, where a reciprocal serves several of them or is computed less often than they are.
+//!
+//! A division takes many times as long as a product. x/y is x·(1/y) where y changes less often than x, so that 1/y is found at y's
+//! stage (for a number, when the tape is made), and where something else is divided by y too. That rounds twice where a division
+//! rounds once.
+
+use rustc_hash::FxHashMap;
+
+use super::stages::{Input, Stages};
+use crate::expr::{Binary, Expr, Graph, Node};
+
+/// `roots` with reciprocals in place of divisions; symbols change at the stages of `inputs`.
+pub fn with_reciprocals(graph: &mut Graph, inputs: &[Input], roots: &[Expr]) -> Vec<Expr> {
+    let mut stages = Stages::new(inputs);
+    stages.update(graph);
+    let reached = graph.reachable(roots);
+    let mut divided_by: FxHashMap<Expr, usize> = FxHashMap::default();
+    for &expr in &reached {
+        if let Node::Binary(Binary::Div, _, divisor) = graph.node(expr) {
+            *divided_by.entry(divisor).or_default() += 1;
+        }
+    }
+    let one = graph.constant(1.0);
+    let mut image: FxHashMap<Expr, Expr> = FxHashMap::default();
+    for expr in reached {
+        let new = match graph.node(expr) {
+            Node::Constant(_) | Node::Symbol(_) => expr,
+            Node::Unary(function, a) => graph.unary(function, image[&a]),
+            Node::Binary(Binary::Div, a, b) if divided_by[&b] > 1 || stages.of(b) < stages.of(a) => {
+                let reciprocal = graph.div(one, image[&b]);
+                graph.mul(image[&a], reciprocal)
+            }
+            Node::Binary(function, a, b) => graph.binary(function, image[&a], image[&b]),
+        };
+        image.insert(expr, new);
+    }
+    roots.iter().map(|root| image[root]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Op, Tape, lower};
+    use super::*;
+
+    #[test]
+    fn what_divides_often_is_inverted_once() {
+        let mut g = Graph::new();
+        let [h, x, y, z] = ["h", "x", "y", "z"].map(|name| g.symbol(name));
+        let three = g.constant(3.0);
+        let by_number = g.div(x, three);
+        let by_step = g.div(y, h);
+        let [first, second] = [x, y].map(|a| g.div(a, z));
+        let alone = g.div(z, x);
+        let roots = [by_number, by_step, first, second, alone];
+        let inputs: Vec<Input> = [(h, 0), (x, 1), (y, 1), (z, 1)]
+            .into_iter()
+            .zip(0..)
+            .map(|((symbol, stage), register)| Input { symbol, stage, register })
+            .collect();
+        let rewritten = with_reciprocals(&mut g, &inputs, &roots);
+        let lowered = lower(&g, &inputs, 1, 4, &[rewritten.iter().map(|&root| (root, None)).collect()]);
+        let divisions = |tape: &Tape| tape.count(|op| op == Op::Binary(Binary::Div));
+        assert_eq!((divisions(&lowered.stages[0]), divisions(&lowered.kernels[0])), (1, 2));
+        let value = |symbol: Expr| 0.3 + symbol.index() as f64;
+        for (before, after) in g.evaluate(&roots, value).into_iter().zip(g.evaluate(&rewritten, value)) {
+            assert!((before - after).abs() <= 2.0 * f64::EPSILON * before.abs(), "{before} {after}");
+        }
+        // What is divided alone stays as it is.
+        assert_eq!(rewritten[4], alone);
+    }
+}

@@ -1,0 +1,104 @@
+//! Coordinates that turn are expanded as the times at which one sample, that of their course, is where they are.
+
+use std::borrow::Cow;
+
+use crate::methods::ensemble::{Closure, Ensemble, EnsembleError};
+use crate::methods::validation::ValidationTable;
+use crate::numerics::{Course, ParameterBox, Phase, Range, SparseBasis};
+
+/// A coordinate turns where it ends so far from where it began, in its scale: half a turn.
+const TURNED: f64 = std::f64::consts::PI;
+
+/// For each coordinate that turns the corner of the box at which it turns furthest, as far as samples at `points` tell.
+pub fn turning(direct: &ValidationTable, points: &[Vec<f64>], ensemble: &dyn Ensemble) -> Vec<Option<Vec<f64>>> {
+    let Some(last) = direct.rows().checked_sub(1) else { return Vec::new() };
+    let of_coordinate = |(coordinate, scale): (usize, &f64)| {
+        let ends = direct.line(0, coordinate).iter().zip(direct.line(last, coordinate));
+        let ways: Vec<f64> = ends.map(|(from, to)| to - from).collect();
+        let mean = ways.iter().sum::<f64>() / ways.len() as f64;
+        // Each parameter by how the way changes with it. NaN is no turn.
+        let along = |axis: usize| points.iter().zip(&ways).map(|(xi, way)| xi[axis] * (way - mean)).sum::<f64>();
+        let corner = |axis: usize| if along(axis) * mean < 0.0 { -1.0 } else { 1.0 };
+        (mean.abs() > TURNED * scale).then(|| (0..ensemble.domain().dimension()).map(corner).collect())
+    };
+    ensemble.scales().iter().enumerate().map(of_coordinate).collect()
+}
+
+/// Simulates corners of a box, one for each coordinate that turns: the number of simulations, and the coordinates' courses there.
+///
+/// # Errors
+/// Where a corner cannot be assembled.
+pub fn courses(
+    ensemble: &dyn Ensemble,
+    domain: &ParameterBox,
+    corners: &[Option<Vec<f64>>],
+) -> Result<(usize, Vec<Option<Course>>), EnsembleError> {
+    let mut nodes: Vec<Vec<f64>> = Vec::new();
+    for corner in corners.iter().flatten() {
+        if !nodes.contains(corner) {
+            nodes.push(corner.clone());
+        }
+    }
+    let dense = if nodes.is_empty() { None } else { ensemble.dense_motions(&domain.samples(&nodes))? };
+    let Some((times, values)) = dense else { return Ok((0, Vec::new())) };
+    let (n, count) = (corners.len(), nodes.len());
+    let course = |(coordinate, corner): (usize, &Option<Vec<f64>>)| {
+        let sample = nodes.iter().position(|node| Some(node) == corner.as_ref())?;
+        let line = |line: usize| values.chunks_exact(2 * n * count).map(|row| row[line * count + sample]).collect();
+        Course::new(times.clone(), line(coordinate), line(n + coordinate))
+    };
+    Ok((count, corners.iter().enumerate().map(course).collect()))
+}
+
+/// The independent coordinates whose samples are on the way of a course.
+pub(super) fn phases<'c>(
+    closure: &dyn Closure,
+    courses: &'c [Option<Course>],
+    extent: &[(f64, f64)],
+) -> Vec<(usize, Phase<'c>)> {
+    let of = |&coordinate: &usize| {
+        let (lower, upper) = extent[coordinate];
+        let phase = courses.get(coordinate)?.as_ref()?.over(Range { lower, upper })?;
+        Some((coordinate, phase))
+    };
+    closure.independent().iter().filter_map(of).collect()
+}
+
+/// Positions and velocities (2n lines of samples) with those of such coordinates as times of their courses, and rates of these.
+pub(super) fn as_times<'m>(motion: &'m [f64], phases: &[(usize, Phase)], samples: usize) -> Cow<'m, [f64]> {
+    let mut motion = Cow::Borrowed(motion);
+    let half = motion.len() / 2;
+    for (coordinate, phase) in phases {
+        let motion = motion.to_mut();
+        for place in coordinate * samples..(coordinate + 1) * samples {
+            let time = phase.time(motion[place]);
+            motion[place] = time;
+            motion[half + place] /= phase.at(time).1;
+        }
+    }
+    motion
+}
+
+/// Highest degree along each axis, or how far a coordinate that is expanded as times turns along it, in its scale: what polynomials of
+/// the coordinate itself would have to follow. An axis turns it by the share of the coefficients whose terms it has.
+pub fn with_turns(
+    (basis, coefficients): (&SparseBasis, &[f64]),
+    phases: &[(usize, Phase)],
+    extent: &[(f64, f64)],
+    scales: &[f64],
+) -> Vec<u8> {
+    let mut degrees = basis.orders().to_vec();
+    for (coordinate, _) in phases {
+        let (low, high) = extent[*coordinate];
+        let own = &coefficients[coordinate * basis.len()..][..basis.len()];
+        let sum = |axis: Option<usize>| -> f64 {
+            let counts = |term: &usize| axis.is_none_or(|axis| basis.degrees(*term)[axis] > 0);
+            (1..own.len()).filter(counts).map(|term| own[term].abs()).sum()
+        };
+        for (axis, degree) in degrees.iter_mut().enumerate() {
+            let turns = (high - low) / scales[*coordinate] * (sum(Some(axis)) / sum(None));
+            *degree = (turns.ceil().min(f64::from(u8::MAX)) as u8).max(*degree);
+        }
+    }
+    degrees
+}

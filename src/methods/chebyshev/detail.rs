@@ -1,0 +1,21 @@
+//! How closely an adaptive surrogate is looked at.
+
+use super::sub_box::SubBox;
+
+/// What is estimated besides ranges and the surrogate's errors.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// Nothing.
+    Errors,
+    /// The time steps' errors.
+    StepErrors,
+    /// These, and the parameters' sensitivities.
+    Sensitivities,
+}
+
+impl Detail {
+    /// What is estimated in the end: sensitivities only where the box was not split.
+    pub fn of(boxes: &[SubBox]) -> Self {
+        if boxes.len() == 1 { Self::Sensitivities } else { Self::StepErrors }
+    }
+}
