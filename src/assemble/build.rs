@@ -9,6 +9,7 @@ use super::acting::Acting;
 use super::applied_forces::AppliedForces;
 use super::constraints::Constraints;
 use super::cuts::other_cuts;
+use super::links::{Link, links_of};
 use super::mechanism::Mechanism;
 use super::recursion;
 use super::system::{CoordinateInfo, EffectInfo, FormulationInfo, LeftOut, Nearest, System};
@@ -132,6 +133,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
     let [inertia, force, conditional] =
         [&balance.inertia, &balance.force, &balance.conditional].map(|list| Scalar::exprs(list));
     let mass = balance.mass.into_iter().map(|(row, column, value)| (row, column, value.expr())).collect();
+    let links = balance.links;
     let (active_condition, constraints) = (balance.active_condition.map(Scalar::expr), constraints.infos);
     Ok(move |graph| {
         let (graph, with_distances) = match of_equations {
@@ -155,6 +157,7 @@ fn equations(mut m: Mechanism, description: &Description) -> Result<impl FnOnce(
             active_condition,
             conditional,
             constraint,
+            links,
             outputs,
             length,
             mass_of_bodies,
@@ -216,6 +219,8 @@ struct Balance<'g> {
     active_condition: Option<Scalar<'g>>,
     /// What acts under conditions.
     conditional: Vec<Scalar<'g>>,
+    /// The children, parents first.
+    links: Vec<Link>,
 }
 
 impl<'g> Balance<'g> {
@@ -243,11 +248,13 @@ impl<'g> Balance<'g> {
         for &(row, column, value) in &mass {
             inertia[row] += value * m.w[column];
         }
+        let mut links = Vec::new();
         if !m.tree.is_absolute() {
             let inertial = recursion::inertial_forces(m, applied.field);
             let mut on_bodies = applied.with_guarded();
             m.add_tooth_forces(&mut on_bodies, true)?;
-            m.add_reactions_of_trees(on_bodies, &inertial, closures);
+            m.add_reactions_of_trees(on_bodies.clone(), &inertial, closures);
+            links = links_of(m, &inertial, &[&applied, &applied.guarded(), &on_bodies]);
             add_all(&mut inertia, inertial.generalised);
             mass = mass_matrix(&inertia, &m.w);
         }
@@ -259,7 +266,7 @@ impl<'g> Balance<'g> {
         }
         m.potentials = applied.potentials;
         mass.sort_unstable_by_key(|&(row, column, _)| (row, column));
-        Ok(Self { mass, inertia, force, active_condition, conditional })
+        Ok(Self { mass, inertia, force, active_condition, conditional, links })
     }
 }
 

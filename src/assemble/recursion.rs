@@ -73,14 +73,19 @@ pub struct InertialForces<'g> {
     pub generalised: Vec<Scalar<'g>>,
     /// On each body, of it and all its children, and of theirs, in its own axes; zero where it is a root without any.
     pub wrenches: Vec<Wrench<'g>>,
+    /// By body, ω, ω̇ and the acceleration of its origin in its own axes; empty where no child follows from it.
+    pub motions: Vec<Vec<Scalar<'g>>>,
 }
 
 /// The inertial forces of all children, less their weight in a uniform field of acceleration (m/s², in the ground's
 /// axes).
 pub fn inertial_forces<'g>(m: &Mechanism<'g, '_>, field: Vector<'g>) -> InertialForces<'g> {
     let g = m.g;
-    let mut forces =
-        InertialForces { generalised: vec![g.number(0.0); m.q.len()], wrenches: vec![Wrench::zero(g); m.bodies.len()] };
+    let mut forces = InertialForces {
+        generalised: vec![g.number(0.0); m.q.len()],
+        wrenches: vec![Wrench::zero(g); m.bodies.len()],
+        motions: vec![Vec::new(); m.bodies.len()],
+    };
     let mut motions: Vec<Option<Motion>> = vec![None; m.bodies.len()];
     for &index in &m.tree.order {
         let body = &m.bodies[index];
@@ -105,6 +110,10 @@ pub fn inertial_forces<'g>(m: &Mechanism<'g, '_>, field: Vector<'g>) -> Inertial
     }
     for (body, &wrench) in m.bodies.iter().zip(&forces.wrenches) {
         add_on_root(body, wrench, &mut forces.generalised);
+    }
+    for (values, motion) in forces.motions.iter_mut().zip(&motions) {
+        let vectors = motion.iter().flat_map(|motion| [motion.omega, motion.alpha, motion.acceleration]);
+        *values = vectors.flat_map(Vector::components).collect();
     }
     forces
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use symdiff::{Expr, Graph};
 
+use super::links::Link;
 use crate::grammar::quantity::Dimension;
 use crate::model::{Analysis, ModesRequest, Space};
 
@@ -42,6 +43,8 @@ pub struct System {
     pub conditional: Vec<Expr>,
     /// Φ(q, t), m.
     pub constraint: Vec<Expr>,
+    /// In joint coordinates the children, parents first.
+    pub links: Vec<Link>,
     /// What is observed, over t, q, v, w, λ and the parameters.
     pub outputs: Vec<OutputInfo>,
     /// The model's size, m: the largest length that it names.

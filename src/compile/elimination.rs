@@ -40,6 +40,8 @@ pub(super) struct PivotChoice<'a> {
     pub spatial: bool,
     /// Number of coordinates.
     pub n: usize,
+    /// Pivots (row, column) before all others, of links.
+    pub first: &'a [(usize, usize)],
 }
 
 /// A matrix's factors, and the scaling of its rows and columns by which pivots were compared.
@@ -65,7 +67,8 @@ impl PivotChoice<'_> {
         let (regular, numbers) = self.regularised(graph, matrix, numbers, &equilibration);
         let plan = |graph: &mut Graph, pivoting: Pivoting| {
             let factorised = |graph: &mut Graph, numbers: &[Numbers]| {
-                factorise(graph, &regular, numbers, &equilibration, Stages::new(inputs), ITERATION, pivoting)
+                let search = (Stages::new(inputs), ITERATION, pivoting);
+                factorise(graph, (&regular, numbers, &equilibration), self.first, search)
             };
             // A singular start has no pivots of its own: then the states in general position decide.
             factorised(graph, &numbers).or_else(|_| {
@@ -74,8 +77,9 @@ impl PivotChoice<'_> {
                 factorised(graph, &without_start)
             })
         };
-        let factors = match plan(graph, if self.spatial { self.symmetric } else { Pivoting::Any }) {
-            Ok(factors) if factors.growth <= MOST_GROWTH || self.spatial => Ok(factors),
+        let only_symmetric = self.spatial || !self.first.is_empty();
+        let factors = match plan(graph, if only_symmetric { self.symmetric } else { Pivoting::Any }) {
+            Ok(factors) if factors.growth <= MOST_GROWTH || only_symmetric => Ok(factors),
             // In a long chain, freely chosen pivots amplify errors from body to body.
             free => plan(graph, self.symmetric).or(free),
         }?;

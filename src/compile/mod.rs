@@ -2,10 +2,10 @@
 //!
 //! - `equations`: the equations of motion and the constraints' rates as expressions;
 //! - `scheme`: the integration schemes' coefficients;
-//! - `newton_matrix`: residual, Newton matrix and new state of a step;
+//! - `newton_matrix`: residual, Newton matrix and new state of a step; `links`: derivatives of deep trees, link by link;
 //! - `sparse_lu`: its factorisation, as expressions; `elimination`: frozen factors in one version or two;
-//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`, `start_program`), `nearest` what decides where it is
-//!   open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
+//! - `step` → `program`: the tapes of a step; `start`: the tapes of a consistent start (`start_equations`, `start_program`,
+//!   `start_factors`), `nearest` what decides where it is open; `rounding`: how exactly constraints can be computed; `equation_tapes`: the equations alone;
 //! - `switches`: where the equations switch, as at contacts;
 //! - `layout`: the memory that all of them share.
 
@@ -13,6 +13,7 @@ mod elimination;
 mod equation_tapes;
 mod equations;
 mod layout;
+mod links;
 mod nearest;
 mod newton_matrix;
 mod program;
@@ -21,6 +22,7 @@ mod scheme;
 mod sparse_lu;
 mod start;
 mod start_equations;
+mod start_factors;
 mod start_program;
 mod step;
 mod switches;

@@ -19,6 +19,7 @@ use symdiff::{Expr, Graph, Input, SparseMatrix};
 
 use super::equations::{equations_of_motion, time_derivative};
 use super::layout::Layout;
+use super::links::{Linked, Unknowns};
 use super::scheme::{Coefficients, ConstraintLevel};
 use crate::assemble::System;
 
@@ -36,8 +37,10 @@ pub const ITERATION: usize = 3;
 pub struct NewtonSystem {
     /// n + m residuals: equations of motion, then constraints over b (their rates over c).
     pub residual: Vec<Expr>,
-    /// ∂residual/∂(w₊, λ₊), (n + m)².
+    /// ∂residual/∂(w₊, λ₊), (n + m)², and after it rows and columns of values of links, where there are any.
     pub matrix: SparseMatrix,
+    /// Pivots (row, column) before all others, of links.
+    pub first: Vec<(usize, usize)>,
     /// q₊, n.
     pub position: Vec<Expr>,
     /// v₊, n.
@@ -139,6 +142,7 @@ pub fn newton_system(
     graph: &mut Graph,
     layout: &Layout,
     coefficients: Coefficients,
+    by_links: bool,
 ) -> (NewtonSystem, Vec<Input>) {
     let symbols = StepSymbols::new(graph, system.q.len());
     let h2 = graph.mul(symbols.h, symbols.h);
@@ -146,7 +150,7 @@ pub fn newton_system(
     let c = graph.scale(coefficients.gamma * coefficients.of_new(), symbols.h);
     let gains = Gains { h2, b, c };
     let state = new_state(graph, &symbols, coefficients, gains);
-    let (residual, mut matrix) = residual_and_matrix(system, graph, coefficients.level, gains);
+    let (residual, mut matrix, linked) = residual_and_matrix(system, graph, coefficients.level, gains, by_links);
 
     // Everything at t₊: the system's symbols become the step's expressions.
     let mut at_end: FxHashMap<Expr, Expr> = FxHashMap::default();
@@ -157,7 +161,16 @@ pub fn newton_system(
         at_end.insert(system.w[i], symbols.x[i]);
     }
     let residual = graph.substitute(&residual, &at_end);
-    let inertial_change = inertial_change(system, graph, &symbols, &state, &at_end);
+    let inertial_change = match linked {
+        None => inertial_change(system, graph, &symbols, &state, &at_end),
+        Some(_) => inertial_change_of_links(system, graph, &symbols, &state, &at_end),
+    };
+    if let Some(linked) = &linked {
+        let (symbols, values): (Vec<Expr>, Vec<Expr>) = linked.symbols().unzip();
+        let values = graph.substitute(&values, &at_end);
+        at_end.extend(symbols.into_iter().zip(values));
+    }
+    let first = linked.map(|linked| linked.order(system, residual.len())).unwrap_or_default();
     let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
     let mut values = graph.substitute(&values, &at_end).into_iter();
     for entry in matrix.rows.iter_mut().flatten() {
@@ -170,6 +183,7 @@ pub fn newton_system(
     let newton = NewtonSystem {
         residual,
         matrix,
+        first,
         position,
         velocity,
         algorithmic,
@@ -213,28 +227,23 @@ fn residual_and_matrix(
     system: &System,
     graph: &mut Graph,
     level: ConstraintLevel,
-    Gains { b, c, .. }: Gains,
-) -> (Vec<Expr>, SparseMatrix) {
+    gains: Gains,
+    by_links: bool,
+) -> (Vec<Expr>, SparseMatrix, Option<Linked>) {
+    let Gains { b, c, .. } = gains;
     let (n, m) = (system.q.len(), system.lambda.len());
     let (motion, constraint_jacobian) = equations_of_motion(system, graph);
-    let by_position = graph.jacobian(&motion, &system.q);
-    let by_velocity = graph.jacobian(&motion, &system.v);
-    let by_acceleration = graph.jacobian(&motion, &system.w);
-    let by_multiplier = graph.jacobian(&motion, &system.lambda);
-    let mut matrix = SparseMatrix::zero(n + m, n + m);
-    for (row, column, value) in by_acceleration.entries() {
-        matrix.add(graph, row, column, value);
-    }
-    for (row, column, value) in by_position.entries() {
-        let value = graph.mul(b, value);
-        matrix.add(graph, row, column, value);
-    }
-    for (row, column, value) in by_velocity.entries() {
-        let value = graph.mul(c, value);
-        matrix.add(graph, row, column, value);
-    }
-    for (row, column, value) in by_multiplier.entries() {
-        matrix.add(graph, row, n + column, value);
+    let linked =
+        by_links.then(|| Linked::new(system, graph, &motion, &[&system.q, &system.v, &system.w, &system.lambda]));
+    let size = n + m + linked.as_ref().map_or(0, Linked::len);
+    let mut matrix = SparseMatrix::zero(size, size);
+    match &linked {
+        None => differentiate(system, graph, &motion, &mut matrix, gains),
+        Some(linked) => {
+            let by: [Unknowns; 4] =
+                [(&system.w, 0, None), (&system.q, 0, Some(b)), (&system.v, 0, Some(c)), (&system.lambda, n, None)];
+            linked.differentiate(graph, &mut matrix, n + m, &by);
+        }
     }
     for (row, column, value) in constraint_jacobian.entries() {
         matrix.add(graph, n + row, column, value);
@@ -253,7 +262,36 @@ fn residual_and_matrix(
             residual.extend(rates.iter().map(|&rate| graph.div(rate, c)));
         }
     }
-    (residual, matrix)
+    (residual, matrix, linked)
+}
+
+/// The derivatives of the equations of motion by (w₊, λ₊).
+fn differentiate(
+    system: &System,
+    graph: &mut Graph,
+    motion: &[Expr],
+    matrix: &mut SparseMatrix,
+    Gains { b, c, .. }: Gains,
+) {
+    let n = system.q.len();
+    let by_position = graph.jacobian(motion, &system.q);
+    let by_velocity = graph.jacobian(motion, &system.v);
+    let by_acceleration = graph.jacobian(motion, &system.w);
+    let by_multiplier = graph.jacobian(motion, &system.lambda);
+    for (row, column, value) in by_acceleration.entries() {
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_position.entries() {
+        let value = graph.mul(b, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_velocity.entries() {
+        let value = graph.mul(c, value);
+        matrix.add(graph, row, column, value);
+    }
+    for (row, column, value) in by_multiplier.entries() {
+        matrix.add(graph, row, n + column, value);
+    }
 }
 
 /// M(q₊) (a₊ − a).
@@ -273,6 +311,24 @@ fn inertial_change(
         changes[row] = graph.add(changes[row], change);
     }
     changes
+}
+
+/// The same from the inertial forces, which are linear in w, without M.
+fn inertial_change_of_links(
+    system: &System,
+    graph: &mut Graph,
+    symbols: &StepSymbols,
+    state: &NewState,
+    at_end: &FxHashMap<Expr, Expr>,
+) -> Vec<Expr> {
+    let zero = graph.constant(0.0);
+    let (mut changed, mut unchanged) = (at_end.clone(), at_end.clone());
+    for (place, &w) in system.w.iter().enumerate() {
+        changed.insert(w, graph.sub(state.algorithmic[place], symbols.a[place]));
+        unchanged.insert(w, zero);
+    }
+    let [changed, unchanged] = [changed, unchanged].map(|values| graph.substitute(&system.inertia, &values));
+    changed.into_iter().zip(unchanged).map(|(changed, unchanged)| graph.sub(changed, unchanged)).collect()
 }
 
 #[cfg(test)]
@@ -309,7 +365,8 @@ mod tests {
         let (n, count) = (system.q.len(), system.lambda.len());
         let layout = Layout::new(0, n, count);
         let mut graph = system.graph.clone();
-        let (newton, inputs) = newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients());
+        let (newton, inputs) =
+            newton_system(&system, &mut graph, &layout, Scheme::Hht { alpha: -0.1 }.coefficients(), false);
         let unknowns = layout.iterate.clone().chain(layout.lambda.clone());
         let mut values: HashMap<usize, f64> =
             (0..layout.registers()).map(|register| (register, (1.7 * register as f64 + 0.3).sin())).collect();

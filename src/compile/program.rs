@@ -59,8 +59,11 @@ pub struct Program {
     pub scale: Vec<f64>,
     /// Registers of the outputs after [`Program::observe`].
     pub outputs: Vec<usize>,
-    /// Registers of the Newton matrix's entries (row, column, register) after [`Program::matrix`].
+    /// Registers of the Newton matrix's entries (row, column, register) after [`Program::matrix`]. Rows and columns from n + m on are
+    /// those of values of links, each by those before it.
     pub matrix_entries: Vec<(usize, usize, usize)>,
+    /// Rows of the matrix that is eliminated: n + m, and those of values of links.
+    pub size: usize,
     /// Registers of the residual after [`Program::matrix`], n + m.
     pub residual: Vec<usize>,
     /// What rounding makes of each constraint near the pivot samples, m, in the constraint's unit; zero of a scheme of index 2.
@@ -131,6 +134,11 @@ impl Program {
     /// factors: after the iteration, and before the state is advanced.
     pub fn estimate(&self) -> &Tape {
         &self.lowered.kernels[ESTIMATE]
+    }
+
+    /// Instructions of a step with one correction.
+    pub fn instructions(&self) -> usize {
+        [self.step(), self.factor(), self.correct(), self.advance()].into_iter().map(Tape::len).sum()
     }
 
     /// Registers that the factors occupy.

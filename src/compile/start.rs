@@ -29,9 +29,11 @@ use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower, with_reciprocals}
 
 use super::equations::Equation;
 use super::layout::Layout;
+use super::links::{self, MassOfLinks};
 use super::nearest::{LeastSquares, OpenStart};
-use super::sparse_lu::{Factors, NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
-use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, named, residuals};
+use super::sparse_lu::{NoFactors, Numbers, PIVOT_SAMPLES, Pivoting, factorise};
+use super::start_equations::{Equations, OF_POSITION, OF_VELOCITY, constraint_sizes, named, residuals};
+use super::start_factors::Factorised;
 use super::start_program::{JACOBIAN, OBSERVE, POSITION, StartProgram, VELOCITY};
 use crate::assemble::{ConstraintId, System};
 
@@ -77,7 +79,8 @@ pub fn compile_nearest_start(
         _ => system.graph.clone(),
     };
     let equations = Equations::new(system, &mut graph);
-    let mut builder = Builder { system, graph, inputs: &inputs, redundant, sample, factorised: Vec::new() };
+    let mut builder =
+        Builder { system, graph, inputs: &inputs, redundant, sample, factorised: Vec::new(), linked: None };
     let [position, velocity, acceleration, projection] = builder.corrections(&equations, open)?;
     let mut graph = builder.graph;
 
@@ -141,6 +144,8 @@ struct Known<'m> {
     pairs: &'m [(usize, usize)],
     /// Whether the metric couples coordinates of different bodies.
     is_coupled: bool,
+    /// Whether the metric is M.
+    is_mass: bool,
 }
 
 struct Builder<'s> {
@@ -150,22 +155,8 @@ struct Builder<'s> {
     redundant: &'s [ConstraintId],
     sample: &'s [f64],
     factorised: Vec<Factorised>,
-}
-
-/// A matrix with its factors: corrections of positions and velocities often have one matrix, those of accelerations and impulses too.
-struct Factorised {
-    matrix: SparseMatrix,
-    /// Coordinates and the rows of the constraints that define them.
-    pairs: Vec<(usize, usize)>,
-    /// The first row that is searched last.
-    late: usize,
-    factors: Factors,
-}
-
-impl Factorised {
-    fn is_of(&self, matrix: &SparseMatrix, pairs: &[(usize, usize)], late: usize) -> bool {
-        self.late == late && self.pairs == pairs && self.matrix == *matrix
-    }
+    /// M by the values of links, once it is known to be shorter.
+    linked: Option<MassOfLinks>,
 }
 
 impl Builder<'_> {
@@ -185,7 +176,12 @@ impl Builder<'_> {
                 &positions.metric,
                 &none,
                 closure_jacobian,
-                Known { given: &given(&system.start.position), pairs: &[], is_coupled: positions.is_coupled },
+                Known {
+                    given: &given(&system.start.position),
+                    pairs: &[],
+                    is_coupled: positions.is_coupled,
+                    is_mass: false,
+                },
                 &positions.gradient,
                 closure,
             )
@@ -195,7 +191,12 @@ impl Builder<'_> {
                 &velocities.metric,
                 &none,
                 closure_rate_jacobian,
-                Known { given: &given(&system.start.velocity), pairs: &[], is_coupled: velocities.is_coupled },
+                Known {
+                    given: &given(&system.start.velocity),
+                    pairs: &[],
+                    is_coupled: velocities.is_coupled,
+                    is_mass: false,
+                },
                 &velocities.gradient,
                 closure_rate,
             )
@@ -205,10 +206,33 @@ impl Builder<'_> {
         let pairs = self.pairs(jacobian);
         let (mass, motion) = self.with_defined_coordinates(jacobian, equations.motion.clone(), rate_of_rate, &pairs);
         let free = vec![false; n];
-        let of_masses = Known { given: &free, pairs: &pairs, is_coupled: false };
+        let of_masses = Known { given: &free, pairs: &pairs, is_coupled: false, is_mass: true };
         let of_motion = |none: NoFactors| none.named(|row| Equation::of_row(row, n));
-        let acceleration =
-            self.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)?;
+        let solve = |builder: &mut Self| {
+            builder.correction(&mass, &by_multiplier, jacobian, of_masses, &motion, rate_of_rate).map_err(of_motion)
+        };
+        let acceleration = match links::elimination(system, !self.redundant.is_empty() || !pairs.is_empty()) {
+            links::Elimination::Whole => solve(self)?,
+            links::Elimination::Links => {
+                self.linked = Some(MassOfLinks::new(system, &mut self.graph));
+                solve(self)?
+            }
+            links::Elimination::Shorter => {
+                let before = (self.graph.clone(), self.factorised.len());
+                let whole = solve(self)?;
+                let operations = self.graph.reachable(&whole).len();
+                let with_whole = std::mem::replace(&mut self.graph, before.0);
+                self.factorised.truncate(before.1);
+                self.linked = Some(MassOfLinks::new(system, &mut self.graph));
+                match solve(self) {
+                    Ok(by_links) if self.graph.reachable(&by_links).len() < operations => by_links,
+                    _ => {
+                        (self.graph, self.linked) = (with_whole, None);
+                        whole
+                    }
+                }
+            }
+        };
         let rate = &closure_rate[..system.lambda.len()];
         let zero = vec![self.graph.constant(0.0); n];
         let (mass, motion) = self.with_defined_coordinates(jacobian, zero, rate, &pairs);
@@ -223,13 +247,17 @@ impl Builder<'_> {
         metric: &[(usize, usize, Expr)],
         by_multiplier: &SparseMatrix,
         jacobian: &SparseMatrix,
-        Known { given, pairs, is_coupled }: Known,
+        Known { given, pairs, is_coupled, is_mass }: Known,
         first: &[Expr],
         second: &[Expr],
     ) -> Result<Vec<Expr>, NoFactors> {
         let (n, m) = (self.system.q.len(), jacobian.rows.len());
-        let (one, mut matrix) = (self.graph.constant(1.0), SparseMatrix::zero(n + m, n + m));
-        for &(row, column, value) in metric.iter().filter(|(row, column, _)| !given[*row] && !given[*column]) {
+        let one = self.graph.constant(1.0);
+        let of_links = self.linked.clone().filter(|_| is_mass);
+        let whole = if of_links.is_some() { &[] } else { metric };
+        let MassOfLinks { mut matrix, first: pivots } =
+            of_links.unwrap_or_else(|| MassOfLinks { matrix: SparseMatrix::zero(n + m, n + m), first: Vec::new() });
+        for &(row, column, value) in whole.iter().filter(|(row, column, _)| !given[*row] && !given[*column]) {
             matrix.add(&mut self.graph, row, column, value);
         }
         for (row, column, value) in jacobian.entries().filter(|(_, column, _)| !given[*column]) {
@@ -244,8 +272,14 @@ impl Builder<'_> {
             matrix.add(&mut self.graph, coordinate, coordinate, one);
         }
         let numbers = self.numbers(&matrix);
-        let sizes = self.constraint_sizes(&matrix, &numbers, n);
-        let mut scale = vec![1.0; n + m];
+        let mut diagonal = if pivots.is_empty() { vec![1.0; n] } else { self.masses() };
+        for ((row, column, _), numbers) in matrix.entries().zip(&numbers).filter(|_| pivots.is_empty()) {
+            if row == column && row < n {
+                diagonal[row] = numbers[0];
+            }
+        }
+        let sizes = constraint_sizes(&matrix, &numbers, &diagonal, m);
+        let mut scale = vec![1.0; matrix.rows.len()];
         for (constraint, size) in sizes.into_iter().enumerate() {
             let relaxed = self.redundant.contains(&ConstraintId::new(constraint));
             if pairs.iter().all(|&(_, paired)| paired != constraint) {
@@ -255,10 +289,8 @@ impl Builder<'_> {
             scale[n + constraint] = size.sqrt().recip();
         }
         let numbers = self.numbers(&matrix);
-        for (place, (row, column, _)) in matrix.entries().enumerate() {
-            if row == column && row < n {
-                scale[row] = numbers[place][0].abs().sqrt().recip();
-            }
+        for (scale, size) in scale.iter_mut().zip(&diagonal) {
+            *scale = size.abs().sqrt().recip();
         }
         let pairs: Vec<(usize, usize)> = pairs.iter().map(|&(row, constraint)| (row, n + constraint)).collect();
         // Where the metric couples coordinates along a chain, all of them before the first constraint would couple every pair of
@@ -270,7 +302,8 @@ impl Builder<'_> {
             None => {
                 let pivoting = Pivoting::Diagonal { constraints: late, pairs: &pairs };
                 let stages = Stages::new(self.inputs);
-                let factors = factorise(&mut self.graph, &matrix, &numbers, &scale, stages, 1, pivoting)?;
+                let entries = (&matrix, &numbers[..], &scale[..]);
+                let factors = factorise(&mut self.graph, entries, &pivots, (stages, 1, pivoting))?;
                 self.factorised.push(Factorised { matrix, pairs, late, factors });
                 self.factorised.len() - 1
             }
@@ -278,7 +311,11 @@ impl Builder<'_> {
         let mut right: Vec<Expr> = first.iter().chain(second).map(|&value| self.graph.neg(value)).collect();
         let zero = self.graph.constant(0.0);
         given.iter().zip(&mut right).filter(|(given, _)| **given).for_each(|(_, value)| *value = zero);
-        Ok(self.factorised[known].factors.solve(&mut self.graph, &right))
+        let Factorised { matrix, factors, .. } = &self.factorised[known];
+        right.resize(matrix.rows.len(), zero);
+        let mut solution = factors.solve(&mut self.graph, &right);
+        solution.truncate(n + m);
+        Ok(solution)
     }
 
     /// The diagonal of M at the sample.
@@ -357,17 +394,5 @@ impl Builder<'_> {
     fn numbers(&self, matrix: &SparseMatrix) -> Vec<Numbers> {
         let entries: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
         self.at_sample(&entries).into_iter().map(|value| [value; PIVOT_SAMPLES]).collect()
-    }
-
-    /// Σ Φ_ki² / metric_ii: a constraint's own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.
-    fn constraint_sizes(&self, matrix: &SparseMatrix, numbers: &[Numbers], n: usize) -> Vec<f64> {
-        let mut diagonal = vec![1.0; n];
-        let mut sizes = vec![0.0; matrix.rows.len() - n];
-        let entries = || matrix.entries().zip(numbers).map(|((row, column, _), number)| (row, column, number[0]));
-        entries().filter(|&(row, column, _)| row == column).for_each(|(row, _, value)| diagonal[row] = value);
-        entries().filter(|&(row, column, _)| row >= n && column < n).for_each(|(row, column, value)| {
-            sizes[row - n] += value * value / diagonal[column];
-        });
-        sizes.into_iter().map(|size| if size > 0.0 { size } else { 1.0 }).collect()
     }
 }

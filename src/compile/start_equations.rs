@@ -3,7 +3,7 @@
 use symdiff::{Expr, Graph, SparseMatrix};
 
 use super::equations::{ClosureRow, Equation, equations_of_motion, time_derivative};
-use super::sparse_lu::NoFactors;
+use super::sparse_lu::{NoFactors, Numbers};
 use crate::assemble::{ConditionId, ConstraintId, CoordinateId, StartCondition, System};
 
 /// What remains of a row of the closure.
@@ -102,4 +102,15 @@ fn with_conditions(
     let mut all = jacobian.clone();
     all.rows.extend(graph.jacobian(&values, &system.q).rows);
     (values, all)
+}
+
+/// Σ Φ_ki² / metric_ii: each of m constraints' own entry in Φ_q metric⁻¹ Φ_qᵀ; 1 where nothing of it is left.
+pub(super) fn constraint_sizes(matrix: &SparseMatrix, numbers: &[Numbers], diagonal: &[f64], m: usize) -> Vec<f64> {
+    let n = diagonal.len();
+    let mut sizes = vec![0.0; m];
+    let entries = matrix.entries().zip(numbers).map(|((row, column, _), number)| (row, column, number[0]));
+    entries.filter(|&(row, column, _)| row >= n && row < n + m && column < n).for_each(|(row, column, value)| {
+        sizes[row - n] += value * value / diagonal[column];
+    });
+    sizes.into_iter().map(|size| if size > 0.0 { size } else { 1.0 }).collect()
 }

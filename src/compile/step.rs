@@ -6,6 +6,7 @@ use symdiff::{Expr, Graph, Input, SparseMatrix, Stages, lower_where, with_recipr
 use super::elimination::{Elimination, PivotChoice, Version, is_worthwhile};
 use super::equations::Equation;
 use super::layout::Layout;
+use super::links;
 use super::newton_matrix::{ITERATION, NewtonSystem, STEP_SIZE, newton_system};
 use super::program::{FACTOR, MATRIX, OBSERVE, PivotSample, Program};
 use super::rounding::running_errors;
@@ -26,10 +27,31 @@ pub fn compile(
     redundant: &[ConstraintId],
     samples: &[PivotSample; PIVOT_SAMPLES],
 ) -> Result<Program, NoFactors<Equation>> {
+    let compiled = |by_links| compile_as(system, scheme, redundant, samples, by_links);
+    match links::elimination(system, !redundant.is_empty()) {
+        links::Elimination::Whole => compiled(false),
+        links::Elimination::Links => compiled(true).or_else(|_| compiled(false)),
+        links::Elimination::Shorter => {
+            let whole = compiled(false);
+            let Ok(by_links) = compiled(true) else { return whole };
+            let is_shorter = whole.as_ref().is_ok_and(|whole| whole.instructions() <= by_links.instructions());
+            if is_shorter { whole } else { Ok(by_links) }
+        }
+    }
+}
+
+/// With the Newton matrix eliminated as a whole, or link by link.
+fn compile_as(
+    system: &System,
+    scheme: Scheme,
+    redundant: &[ConstraintId],
+    samples: &[PivotSample; PIVOT_SAMPLES],
+    by_links: bool,
+) -> Result<Program, NoFactors<Equation>> {
     let layout = Layout::new(system.parameters.len(), system.q.len(), system.lambda.len());
     let coefficients = scheme.coefficients();
     let mut graph = system.graph.clone();
-    let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients);
+    let (newton, mut inputs) = newton_system(system, &mut graph, &layout, coefficients, by_links);
     let newton = newton.map(|values| with_reciprocals(&mut graph, &inputs, values));
     let (active, inactive) = factors(system, &mut graph, &newton, &inputs, redundant, samples)
         .map_err(|none| none.named(|row| Equation::of_row(row, system.q.len())))?;
@@ -40,7 +62,8 @@ pub fn compile(
     let mut next = layout.registers() as u32;
     let elimination = Elimination::new(&mut graph, &mut inputs, &mut next, active, inactive);
     let [correct, estimate] = solutions(&mut graph, &newton, &elimination, &layout);
-    let Elimination { frozen, guards, watched, active: Version { factors, equilibration }, .. } = elimination;
+    let Elimination { frozen, guards, watched, active: Version { factors, mut equilibration }, .. } = elimination;
+    equilibration.truncate(newton.residual.len());
     let outputs: Vec<Expr> = system.outputs.iter().map(|output| output.expr).collect();
     let observe = with_reciprocals(&mut graph, &inputs, &outputs).into_iter().map(|output| (output, None)).collect();
     let mut matrix: Vec<Target> = newton.matrix.entries().map(|(_, _, value)| (value, None)).collect();
@@ -62,13 +85,19 @@ pub fn compile(
         scale: system.coordinates.iter().map(|coordinate| coordinate.scale).collect(),
         outputs: lowered.outputs[OBSERVE].iter().map(|&register| register as usize).collect(),
         matrix_entries,
+        size: newton.matrix.rows.len(),
         residual: registers[nonzeros..].iter().map(|&register| register as usize).collect(),
         rounding,
         redundant: redundant.iter().map(|&constraint| layout.lambda.start + constraint.number()).collect(),
         watched,
         equilibration,
         nonzeros: (nonzeros, factors.nonzeros()),
-        pivots: factors.pivots.iter().map(|pivot| (pivot.row, pivot.column)).collect(),
+        pivots: factors
+            .pivots
+            .iter()
+            .map(|pivot| (pivot.row, pivot.column))
+            .filter(|&(row, _)| row < newton.residual.len())
+            .collect(),
         layout,
         lowered,
     })
@@ -89,7 +118,7 @@ fn factors(
     system.mass.iter().filter(|(row, column, _)| row == column).for_each(|&(row, _, _)| massive[row] = true);
     let blocks = mass_blocks(system);
     let symmetric = Pivoting::Symmetric { massive: &massive, blocks: &blocks };
-    let choice = PivotChoice { redundant, symmetric, spatial: system.space.spatial, n };
+    let choice = PivotChoice { redundant, symmetric, spatial: system.space.spatial, n, first: &newton.first };
     let factorised = |graph: &mut Graph, matrix: &SparseMatrix, numbers: &[Numbers]| {
         choice.factorise(graph, matrix, numbers, equilibrate(matrix, numbers, &massive), inputs)
     };
@@ -108,10 +137,13 @@ fn factors(
 
 /// The correction, and the part of a₊ − a that moves the mechanism.
 fn solutions(graph: &mut Graph, newton: &NewtonSystem, elimination: &Elimination, layout: &Layout) -> [Vec<Target>; 2] {
-    let opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
-    let correction = elimination.solve(graph, &opposite);
+    let (size, zero) = (newton.matrix.rows.len(), graph.constant(0.0));
+    let mut opposite: Vec<Expr> = newton.residual.iter().map(|&value| graph.neg(value)).collect();
+    opposite.resize(size, zero);
+    let mut correction = elimination.solve(graph, &opposite);
+    correction.truncate(newton.residual.len());
     let mut changes = newton.inertial_change.clone();
-    changes.resize(newton.residual.len(), graph.constant(0.0));
+    changes.resize(size, zero);
     let moving = elimination.solve(graph, &changes);
     let moving = &moving[..newton.inertial_change.len()];
     [at(&correction, layout.correction.start), at(moving, layout.correction.start)]

@@ -97,7 +97,7 @@ fn of_simulator(model: &str, description: &Description, simulator: &Simulator) -
         inactive: Some(instruction_counts(program, false))
             .filter(|inactive| *inactive != instruction_counts(program, true)),
         newton: NewtonMatrix {
-            size: program.residual.len(),
+            size: program.size,
             nonzeros,
             factor_nonzeros,
             fill: factor_nonzeros.saturating_sub(nonzeros),

@@ -1,8 +1,7 @@
 //! By which coordinates a mechanism is simulated: where the model leaves it open, by those whose program is shorter.
 //!
-//! Joint coordinates are few and their matrices dense, absolute ones many and theirs sparse. What that comes to in
-//! instructions is only known when both are compiled, so both are; but for long chains, where it is known before, and not to
-//! the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
+//! Joint coordinates are few and their matrices dense, or eliminated link by link; absolute ones are many and theirs sparse. What that
+//! comes to in instructions is only known when both are compiled, so both are; but for the longest chains, and not to the end where absolute coordinates turn out to take many times as much. Where joints close loops, absolute coordinates are
 //! assembled first, and joint ones start from there, so that both close the loops in the same branch. A start in a singular
 //! configuration, a motion that passes one, and redundant constraints are left to absolute coordinates.
 
@@ -14,9 +13,9 @@ use crate::simulate::{Assembled, Schedule, SimulationError, Simulator, SingularW
 use super::comparison::{instructions, starts_alike};
 use super::{RunError, first_step, loop_cuts, scheme};
 
-/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried: M has as many
-/// entries for each body. Spatial chains break even at 15, planar ones at 3.
-const DEEPEST: usize = 25;
+/// Joints on the way from a body to its root, on average, beyond which joint coordinates are not tried, in the plane and in space. Planar
+/// chains break even at 3, spatial ones never; but M, with as many entries for each body, is written down to be looked at.
+const DEEPEST: [usize; 2] = [25, 50];
 
 /// Absolute coordinates are given up where the start's three eliminations, or the step's one, take so many times the
 /// operations that a step takes in joint coordinates, and more than no one has to wait for.
@@ -68,7 +67,7 @@ pub(super) fn compiled(description: &Description) -> Result<Simulator, RunError>
     if assemble::closes_loops(description) {
         return of_loops(description, absolute);
     }
-    let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), None)? {
+    let joint = match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
         Ok(joint) => joint,
         Err(why) => {
             return match compile(because(absolute, why)) {
@@ -120,7 +119,7 @@ fn of_loops(description: &Description, absolute: System) -> Result<Simulator, Ru
         return keep(absolute, "the nominal motion passes singular configurations".to_owned());
     }
     let start = &absolute.nominal[absolute.start.layout.q.clone()];
-    let joint = match assemble::in_joint_coordinates(description, Some(DEEPEST), Some(start))? {
+    let joint = match assemble::in_joint_coordinates(description, Some(deepest(description)), Some(start))? {
         Ok(joint) => joint,
         Err(why) => return keep(absolute, why),
     };
@@ -171,6 +170,11 @@ fn passes_singular(description: &Description, simulator: &Simulator) -> bool {
     false
 }
 
+/// Joints from the root beyond which joint coordinates are not tried.
+fn deepest(description: &Description) -> usize {
+    DEEPEST[usize::from(description.space.spatial)]
+}
+
 /// Operations after which the other formulation is given up.
 fn enough(simulator: &Simulator) -> usize {
     (GIVEN_UP * instructions(simulator)).clamp(SOON, MOST)
@@ -207,7 +211,7 @@ pub(super) fn assembled(description: &Description) -> Result<Assembled, RunError
     if assemble::closes_loops(description) {
         return of_system(assemble::in_absolute_coordinates(description)?);
     }
-    match assemble::in_joint_coordinates(description, Some(DEEPEST), None)? {
+    match assemble::in_joint_coordinates(description, Some(deepest(description)), None)? {
         // Shallow trees are short in joint coordinates.
         Ok(joint) => of_system(joint),
         Err(why) => of_system(because(assemble::in_absolute_coordinates(description)?, why)),

@@ -19,6 +19,7 @@ mod closed_forms;
 mod composition;
 mod controllers;
 mod convergence;
+mod deep_trees;
 mod drawing_linkages;
 mod explicit;
 mod extrapolation;

@@ -34,24 +34,33 @@ impl NoFactors {
 /// Factorises a square matrix.
 ///
 /// `numbers` runs over the matrix's entries row by row. `scale` (one factor a row, symmetric) makes entries comparable for
-/// the threshold and changes nothing else. The elimination saves operations at the stage `costly`.
+/// the threshold and changes nothing else. The pivots `first` (row, column) come before those that are searched for; the search
+/// saves operations at the stage `costly`.
 ///
 /// # Errors
-/// Where no entry of the rows left is large enough at every pivot sample, and where the graph is full.
+/// Where no entry of the rows left is large enough at every pivot sample, where one of `first` vanishes, and where the graph is full.
 pub fn factorise(
     graph: &mut Graph,
-    matrix: &SparseMatrix,
-    numbers: &[Numbers],
-    scale: &[f64],
-    stages: Stages,
-    costly: usize,
-    pivoting: Pivoting,
+    (matrix, numbers, scale): (&SparseMatrix, &[Numbers], &[f64]),
+    first: &[(usize, usize)],
+    (stages, costly, pivoting): (Stages, usize, Pivoting),
 ) -> Result<Factors, NoFactors> {
     let size = matrix.rows.len();
     let mut active = Active::new(matrix, numbers, scale, pivoting.first_late());
     let largest = active.largest;
-    let mut search = PivotSearch::new(pivoting, &active, stages, costly);
     let mut pivots = Vec::with_capacity(size);
+    for &(row, column) in first {
+        let numbers = active.rows[row].get(&column).map(|entry| entry.numbers);
+        if numbers.is_none_or(|numbers| numbers.iter().any(|number| !number.is_normal())) {
+            return Err(NoFactors::Singular { rows: vec![row] });
+        }
+        pivots.push(active.eliminate(graph, row, column));
+        if graph.is_full() {
+            return Err(NoFactors::TooLong);
+        }
+    }
+    let mut search = PivotSearch::new(pivoting, &active, stages, costly);
+    first.iter().for_each(|&(row, _)| search.remove(row));
     while pivots.len() < size {
         let Some((row, column)) = search.choose(graph, &active) else {
             return Err(NoFactors::Singular { rows: active.sparsest_rows.iter().map(|&(_, _, row)| row).collect() });

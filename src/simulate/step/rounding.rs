@@ -1,5 +1,7 @@
 //! What rounding leaves of the constraints at an iterate.
 
+use std::collections::BTreeMap;
+
 use symdiff::Tile;
 
 use crate::compile::Program;
@@ -13,7 +15,38 @@ const STALLED: f64 = 1e-10;
 /// Entries of the Newton matrix of a lane, after its tape has run: row, column, value.
 pub fn matrix_entries(program: &Program, tile: &Tile, lane: usize) -> Vec<(usize, usize, f64)> {
     let entries = program.matrix_entries.iter();
-    entries.map(|&(row, column, register)| (row, column, tile.lane(register)[lane])).collect()
+    let entries = entries.map(|&(row, column, register)| (row, column, tile.lane(register)[lane])).collect();
+    without_links(entries, program.residual.len())
+}
+
+/// The derivatives by the unknowns, of which there are `size`: those by values of links replaced by what they stand for.
+fn without_links(entries: Vec<(usize, usize, f64)>, size: usize) -> Vec<(usize, usize, f64)> {
+    if entries.last().is_none_or(|&(row, ..)| row < size) {
+        return entries;
+    }
+    let first = entries.partition_point(|&(row, ..)| row < size);
+    let mut values: Vec<BTreeMap<usize, f64>> = Vec::new();
+    let add = |sums: &mut BTreeMap<usize, f64>, values: &[BTreeMap<usize, f64>], column: usize, slope: f64| match column
+        .checked_sub(size)
+    {
+        None => *sums.entry(column).or_default() += slope,
+        Some(value) => values[value].iter().for_each(|(&by, of)| *sums.entry(by).or_default() += slope * of),
+    };
+    for row in entries[first..].chunk_by(|a, b| a.0 == b.0) {
+        let mut sums = BTreeMap::new();
+        for &(row, column, slope) in row.iter().filter(|(row, column, _)| row != column) {
+            debug_assert!(column < row || column < size);
+            add(&mut sums, &values, column, slope);
+        }
+        values.push(sums);
+    }
+    let mut condensed = Vec::new();
+    for row in entries[..first].chunk_by(|a, b| a.0 == b.0) {
+        let mut sums = BTreeMap::new();
+        row.iter().for_each(|&(_, column, slope)| add(&mut sums, &values, column, slope));
+        condensed.extend(sums.into_iter().map(|(column, slope)| (row[0].0, column, slope)));
+    }
+    condensed
 }
 
 /// What rounding makes of each of the n + m residuals, zero of those of motion: by rounding of positions, and by that of the

@@ -1,0 +1,42 @@
+//! The children of trees, and the values through which bodies before them feel them.
+
+use symdiff::{Expr, Scalar};
+
+use super::applied_forces::AppliedForces;
+use super::mechanism::Mechanism;
+use super::recursion::InertialForces;
+use crate::multibody::{Attitude, Vector, Wrench};
+
+/// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// The coordinates of its inboard joint.
+    pub coordinates: Vec<usize>,
+    /// How it moves, and the forces on it and on all its children.
+    pub values: Vec<Expr>,
+}
+
+/// The children with what goes through them: motions, and the sums of forces.
+pub(super) fn links_of<'g>(
+    m: &Mechanism<'g, '_>,
+    inertial: &InertialForces<'g>,
+    applied: &[&AppliedForces<'g>],
+) -> Vec<Link> {
+    let applied: Vec<Vec<Wrench>> = applied.iter().map(|forces| forces.with_children(m)).collect();
+    let mut links = Vec::new();
+    for &index in &m.tree.order {
+        let body = &m.bodies[index];
+        let Some(relative) = &body.relative_motion else { continue };
+        let mut values = inertial.motions[index].clone();
+        values.extend(body.position.iter().chain(&body.velocity).chain(&body.acceleration));
+        if let Some(Attitude { matrix, omega, alpha }) = body.attitude {
+            values.extend((0..3).flat_map(|i| (0..3).map(move |j| matrix[i][j])));
+            values.extend([omega, alpha].into_iter().flat_map(Vector::components));
+        }
+        let wrenches = applied.iter().map(|wrenches| wrenches[index]).chain([inertial.wrenches[index]]);
+        values.extend(wrenches.flat_map(|wrench| [wrench.force, wrench.torque]).flat_map(Vector::components));
+        let coordinates = relative.dofs.iter().map(|dof| dof.index).collect();
+        links.push(Link { coordinates, values: Scalar::exprs(&values) });
+    }
+    links
+}

@@ -1,0 +1,183 @@
+//! Derivatives of the equations of motion of trees, link by link.
+//!
+//! In joint coordinates each coordinate moves all bodies behind it, so that the derivatives of the equations of motion r(x) fill a
+//! matrix. The equations go through few values z of each link, though: how it moves, and the sum of the forces on it and on all behind
+//! it. With z = g(x, z) the derivatives are those of a larger and sparse system,
+//!
+//! ```text
+//! [ r_x   r_z    ] [δx]   [ −r ]
+//! [ g_x   g_z − 1] [δz] = [  0 ]
+//! ```
+//!
+//! whose right side is zero for z, since residuals are computed through z. It is eliminated link by link from the leaves: forces,
+//! then motions, each with the pivot −1, and then the coordinates of the link's joint, whose pivots are those of articulated
+//! bodies (Featherstone, *Rigid Body Dynamics Algorithms* (2008), ch. 7). What is left on the link before is as large for a
+//! long chain as for a short one. (Vertices in the sense of Griewank & Walther, *Evaluating Derivatives*, 2nd ed., ch. 9.)
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use symdiff::{Expr, Graph, Node, SparseMatrix};
+
+use crate::assemble::System;
+
+/// Coordinates that M couples with each, on average, from which it is looked at whether links are shorter.
+const COUPLED: usize = 6;
+
+/// Coordinates from which nothing else is looked at.
+const LONG: usize = 48;
+
+/// Whether the equations are eliminated link by link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Elimination {
+    /// They are not.
+    Whole,
+    /// If that is shorter.
+    Shorter,
+    /// They are.
+    Links,
+}
+
+/// Which eliminations are worth a look.
+pub(super) fn elimination(system: &System, has_redundant: bool) -> Elimination {
+    let n = system.q.len();
+    let massive: FxHashSet<usize> =
+        system.mass.iter().filter(|(row, column, _)| row == column).map(|&(row, ..)| row).collect();
+    if system.links.is_empty() || has_redundant || massive.len() < n || system.mass.len() < COUPLED * n {
+        Elimination::Whole
+    } else if n < LONG {
+        Elimination::Shorter
+    } else {
+        Elimination::Links
+    }
+}
+
+/// A value of a link.
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    /// In the equations.
+    value: Expr,
+    /// In its place in their derivatives.
+    symbol: Expr,
+    /// What it is, by other values' symbols.
+    definition: Expr,
+    /// Whose it is.
+    link: usize,
+}
+
+/// Unknowns of a derivative: symbols, the first one's column, and by what the derivatives are multiplied.
+pub(super) type Unknowns<'s> = (&'s [Expr], usize, Option<Expr>);
+
+/// Equations, by the values of links.
+#[derive(Clone, Debug)]
+pub(super) struct Linked {
+    rows: Vec<Expr>,
+    /// Each after those on which it depends.
+    values: Vec<Value>,
+}
+
+impl Linked {
+    /// Of `rows`, which depend on the unknowns `by`.
+    pub fn new(system: &System, graph: &mut Graph, rows: &[Expr], by: &[&[Expr]]) -> Self {
+        let mut unknown: FxHashSet<Expr> = by.iter().copied().flatten().copied().collect();
+        let mut depends = FxHashSet::default();
+        for expr in graph.reachable(rows) {
+            if graph.node(expr).children().any(|child| unknown.contains(&child)) {
+                unknown.insert(expr);
+                depends.insert(expr);
+            }
+        }
+        let mut found: Vec<(Expr, usize)> = Vec::new();
+        for (link, of_link) in system.links.iter().enumerate() {
+            // What two links share belongs to the one before.
+            found.extend(of_link.values.iter().filter(|value| depends.remove(value)).map(|&value| (value, link)));
+        }
+        found.sort_unstable();
+        let symbols: Vec<Expr> = (0..found.len()).map(|place| graph.symbol(&format!("link:{place}"))).collect();
+        let symbol_of: FxHashMap<Expr, Expr> = found.iter().map(|found| found.0).zip(symbols.iter().copied()).collect();
+        let operands = found.iter().flat_map(|found| graph.node(found.0).children());
+        let roots: Vec<Expr> = rows.iter().copied().chain(operands).collect();
+        let mut images = graph.substitute(&roots, &symbol_of).into_iter();
+        let rows = images.by_ref().take(rows.len()).collect();
+        let mut operand = || images.next().expect("an image of each operand");
+        let mut values = Vec::with_capacity(found.len());
+        for (&(value, link), symbol) in found.iter().zip(symbols) {
+            let definition = match graph.node(value) {
+                Node::Unary(function, _) => {
+                    let a = operand();
+                    graph.unary(function, a)
+                }
+                Node::Binary(function, ..) => {
+                    let (a, b) = (operand(), operand());
+                    graph.binary(function, a, b)
+                }
+                Node::Constant(_) | Node::Symbol(_) => value,
+            };
+            values.push(Value { value, symbol, definition, link });
+        }
+        Self { rows, values }
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Adds derivatives to a matrix of the equations' rows, whose rows and columns from `size` on are those of values; over
+    /// values' symbols ([`Linked::symbols`]).
+    pub fn differentiate(&self, graph: &mut Graph, matrix: &mut SparseMatrix, size: usize, by: &[Unknowns]) {
+        let symbols: Vec<Expr> = self.values.iter().map(|value| value.symbol).collect();
+        let definitions = self.values.iter().map(|value| value.definition);
+        let rows: Vec<Expr> = self.rows.iter().copied().chain(definitions).collect();
+        let place = |row: usize| row.checked_sub(self.rows.len()).map_or(row, |value| size + value);
+        for &(symbols, first, gain) in by.iter().chain(&[(&symbols[..], size, None)]) {
+            for (row, column, value) in graph.jacobian(&rows, symbols).entries() {
+                let value = gain.map_or(value, |gain| graph.mul(gain, value));
+                matrix.add(graph, place(row), first + column, value);
+            }
+        }
+        let opposite = graph.constant(-1.0);
+        for value in size..size + self.values.len() {
+            matrix.add(graph, value, value, opposite);
+        }
+    }
+
+    /// Values' symbols, and the values in the equations.
+    pub fn symbols(&self) -> impl Iterator<Item = (Expr, Expr)> {
+        self.values.iter().map(|value| (value.symbol, value.value))
+    }
+
+    /// Rows and columns of pivots, links from the leaves on.
+    pub fn order(&self, system: &System, size: usize) -> Vec<(usize, usize)> {
+        let mut of_link: Vec<Vec<usize>> = vec![Vec::new(); system.links.len()];
+        for (place, value) in self.values.iter().enumerate().rev() {
+            of_link[value.link].push(size + place);
+        }
+        let links = system.links.iter().zip(of_link).rev();
+        let pivots = links.flat_map(|(link, values)| values.into_iter().chain(link.coordinates.iter().copied()));
+        pivots.map(|pivot| (pivot, pivot)).collect()
+    }
+}
+
+/// M as derivatives of inertial forces by accelerations, link by link.
+#[derive(Clone, Debug)]
+pub(super) struct MassOfLinks {
+    /// Rows and columns from n + m on are those of values of links.
+    pub matrix: SparseMatrix,
+    /// Pivots (row, column) before all others.
+    pub first: Vec<(usize, usize)>,
+}
+
+impl MassOfLinks {
+    /// Of a system.
+    pub fn new(system: &System, graph: &mut Graph) -> Self {
+        let size = system.q.len() + system.lambda.len();
+        let linked = Linked::new(system, graph, &system.inertia, &[&system.w]);
+        let mut matrix = SparseMatrix::zero(size + linked.len(), size + linked.len());
+        linked.differentiate(graph, &mut matrix, size, &[(&system.w, 0, None)]);
+        let values: Vec<Expr> = matrix.entries().map(|(_, _, value)| value).collect();
+        let mut values = graph.substitute(&values, &linked.symbols().collect()).into_iter();
+        for entry in matrix.rows.iter_mut().flatten() {
+            entry.1 = values.next().expect("one value an entry");
+        }
+        Self { matrix, first: linked.order(system, size) }
+    }
+}
