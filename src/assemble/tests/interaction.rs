@@ -31,6 +31,7 @@ fn touching(between: [PointRef; 2]) -> Contact {
         hollow: None,
         path: None,
         polygon: None,
+        height: None,
         corners: None,
         rounding: formula("0"),
         radius: formula("0.9"),

@@ -23,8 +23,8 @@ use crate::methods::{
 };
 use crate::numerics::{ParameterBox, Range, Sample, ScanBounds, ScanGrid};
 use crate::simulate::{
-    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun,
-    Schedule, SimulationError, Simulator, SingularPass, Stop, choose_independent,
+    Certifier, Channel, Closure, Controller, Counters, Enclosure, EnclosureError, Observed, SampleRun, Schedule,
+    SimulationError, Simulator, SingularPass, Stop, choose_independent,
 };
 
 use jet::SampleJet;
