@@ -1,20 +1,12 @@
 //! The children of trees, and the values through which bodies before them feel them.
 
-use symdiff::{Expr, Scalar};
+use symdiff::Scalar;
 
 use super::applied_forces::AppliedForces;
 use super::mechanism::Mechanism;
 use super::recursion::InertialForces;
+use super::system::Link;
 use crate::multibody::{Attitude, Vector, Wrench};
-
-/// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Link {
-    /// The coordinates of its inboard joint.
-    pub coordinates: Vec<usize>,
-    /// How it moves, and the forces on it and on all its children.
-    pub values: Vec<Expr>,
-}
 
 /// The children with what goes through them: motions, and the sums of forces.
 pub(super) fn links_of<'g>(

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use symdiff::{Expr, Graph};
 
-use super::links::Link;
 use crate::grammar::quantity::Dimension;
 use crate::model::{Analysis, ModesRequest, Space};
 
@@ -109,6 +108,15 @@ pub struct LeftOut {
     pub what: String,
     /// The reason.
     pub why: String,
+}
+
+/// A child of the trees: all that bodies before it feel of it, and it of them, goes through a few values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Link {
+    /// The coordinates of its inboard joint.
+    pub coordinates: Vec<usize>,
+    /// How it moves, and the forces on it and on all its children.
+    pub values: Vec<Expr>,
 }
 
 /// A parameter that is an interval.
