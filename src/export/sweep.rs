@@ -118,7 +118,9 @@ pub fn trade_svg(
         let at = panel.place(mark.at.0, mark.at.1);
         // To the side where there is room.
         let (beside, anchor) = if at.0 > 0.7 * SIZE.0 { (-10.0, Anchor::End) } else { (10.0, Anchor::Start) };
-        let label = text(mark.label, (at.0 + beside, at.1 - 12.0), anchor);
+        // Two that are near are told apart: one above, one below.
+        let height = if place % 2 == 0 { -12.0 } else { 22.0 };
+        let label = text(mark.label, (at.0 + beside, at.1 + height), anchor);
         let marked = Group::new().add(Title::new(mark.label)).add(dot(at, 5.0)).add(label);
         drawn.push(Hue::Color(Color::of(place + 1)).paint(marked, "mark"));
     }
