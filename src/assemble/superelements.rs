@@ -203,7 +203,7 @@ impl<'g> Mechanism<'g, '_> {
             };
             for node in 1..inertia.nodes.len() {
                 let pair = self.pair([first, inertia.nodes[node]]);
-                let at = RelativeDisplacement::of(&pair, matrices.from_first(self.g, node));
+                let at = RelativeDisplacement::of(&pair, matrices.offset_in(self.g, node));
                 for axis in 0..3 {
                     gather(Matrices::of_node(node, axis), at.displacement[axis]);
                     gather(Matrices::of_node(node, 3 + axis), at.rotation[axis]);
@@ -242,7 +242,7 @@ impl<'g> Mechanism<'g, '_> {
             };
             for node in 1..inertia.nodes.len() {
                 let pair = self.pair([inertia.nodes[0], inertia.nodes[node]]);
-                let at = RelativeDisplacement::of(&pair, inertia.matrices.from_first(self.g, node));
+                let at = RelativeDisplacement::of(&pair, inertia.matrices.offset_in(self.g, node));
                 let body = &description.bodies[inertia.nodes[node].body].name;
                 let axes = ["x", "y", "z"].into_iter().enumerate();
                 for (axis, letter) in axes.filter(|(axis, _)| self.is_spatial || *axis < 2) {

@@ -93,7 +93,7 @@ impl Matrices {
     }
 
     /// The same as a vector of expressions.
-    pub fn from_first<'g>(&self, g: &'g Builder, node: usize) -> Vector<'g> {
+    pub fn offset_in<'g>(&self, g: &'g Builder, node: usize) -> Vector<'g> {
         self.offset(node).map(|part| g.number(part)).into()
     }
 

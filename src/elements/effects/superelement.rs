@@ -110,7 +110,7 @@ impl Superelement {
     fn end<'g>(&self, forces: &dyn Forces<'g>, node: usize) -> End<'g> {
         let between = [self.nodes[0], self.nodes[node]];
         let pair = forces.pair(between);
-        let at = RelativeDisplacement::of(&pair, self.matrices.from_first(forces.graph(), node));
+        let at = RelativeDisplacement::of(&pair, self.matrices.offset_in(forces.graph(), node));
         let rates = at.rates(&pair, between.map(|point| forces.angular_velocity(point.body)));
         End { pair, at, rates }
     }
