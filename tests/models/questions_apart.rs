@@ -2,8 +2,9 @@
 
 use mbint::inner::model::Description;
 use mbint::inner::results::{Summary, Verdict};
+use mbint::inner::study;
 
-use crate::common::{read, run_methods};
+use crate::common::{curve, read, run_methods};
 
 /// Oscillators x = A cos(ωt), ω² = k/m, each with its own amplitude and stiffness.
 const BODIES: [&str; 2] = [
@@ -150,4 +151,33 @@ fn yields_of_parts_are_those_of_the_whole() {
     let together = apart.together.as_ref().unwrap();
     let product = share("tight1") * share("tight2");
     assert!(product < 0.99 && (together.share - product).abs() < 2e-3, "{} {product}", together.share);
+}
+
+/// The program of a step is the same with and without questions, and so are the bounds of what is observed; statistics of laws within their
+/// intervals take no simulation.
+#[test]
+fn who_does_not_ask_does_not_pay() {
+    let text = |more: &str, asked: &str| {
+        read(&format!(
+            "{}outputs: {{ x1: one.x{more} }}\n{asked}simulation: {{ duration: 1.1 s, step: 2 ms, output_step: 20 ms }}\nbounds: {{ chebyshev: {{ order: 4 }} }}\n",
+            BODIES[0]
+        ))
+    };
+    let reduced = ", fast1: { max: one.vx }, when1: { when: one.x < -0.05 m }";
+    let plain = text("", "");
+    let asked = text(reduced, "requirements: { slow1: fast1 <= 0.9 m/s }\n");
+    let statistics = text("", "statistics: { quantiles: [5%, 95%] }\n");
+    let tapes = |description: &Description| {
+        let program = study::prepare(description).unwrap().program;
+        [program.step(), program.factor(), program.correct(), program.advance()].map(|tape| tape.len_where(true))
+    };
+    assert_eq!(tapes(&plain), tapes(&statistics));
+    assert_eq!(tapes(&plain), tapes(&asked));
+    let [(bounds, without), (same, with), (also, by_laws)] =
+        [&plain, &asked, &statistics].map(|description| run_methods(description, None));
+    assert_eq!(curve(&bounds, "x1"), curve(&same, "x1"));
+    assert_eq!(curve(&bounds, "x1"), curve(&also, "x1"));
+    assert_eq!(simulations(&without), simulations(&by_laws));
+    let more = simulations(&with) - simulations(&without);
+    assert!((1..=8).contains(&more), "{more} simulations more");
 }
