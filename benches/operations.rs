@@ -9,8 +9,11 @@ use mbint::inner::model::load;
 use mbint::inner::study::prepare;
 use symdiff::{Binary, Op, Tape, Unary};
 
+/// A name, and which operations it has.
+type OfKind = (&'static str, fn(Op) -> bool);
+
 /// Kinds of operations, and which instructions they are.
-const KINDS: [(&str, fn(Op) -> bool); 7] = [
+const KINDS: [OfKind; 7] = [
     ("+ −", |op| matches!(op, Op::Binary(Binary::Add | Binary::Sub))),
     ("·", |op| matches!(op, Op::Binary(Binary::Mul))),
     ("· ±", |op| matches!(op, Op::MulAdd | Op::MulSub | Op::NegMulAdd)),

@@ -12,6 +12,7 @@
 mod elimination;
 mod equation_tapes;
 mod equations;
+mod inertial_change;
 mod layout;
 mod links;
 mod nearest;

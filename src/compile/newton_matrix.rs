@@ -18,6 +18,7 @@ use rustc_hash::FxHashMap;
 use symdiff::{Expr, Graph, Input, SparseMatrix};
 
 use super::equations::{equations_of_motion, time_derivative};
+use super::inertial_change;
 use super::layout::Layout;
 use super::links::{Linked, Unknowns};
 use super::scheme::{Coefficients, ConstraintLevel};
@@ -162,8 +163,8 @@ pub fn newton_system(
     }
     let residual = graph.substitute(&residual, &at_end);
     let inertial_change = match linked {
-        None => inertial_change(system, graph, &symbols, &state, &at_end),
-        Some(_) => inertial_change_of_links(system, graph, &symbols, &state, &at_end),
+        None => inertial_change::by_mass(system, graph, [&state.algorithmic, &symbols.a], &at_end),
+        Some(_) => inertial_change::by_forces(system, graph, [&state.algorithmic, &symbols.a], &at_end),
     };
     if let Some(linked) = &linked {
         let (symbols, values): (Vec<Expr>, Vec<Expr>) = linked.symbols().unzip();
@@ -292,43 +293,6 @@ fn differentiate(
     for (row, column, value) in by_multiplier.entries() {
         matrix.add(graph, row, n + column, value);
     }
-}
-
-/// M(q₊) (a₊ − a).
-fn inertial_change(
-    system: &System,
-    graph: &mut Graph,
-    symbols: &StepSymbols,
-    state: &NewState,
-    at_end: &FxHashMap<Expr, Expr>,
-) -> Vec<Expr> {
-    let masses: Vec<Expr> = system.mass.iter().map(|&(_, _, mass)| mass).collect();
-    let masses = graph.substitute(&masses, at_end);
-    let mut changes = vec![graph.constant(0.0); system.q.len()];
-    for (&(row, column, _), mass) in system.mass.iter().zip(masses) {
-        let change = graph.sub(state.algorithmic[column], symbols.a[column]);
-        let change = graph.mul(mass, change);
-        changes[row] = graph.add(changes[row], change);
-    }
-    changes
-}
-
-/// The same from the inertial forces, which are linear in w, without M.
-fn inertial_change_of_links(
-    system: &System,
-    graph: &mut Graph,
-    symbols: &StepSymbols,
-    state: &NewState,
-    at_end: &FxHashMap<Expr, Expr>,
-) -> Vec<Expr> {
-    let zero = graph.constant(0.0);
-    let (mut changed, mut unchanged) = (at_end.clone(), at_end.clone());
-    for (place, &w) in system.w.iter().enumerate() {
-        changed.insert(w, graph.sub(state.algorithmic[place], symbols.a[place]));
-        unchanged.insert(w, zero);
-    }
-    let [changed, unchanged] = [changed, unchanged].map(|values| graph.substitute(&system.inertia, &values));
-    changed.into_iter().zip(unchanged).map(|(changed, unchanged)| graph.sub(changed, unchanged)).collect()
 }
 
 #[cfg(test)]

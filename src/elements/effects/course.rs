@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 use schemars::{Schema, SchemaGenerator, json_schema};
-use symdiff::{Formula, Scalar};
+use symdiff::{Formula, Scalar, math};
 
 use super::Forces;
 use crate::grammar::{Node, Quantity, Reader, Span, SymbolTable, Value, values};
@@ -108,7 +108,7 @@ impl Course {
             for edge in 0..edges {
                 let next = &self.0[(edge + 1) % count];
                 let Some(((x, y), (to_x, to_y))) = place(&self.0[edge]).zip(place(next)) else { continue };
-                let chord = (to_x - x).hypot(to_y - y);
+                let chord = math::hypot(to_x - x, to_y - y);
                 let radius = next.radius.as_ref().and_then(|radius| reader.evaluate(radius, corner));
                 let (start, end) = (edge + 1, (edge + 1) % count + 1);
                 let label = reader.corners[corner].label.clone();
