@@ -9,8 +9,8 @@
 //! on the first node also τ = R Σ (V_i × p_i + W_i × h_i)
 //! ```
 //!
-//! are what d/dt ∂T/∂v − ∂T/∂q comes to: T depends on where the first node points, too (Géradin & Cardona, *Flexible Multibody Dynamics*
-//! (2001), ch. 10). Gravity acts on S, the mass times the centre of mass from the first node, which is linear in the displacements
+//! are what d/dt ∂T/∂v − ∂T/∂q comes to: T depends on where the first node points, too (Géradin & Cardona, *Flexible
+//! Multibody Dynamics* (2001), ch. 10). Gravity acts on S, the mass times the centre of mass from the first node, which is linear in the displacements
 //! u of [`crate::elements::effects::superelement`]:
 //!
 //! ```text

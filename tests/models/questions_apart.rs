@@ -179,5 +179,6 @@ fn who_does_not_ask_does_not_pay() {
     assert_eq!(curve(&bounds, "x1"), curve(&also, "x1"));
     assert_eq!(simulations(&without), simulations(&by_laws));
     let more = simulations(&with) - simulations(&without);
-    assert!((1..=8).contains(&more), "{more} simulations more");
+    // Those that show where to cut the time are samples of the surrogate here.
+    assert!(more <= 8, "{more} simulations more");
 }

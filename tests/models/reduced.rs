@@ -317,3 +317,32 @@ bounds: { chebyshev: { order: 5 } }
         assert!((case.value - expected).abs() < 1e-4, "{case:?} instead of {expected}");
     }
 }
+
+/// The page's slider crank: the stroke is 2 r, |ẍ| at the dead centre r ω² (1 + r/l), and x = r cos φ + √(l² − r² sin² φ).
+#[test]
+fn the_pages_slider_crank_is_that_of_its_closed_forms() {
+    let example = include_str!("../../docs/examples/requirements.yaml");
+    let page = include_str!("../../docs/guides/requirements.md");
+    assert!(page.contains(example), "the page shows the example");
+    let found = summary(&read(example));
+    let simulations: usize = found.methods.iter().map(|method| method.simulations).sum();
+    assert_eq!(simulations, 191, "the page says so");
+    let ends = |of: &dyn Fn(f64, f64, f64) -> f64| {
+        let corners = [0.099, 0.101].into_iter().flat_map(|r| [0.2985, 0.3015].map(|l| (r, l)));
+        let values = corners.flat_map(|(r, l)| [2.85, 3.15].map(|m| of(r, l, m)));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    };
+    check(&found, "stroke", ends(&|r, _, _| 2.0 * r), 1e-9);
+    check(&found, "hardest", ends(&|r, l, m| m * r * 100.0 * (1.0 + r / l)), 1e-3);
+    // x² − 2 x r cos φ + r² = l²
+    check(&found, "down", ends(&|r, l, _| ((0.0625 + r * r - l * l) / (0.5 * r)).acos() / 10.0), 1e-8);
+    for (name, verdict) in [
+        ("clears", Verdict::Holds),
+        ("far", Verdict::Holds),
+        ("gentle", Verdict::Holds),
+        ("light", Verdict::Violated),
+        ("timely", Verdict::Holds),
+    ] {
+        assert_eq!(requirement(&found, name).verdict, verdict, "{name}");
+    }
+}

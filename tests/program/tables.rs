@@ -27,21 +27,7 @@ fn rounded(table: &str) -> String {
 }
 
 /// The example of the guide to statistics.
-const STATISTICS: &str = "
-model: stack
-parameters:
-  a: { value: 30 mm, tolerance: 0.1 mm, distribution: normal }
-  b: { value: 20 mm, tolerance: 0.2 mm, distribution: triangular }
-  c: { value: 51 mm, tolerance: 0.1 mm }
-  d: { value: c, tolerance: 0.01 mm }
-bodies: { block: { mass: 1, coordinates: [x] } }
-initial: { block.x: d - a - b, block.vx: 0 }
-outputs: { gap: block.x }
-simulation: { duration: 0.1, step: 0.01, output_step: 0.05 }
-statistics:
-  quantiles: [5%, 50%, 95%]
-  correlation: [{ of: [a, b], coefficient: 0.5 }]
-";
+const STATISTICS: &str = include_str!("../../docs/examples/statistics.yaml");
 
 #[track_caller]
 fn assert_table(name: &str, arguments: &str, status: i32, file: &str) {
@@ -56,6 +42,11 @@ fn assert_table(name: &str, arguments: &str, status: i32, file: &str) {
     settings.set_omit_expression(true);
     settings.set_description(format!("mbint {arguments}: {file}"));
     settings.bind(|| insta::assert_snapshot!(name, rounded(&table)));
+}
+
+#[test]
+fn the_page_shows_the_example() {
+    assert!(include_str!("../../docs/guides/statistics.md").contains(STATISTICS));
 }
 
 #[test]
