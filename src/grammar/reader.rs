@@ -18,6 +18,7 @@ use super::symbols::{Sensor, SymbolTable};
 use crate::syntax::diagnostic::{Diagnostic, Diagnostics};
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
+use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{Entry, Node, Scalar, Value};
 
 /// What is read so far of a model of symbols `S`, and what is known of its names.
@@ -297,6 +298,20 @@ impl<S: SymbolTable> Reader<'_, S> {
             Some(scalar) if !scalar.is_null() => Some(scalar),
             _ => {
                 self.error(node.span.clone(), format!("{wanted} belongs here, but here is {}", node.kind()), None);
+                None
+            }
+        }
+    }
+
+    /// The text of a file that a node names, in the model's folder, and where it begins among the sources.
+    pub fn file(&mut self, node: &Node) -> Option<(usize, String)> {
+        let scalar = self.scalar(node, "the name of a file")?;
+        let path = self.folder.join(&scalar.text);
+        match read_text(&path, MAX_BYTES) {
+            Ok(text) => Some((self.diagnostics.sources.add(path.display().to_string(), text.clone()), text)),
+            Err(error) => {
+                let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
+                self.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
                 None
             }
         }

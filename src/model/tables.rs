@@ -7,10 +7,8 @@ use super::parameters::unit;
 use crate::grammar::reader::{Fields, Table};
 use crate::grammar::unit::Unit;
 use crate::model::names::Reader;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::source::Span;
 use crate::syntax::suggest::{self, clip};
-use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml::{Entry, Node, Value};
 
 /// A value of a table and its place.
@@ -104,17 +102,7 @@ fn listed(reader: &mut Reader, node: &Node) -> Option<Vec<[Number; 2]>> {
 
 /// Two columns of a CSV file. Errors in it have their places in it.
 fn from_file(reader: &mut Reader, fields: &Fields, node: &Node) -> Option<Vec<[Number; 2]>> {
-    let scalar = reader.scalar(node, "the name of a file")?;
-    let path = reader.folder.join(&scalar.text);
-    let text = match read_text(&path, MAX_BYTES) {
-        Ok(text) => text,
-        Err(error) => {
-            let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
-            reader.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
-            return None;
-        }
-    };
-    let start = reader.diagnostics.sources.add(path.display().to_string(), text.clone());
+    let (start, text) = reader.file(node)?;
     let delimiter = separator(&text);
     let mut csv = csv::ReaderBuilder::new()
         .has_headers(false)

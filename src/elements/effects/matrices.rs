@@ -17,9 +17,7 @@ use symdiff::Builder;
 use crate::grammar::reader::Fields;
 use crate::grammar::{Node, Quantity, Reader, Span, SymbolTable, Value};
 use crate::multibody::Vector;
-use crate::syntax::diagnostic::Diagnostic;
 use crate::syntax::suggest::clip;
-use crate::syntax::text_file::{MAX_BYTES, read_text};
 use crate::syntax::yaml;
 
 /// Coordinates of a node: displacements, then rotations.
@@ -256,20 +254,11 @@ fn diagonal(matrix: &DMatrix<f64>, i: usize, j: usize) -> f64 {
 impl Value for Matrices {
     fn read<S: SymbolTable>(reader: &mut Reader<'_, S>, node: &Node, at: Span, _: &Quantity) -> Option<Self> {
         let keys = || vec!["nodes", "modes", "mass", "stiffness"];
-        let Some(scalar) = node.scalar() else {
+        if node.scalar().is_none() {
             let fields = reader.mapping("a set of matrices", keys(), node, at)?;
             return Self::read_fields(reader, &fields);
-        };
-        let path = reader.folder.join(&scalar.text);
-        let text = match read_text(&path, MAX_BYTES) {
-            Ok(text) => text,
-            Err(error) => {
-                let help = error.help.clone().or_else(|| Some("it is looked for in the model's folder".to_owned()));
-                reader.diagnostics.push(Diagnostic::error(node.span.clone(), error.message).help(help));
-                return None;
-            }
-        };
-        let start = reader.diagnostics.sources.add(path.display().to_string(), text.clone());
+        }
+        let (start, text) = reader.file(node)?;
         let root = reader.diagnostics.read_more(start, &text, |diagnostics| yaml::parse(&text, diagnostics))?;
         let root = root.moved(start);
         let fields = reader.mapping("a file of matrices", keys(), &root, root.span.start..root.span.start)?;
