@@ -32,6 +32,7 @@ mod hard_cases;
 mod honesty;
 mod honesty_search;
 mod humanoid;
+mod indexing;
 mod invariants;
 mod kept;
 mod kinematics;
