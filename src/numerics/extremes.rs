@@ -116,10 +116,26 @@ fn finer(lattice: &Lattice, intervals: &[usize], lines: &[(&[f64], &[f64])], lea
 
 /// Extremes of other functions, not far from those of similar ones.
 pub fn extremes_near(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    search_near(known, false, evaluate)
+}
+
+/// Extremes of functions of which some places near them are known. Those that are known at corners of the box are believed.
+pub fn extremes_from(known: &[Extent], evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
+    search_near(known, true, evaluate)
+}
+
+fn search_near(known: &[Extent], corners_stay: bool, evaluate: impl Fn(&[Vec<f64>]) -> Vec<f64>) -> Vec<Extent> {
     let near = |(output, extent): (usize, &Extent)| {
         let width = extent.range.width();
         let settled = SETTLED * width;
-        let end = |end: usize| End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
+        let end = |end: usize| {
+            let near = End::near(output, (&extent.places[end], &extent.spacing[end]), SIGNS[end], settled);
+            if corners_stay && extent.places[end].iter().all(|xi| xi.abs() == 1.0) {
+                let best = [extent.range.lower, extent.range.upper][end];
+                return End { best, gap: 0.0, found: true, ..near };
+            }
+            near
+        };
         Search { ends: [0, 1].map(end).into(), settled, output, omitted: [Vec::new(), Vec::new()] }
     };
     let mut searches: Vec<Search> = known.iter().enumerate().map(near).collect();

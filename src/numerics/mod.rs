@@ -55,7 +55,7 @@ pub use error::{
     BandError, SAFETY_OF_SURROGATE, carries, largest, step_error, surrogate_error, time_error, time_error_certified,
 };
 pub use extent::Extent;
-pub use extremes::{extremes, extremes_near};
+pub use extremes::{extremes, extremes_from, extremes_near};
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
 pub use range::{EMPTY, Range, union};

@@ -42,8 +42,12 @@ pub(super) struct SubBox<'r> {
     pub surplus: Surpluses,
     /// Of coordinates that turn, by coordinate; none, or one for each.
     pub courses: Vec<Option<Course>>,
-    /// Values of the validation samples.
+    /// ξ of the validation samples,
+    pub points: Cow<'r, [Vec<f64>]>,
+    /// and their values.
     pub direct: Cow<'r, ValidationTable>,
+    /// Whether the corners at which outputs are least and largest are among them.
+    pub witnessed: bool,
     /// Largest error at those over the one that is allowed.
     pub error: f64,
     /// Estimates of all rows, by row and output, and what is kept of them, once nothing is to be added.

@@ -387,7 +387,7 @@ impl<'r> Row<'r> {
     }
 
     /// For each output the corners of the box at which it is least and largest.
-    fn best_corners(&self) -> Vec<Vec<f64>> {
+    pub fn best_corners(&self) -> Vec<Vec<f64>> {
         let places = corners(self.domain.dimension(), CORNERS);
         let values = self.evaluate(&places);
         let of_output = |values: &[f64]| {
