@@ -58,7 +58,7 @@ pub use extent::Extent;
 pub use extremes::{extremes, extremes_from, extremes_near};
 pub use observed_order::{Correction, Differences, corrections};
 pub use polynomial_range::{PolynomialRange, RangeKind};
-pub use range::{EMPTY, Range, union};
+pub use range::{EMPTY, Range, limits, union};
 pub use row_space::{RowSpace, combined, dot};
 pub use samples::{TensorGrid, corners, spread, step_validation, validation};
 pub use scan::ScanBounds;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{Adaptation, WITNESSES};
-use crate::methods::chebyshev::composition::{Composer, Row};
+use crate::methods::chebyshev::composition::{BLOCK, Composer, Row};
 use crate::methods::chebyshev::detail::Detail;
 use crate::methods::chebyshev::estimator::RangeEstimator;
 use crate::methods::chebyshev::range_search::Previous;
@@ -13,6 +13,9 @@ use crate::methods::ensemble::{Ensemble, EnsembleError, Observed, lines};
 use crate::methods::kept::KeptRow;
 use crate::methods::result::Estimate;
 use crate::numerics::{SAFETY_OF_SURROGATE, Surrogate, largest};
+
+/// Rows in which the error at new nodes is looked at, which only tells what to add next.
+const AT_NODES: usize = 16;
 
 impl Adaptation<'_> {
     /// Values a row and sample of what is observed.
@@ -30,8 +33,9 @@ impl Adaptation<'_> {
         own: &[f64],
     ) -> Result<Vec<f64>, EnsembleError> {
         let own_stride = self.lines() * nodes.len();
-        let reached = self.goal.rows.min(sub_box.rows(self.lines())).min(own.len() / own_stride.max(1));
-        let rows = self.looked_at(reached);
+        let reached = self.goal.rows.min(sub_box.rows()).min(own.len() / own_stride.max(1));
+        let step = self.every.max(reached.div_ceil(AT_NODES)).max(1);
+        let rows: Vec<usize> = (0..reached).rev().step_by(step).collect();
         let allowed = &self.goal.allowed;
         let look = |place: usize, composed: &Row, _: &mut Previous| {
             let own = &own[rows[place] * own_stride..];
@@ -45,7 +49,7 @@ impl Adaptation<'_> {
             }
             errors
         };
-        let by_row = rows_of(&mut self.composer, self.ensemble, (sub_box, surrogate), &rows, false, look)?;
+        let by_row = rows_of(&mut self.composer, self.ensemble, (sub_box, surrogate), &rows, (false, BLOCK), look)?;
         Ok((0..nodes.len()).map(|node| largest(by_row.iter().map(|errors| errors[node]))).collect())
     }
 
@@ -58,17 +62,19 @@ impl Adaptation<'_> {
     /// until one of them is.
     pub(super) fn check(&mut self, sub_box: &mut SubBox) -> Result<(), EnsembleError> {
         sub_box.estimates = None;
-        let rows = self.looked_at(self.goal.rows.min(sub_box.rows(self.lines())));
+        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
         let glance = self.glance(sub_box, &rows)?;
         let mut suspects: Vec<usize> = (0..rows.len()).filter(|&place| is_missed(glance[place])).collect();
         suspects.sort_by(|&a, &b| glance[b].total_cmp(&glance[a]).then(a.cmp(&b)));
         sub_box.error = glance.iter().filter(|error| **error <= 1.0).fold(0.0, |most, error| error.max(most));
-        for place in suspects {
-            let found = self.estimates(sub_box, &rows[place..=place], Detail::Errors)?.0;
+        let mut suspects: &[usize] = &suspects.into_iter().map(|place| rows[place]).collect::<Vec<usize>>();
+        // The worst alone at first: it tells most often.
+        let mut together = 1;
+        while !suspects.is_empty() && !is_missed(sub_box.error) {
+            let (worst, others) = suspects.split_at(together.min(suspects.len()));
+            let found = self.estimates(sub_box, worst, Detail::Errors)?.0;
             sub_box.error = largest([sub_box.error, self.worst(&found)]);
-            if is_missed(sub_box.error) {
-                break;
-            }
+            (suspects, together) = (others, 2 * together);
         }
         Ok(())
     }
@@ -87,7 +93,7 @@ impl Adaptation<'_> {
             let errors = row.errors_at_samples((&sub_box.points, &sub_box.direct), rows[place]);
             largest(errors.iter().zip(allowed).map(|(error, allowed)| SAFETY_OF_SURROGATE * error / allowed))
         };
-        rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, false, look)
+        rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, (false, BLOCK), look)
     }
 
     /// Estimates over a sub-box in some rows, by row and output, and what is kept of them.
@@ -111,8 +117,9 @@ impl Adaptation<'_> {
             let kept = keeps.then(|| row.kept(found.iter().map(|estimate| estimate.is_own).collect()));
             (found, kept)
         };
-        let velocities = detail != Detail::Errors;
-        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, velocities, look)?;
+        // Errors alone are asked for of rows that are not neighbours.
+        let looked = if detail == Detail::Errors { (false, 1) } else { (true, BLOCK) };
+        let found = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), rows, looked, look)?;
         let (found, kept): (Vec<Vec<Estimate>>, Vec<Option<KeptRow>>) = found.into_iter().unzip();
         Ok((found.concat(), kept.into_iter().flatten().collect()))
     }
@@ -120,7 +127,7 @@ impl Adaptation<'_> {
     /// Estimates over a sub-box in all rows, where they are not known.
     pub(super) fn conclude_box(&mut self, sub_box: &mut SubBox, detail: Detail) -> Result<(), EnsembleError> {
         if sub_box.estimates.is_none() {
-            let rows: Vec<usize> = (0..sub_box.rows(self.lines())).collect();
+            let rows: Vec<usize> = (0..sub_box.rows()).collect();
             let found = self.estimates(sub_box, &rows, detail)?;
             let goal = self.goal.rows.min(rows.len()) * self.goal.allowed.len();
             sub_box.error = self.worst(&found.0[..goal]);
@@ -134,10 +141,10 @@ impl Adaptation<'_> {
         if std::mem::replace(&mut sub_box.witnessed, true) {
             return Ok(());
         }
-        let rows = self.looked_at(self.goal.rows.min(sub_box.rows(self.lines())));
+        let rows = self.looked_at(self.goal.rows.min(sub_box.rows()));
         let surrogate = Surrogate::sparse(&sub_box.grid);
         let look = |_: usize, row: &Row, _: &mut Previous| row.best_corners();
-        let in_rows = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, false, look)?;
+        let in_rows = rows_of(&mut self.composer, self.ensemble, (sub_box, &surrogate), &rows, (false, BLOCK), look)?;
         let mut corners: Vec<(Vec<f64>, usize)> = Vec::new();
         for corner in in_rows.into_iter().flatten().filter(|corner| !sub_box.points.contains(corner)) {
             match corners.iter_mut().find(|(known, _)| *known == corner) {
@@ -165,14 +172,13 @@ fn rows_of<T: Send>(
     ensemble: &dyn Ensemble,
     (sub_box, surrogate): (&SubBox, &Surrogate),
     rows: &[usize],
-    velocities: bool,
+    (velocities, together): (bool, usize),
     look: impl Fn(usize, &Row, &mut Previous) -> T + Sync,
 ) -> Result<Vec<T>, EnsembleError> {
-    let lines = lines(ensemble, Observed::Motion);
-    let motions = sub_box.motions(lines, rows.iter().copied());
+    let values = sub_box.values(rows.iter().copied());
     let times: Vec<f64> = rows.iter().map(|&row| ensemble.time(row)).collect();
-    let values = (motions.as_slice(), lines * surrogate.samples().len(), sub_box.courses.as_slice());
-    composer.rows(surrogate, &sub_box.domain, &times, values, velocities, look)
+    let values = (values.as_slice(), sub_box.lines * surrogate.samples().len(), sub_box.courses.as_slice());
+    composer.rows(surrogate, &sub_box.domain, &times, values, (velocities, together), look)
 }
 
 /// Whether an error is more than the one that is allowed, which is 1; NaN is.

@@ -165,14 +165,27 @@ impl<'r> Adaptation<'r> {
         (points, direct): (Cow<'r, [Vec<f64>]>, Cow<'r, ValidationTable>),
     ) -> Result<SubBox<'r>, EnsembleError> {
         let grid = SparseGrid::new(&vec![highest(domain.dimension()); domain.dimension()]);
-        let nodes = vec![self.simulate(&domain, &[grid.sample(0)])?];
         let surplus = FxHashMap::from_iter([(vec![0; domain.dimension()], f64::INFINITY)]);
         // What is kept has polynomials of the coordinates themselves.
         let wanted = if self.kept.is_some() { Vec::new() } else { turning(&direct, &points, self.ensemble) };
         let (count, courses) = courses(self.ensemble, &domain, &wanted)?;
         self.goal.spent += count;
-        let (error, witnessed) = (f64::INFINITY, domain.dimension() <= ALL_CORNERS);
-        Ok(SubBox { domain, grid, nodes, surplus, courses, points, direct, witnessed, error, estimates: None })
+        let middle = self.simulate(&domain, &[grid.sample(0)])?;
+        let mut sub_box = SubBox {
+            witnessed: domain.dimension() <= ALL_CORNERS,
+            lines: self.lines() + courses.iter().flatten().count(),
+            nodes: Vec::new(),
+            error: f64::INFINITY,
+            estimates: None,
+            domain,
+            grid,
+            surplus,
+            courses,
+            points,
+            direct,
+        };
+        sub_box.add(middle);
+        Ok(sub_box)
     }
 
     /// Validation samples of a sub-box.
@@ -225,7 +238,7 @@ impl<'r> Adaptation<'r> {
             let own = of_samples(&values, count, places.clone());
             let surplus = self.errors_at(&before, sub_box, &nodes[places], &own)?;
             added.iter().for_each(|levels| sub_box.grid.add(levels));
-            sub_box.nodes.push((added.len(), own));
+            sub_box.add((added.len(), own));
             sub_box.surplus.extend(added.into_iter().zip(surplus));
         }
         self.check(sub_box)
