@@ -113,10 +113,11 @@ fn inside<'g>(
 }
 
 /// Reports a capsule of other than two points, or of one twice, somewhere in the box of parameters.
-pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, ends: &Points) {
+pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, (key, ends): (&str, &Points)) {
     let [start, end] = &**ends else {
-        let message = format!("a `capsule` has 2 points, not {}", ends.len());
-        reader.error(at, message, "several in a row are a `path`, in the plane".to_owned());
+        let message = format!("a `{key}` has 2 points, not {}", ends.len());
+        let help = (key == "capsule").then(|| "several in a row are a `path`, in the plane".to_owned());
+        reader.error(at, message, help);
         return;
     };
     for corner in 0..reader.corners.len() {
@@ -126,8 +127,9 @@ pub(super) fn check_ends<S: SymbolTable>(reader: &mut Reader<'_, S>, at: Span, e
         };
         if (0..3).all(is_same) {
             let label = &reader.corners[corner].label;
-            let message = format!("the ends of the `capsule` are one point{label}");
-            reader.error(at, message, "a ball is a `circle`".to_owned());
+            let message = format!("the ends of the `{key}` are one point{label}");
+            let help = (key == "capsule").then(|| "a ball is a `circle`".to_owned());
+            reader.error(at, message, help);
             return;
         }
     }
